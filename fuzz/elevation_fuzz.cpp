@@ -16,6 +16,7 @@
 #include "fuzz/must.hpp"
 #include "fuzz/plain_map.hpp"
 #include "fuzz/twin.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace {
 
@@ -26,7 +27,6 @@ using fuzz::OnTarget;
 using fuzz::PlainMap;
 
 constexpr int kMostOperations = 16;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 template <typename T>
 bool same_cells(const grid::SlidingLayer<T>& a, const Image<T>& b) {
@@ -248,7 +248,7 @@ class Play {
             (region.*member).fill(unknown);
         });
         const float z_m = choices_.number(0.02F);
-        const float clearance_m = choices_.yes() ? choices_.number(0.1F) : kNan;
+        const float clearance_m = choices_.yes() ? choices_.number(0.1F) : kNanF;
         const float var_m2 = choices_.number(1e-4F);
         const int holes = 1 + choices_.below(5);
         for (std::size_t i = 0; i < region.height_m.size(); ++i) {

@@ -3,12 +3,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/elevation/visibility/ray_endpoints.hpp"
 #include "surefoot/elevation/visibility/visibility.hpp"
@@ -42,16 +42,16 @@ class PlainMap {
 
     /// State of a cell, with the meaning and units of ElevationLayers.
     struct Known {
-        float height_m = kNan;
-        float height_var_m2 = kNan;
+        float height_m = kNanF;
+        float height_var_m2 = kNanF;
         std::uint32_t count = 0;
         std::int64_t seen_ns = 0;
-        float horizontal_drift_m = kNan;
-        float highest_m = kNan;
-        float lowest_m = kNan;
-        float clearance_m = kNan;
-        float confidence = kNan;
-        float density_ratio = kNan;
+        float horizontal_drift_m = kNanF;
+        float highest_m = kNanF;
+        float lowest_m = kNanF;
+        float clearance_m = kNanF;
+        float confidence = kNanF;
+        float density_ratio = kNanF;
     };
     /// `ix`, `iy`: cell of the window.
     [[nodiscard]] Known known(int ix, int iy) const;
@@ -62,25 +62,24 @@ class PlainMap {
     [[nodiscard]] const grid::GridGeometry& geometry() const { return geometry_; }
 
   private:
-    static constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     using Index = std::pair<std::int64_t, std::int64_t>;  ///< (iy, ix) on the lattice
 
     struct Cell : Known {
-        float settled_var_m2 = kNan;
+        float settled_var_m2 = kNanF;
         elevation::ViewpointHistory::Id view = elevation::ViewpointHistory::kNever;
-        float overhead_m = kNan;
+        float overhead_m = kNanF;
         int overhead_trust = 0;
         bool overhead_hangs = false;
-        float bottom_m = kNan;      ///< lowest ray over an unknown cell
-        float free_above_m = kNan;  ///< second lowest ray over it
+        float bottom_m = kNanF;      ///< lowest ray over an unknown cell
+        float free_above_m = kNanF;  ///< second lowest ray over it
         int steady = 0;
         int seen_through = 0;
     };
     /// Measurement of one cell in one frame.
     struct CellObservation {
         elevation::CellMeasurement measured;
-        float density_ratio = kNan;
-        float bottom_m = kNan;
+        float density_ratio = kNanF;
+        float bottom_m = kNanF;
     };
     struct Heights {
         std::vector<float> z_m;

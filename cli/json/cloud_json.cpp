@@ -8,6 +8,7 @@
 
 #include "service/console/log.hpp"
 #include "service/gate_process/protocol/json_text.hpp"
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -51,7 +52,6 @@ std::string sor_json(const KeptPoints& result,
 }
 
 std::string icp_json(const geometry::CloudAlignment& found, const Eigen::Vector3d& shift_m) {
-    constexpr double kDegPerRad = 180.0 / M_PI;
     const Eigen::Matrix4d m = found.T_reference_moved.matrix();
     Json rows = Json::array();
     for (int i = 0; i < 4; ++i) rows.push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
@@ -124,7 +124,6 @@ std::string measure_json(const eval::HeightHistogram& heights,
                          const eval::StairMeasures& stairs,
                          const std::optional<std::optional<double>>& door_width_m,
                          const Eigen::Vector3d& shift_m) {
-    constexpr double kDegPerRad = 180.0 / M_PI;
     Json levels = Json::array();
     for (const eval::Level& level : heights.levels) {
         levels.push_back(

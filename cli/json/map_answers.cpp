@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/gate_process/protocol/json_text.hpp"
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using gate_process::Json;
 using gate_process::number;
 
-constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;
 
 Json region_json(const grid::MapRegion& region) {

@@ -10,6 +10,7 @@
 #include "service/gate_process/protocol/json_text.hpp"
 #include "service/gate_process/protocol/verdict_json.hpp"
 #include "service/live/ground_box.hpp"
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using gate_process::Json;
 using gate_process::number;
 
-constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;
 
 }  // namespace

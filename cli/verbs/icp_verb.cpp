@@ -7,6 +7,7 @@
 #include "cli/verbs/verbs.hpp"
 #include "service/console/log.hpp"
 #include "service/console/option_settings.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 #include "surefoot/io/clouds/cloud_stream.hpp"
 #include "surefoot/io/clouds/cloud_writer.hpp"
@@ -45,7 +46,6 @@ Result<Pose> parse_guess(const std::string& guess) {
     if (!io::is_file(guess)) {
         const std::vector<double> n = numbers_of(guess);
         if (n.size() == 4) {
-            constexpr double kRadPerDeg = M_PI / 180.0;
             return Pose{exp_so3({0.0, 0.0, kRadPerDeg * n[3]}), {n[0], n[1], n[2]}};
         }
         return usage_error(

@@ -8,6 +8,7 @@
 #include "service/console/log.hpp"
 #include "service/console/numbers.hpp"
 #include "service/console/option_settings.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/region/region_merge.hpp"
 #include "surefoot/elevation/region/region_transfer.hpp"
@@ -30,8 +31,6 @@ struct MapMergeOptions {
                                          ///< horizontal m, vertical m, angle deg
     bool independent = false;            ///< the maps come from two runs with the same odom frame
 };
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     for (const std::string& layer : map.skipped_layers) {

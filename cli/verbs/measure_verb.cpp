@@ -9,6 +9,7 @@
 #include "service/console/numbers.hpp"
 #include "service/console/option_settings.hpp"
 #include "studies/clouds/cloud_pictures.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/eval/clouds/cloud_measures.hpp"
 #include "surefoot/io/clouds/cloud_stream.hpp"
 #include "surefoot/io/file.hpp"
@@ -35,7 +36,6 @@ Result<eval::DoorPlace> parse_door(const std::string& text,
     if (heights.levels.empty()) {
         return input_error("--door: no level surface was found to count heights of the jambs from");
     }
-    constexpr double kRadPerDeg = M_PI / 180.0;
     return eval::DoorPlace{Eigen::Vector2d((*xyyaw)[0], (*xyyaw)[1]) - shift_m.head<2>(),
                            kRadPerDeg * (*xyyaw)[2],
                            heights.levels.front().height_m};

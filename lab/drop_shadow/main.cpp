@@ -23,6 +23,7 @@
 
 #include "lab/drop_edges/drop_scene.hpp"
 #include "surefoot/elevation/sampling/depth_points.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot {
 namespace {
@@ -93,9 +94,7 @@ struct Fill {
     [[nodiscard]] double median_m() const {
         if (heights_m.empty()) return std::nan("");
         std::vector<double> sorted = heights_m;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
-        return *middle;
+        return upper_median_in_place(sorted);
     }
 };
 

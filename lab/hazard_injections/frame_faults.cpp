@@ -9,12 +9,12 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "lab/hazard_injections/fault_bench.hpp"
 #include "service/live/live_session.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -26,7 +26,6 @@ namespace surefoot::experiments {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A room with a floor, and perhaps something in it.
 std::string room(const std::string& solid) {

@@ -15,6 +15,8 @@
 #include "service/gate_process/audit/memory_disk_testing.hpp"
 #include "service/gate_process/protocol/rosbridge_session.hpp"
 #include "service/gate_process/query_zone.hpp"
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 #include "surefoot/machines/built_in_machines.hpp"
 
@@ -24,9 +26,7 @@ namespace {
 using grid::MapSnapshot;
 
 constexpr std::int64_t kProcessing_ns = 45 * kMs;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A box on the ground, turned.
@@ -235,7 +235,7 @@ Fault wrong_stamp(Perceived& p) {
 }
 
 Fault bad_number(Perceived& p) {
-    const double bad[] = {kNaN, kInfinity, -kInfinity, 1e300, 2.0, 0.0};
+    const double bad[] = {kNan, kInfinity, -kInfinity, 1e300, 2.0, 0.0};
     switch (p.rng.below(4)) {
         case 0: {
             const double value = bad[p.rng.below(6)];
@@ -291,7 +291,7 @@ Fault drifted(Perceived& p) {
 
 Fault unknown(Perceived& p) {
     const auto hide = [&](int u, int v) {
-        p.terrain.height.at(u, v) = p.terrain.variance.at(u, v) = gate::testing::kNaN;
+        p.terrain.height.at(u, v) = p.terrain.variance.at(u, v) = kNanF;
     };
     Place hole = p.landing();
     hole = hole.at(p.rng.uniform(-0.15, 0.15), p.rng.uniform(-0.07, 0.07));
@@ -626,10 +626,10 @@ Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, b
         {"patch_residual 1 m", [&] { l.patch_residual_tenth_mm = 10'000; }},
         {"cell_sigma 1 m", [&] { l.cell_sigma_tenth_mm = 10'000; }},
         {"sigma_factor 0", [&] { l.sigma_factor = 0.0; }},
-        {"sigma_factor NaN", [&] { l.sigma_factor = kNaN; }},
+        {"sigma_factor NaN", [&] { l.sigma_factor = kNan; }},
         {"independent cells 1000", [&] { l.patch_independent_cells = 1000; }},
         {"tilt 90 deg", [&] { l.min_normal_z = 0.0; }},
-        {"tilt NaN", [&] { l.min_normal_z = kNaN; }},
+        {"tilt NaN", [&] { l.min_normal_z = kNan; }},
         {"step 1 m", [&] { l.step[0].up_tenth_mm = 10'000; }},
         {"vouch radius 100 m", [&] { l.attestation_radius_tenth_mm = 1'000'000; }},
         {"body without parts", [&] { file.machine.body.count = 0; }},
@@ -643,7 +643,7 @@ Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, b
         {"recover in 0 frames", [&] { limits.recover_frames = 0; }},
         {"degraded for 1 h", [&] { limits.degraded_timeout_ns = kHour_ns; }},
         {"fastest 100 m/s", [&] { limits.fastest_m_s = 100.0; }},
-        {"fastest NaN", [&] { limits.fastest_m_s = kNaN; }},
+        {"fastest NaN", [&] { limits.fastest_m_s = kNan; }},
         {"fastest turn infinite", [&] { limits.fastest_rad_s = kInfinity; }},
         {"jump 10 m", [&] { limits.jump_m = 10.0; }},
         {"jump 0", [&] { limits.jump_m = 0.0; }},

@@ -22,11 +22,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "service/console/log.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -39,7 +39,6 @@ namespace {
 constexpr int kMostFrames = 250;  ///< of the way; kept in memory
 constexpr int kDepthEvery = 5;
 constexpr double kNewNoise_grey = 1.5;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
 
 struct Way {

@@ -26,7 +26,6 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +34,7 @@
 #include "service/console/log.hpp"
 #include "service/console/source.hpp"
 #include "surefoot/camera/frame_integrity_check.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -50,7 +50,6 @@ constexpr int kFrames = 76;
 constexpr int kOnset = 40;
 constexpr int kAfter = 16;  ///< frames that are followed after the end of a fault
 constexpr double kWindow_s = 1.0;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kWall_dn = 130.0;
 
 using experiments::SceneCase;

@@ -35,6 +35,7 @@
 #include "lab/scenes/scene_cases.hpp"
 #include "service/console/log.hpp"
 #include "service/console/source.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/recordings/trajectory_file.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -49,7 +50,6 @@ constexpr double kWindow_s = 1.0;
 constexpr double kStill_m = 0.005;
 constexpr double kStill_rad = 0.5 * std::numbers::pi / 180.0;
 constexpr std::int64_t kRounding_ns = 1'000'000;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 using experiments::SceneCase;
 

@@ -28,7 +28,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -36,6 +35,7 @@
 #include "lab/scenes/scene_cases.hpp"
 #include "service/console/log.hpp"
 #include "service/console/source.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/eval/maps/map_comparison.hpp"
 #include "surefoot/eval/trajectory/trajectory.hpp"
 #include "surefoot/io/text.hpp"
@@ -48,8 +48,6 @@ namespace surefoot::app {
 namespace {
 
 using experiments::SceneCase;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 struct Case {
     SceneCase seen;

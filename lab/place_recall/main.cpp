@@ -39,6 +39,7 @@
 #include "service/console/log.hpp"
 #include "service/console/source.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -52,7 +53,6 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLean_deg = 0.2;  ///< of odom
 constexpr double kStep_m = 0.26;   ///< between two keyframes, just enough for one
 constexpr double kTurn_deg = 13.0;

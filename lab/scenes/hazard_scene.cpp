@@ -8,13 +8,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::experiments {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr double kFar_m = 6.0;   ///< how far levels go on
 constexpr double kDeep_m = 2.0;  ///< thickness of the ground
 constexpr double kTrolleyHeight_m = 0.95;
@@ -278,7 +279,7 @@ Vector2d normal_for(const Movement& movement, Vector2d& ahead, bool& was_turned,
     was_turned = towards.x() < -0.05;
     ahead = was_turned ? Vector2d(-Vector2d::UnitX()) : Vector2d(Vector2d::UnitX());
     for (;;) {
-        Vector2d n = turned(towards, rng.uniform(-35.0, 35.0) / kDeg);
+        Vector2d n = turned(towards, rng.uniform(-35.0, 35.0) / kDegPerRad);
         if (n.dot(ahead) >= 0.0) return n;
     }
 }
@@ -303,7 +304,7 @@ constexpr const char* kLooks[] = {"carpet", "tiles", "wood", "concrete", "patche
 
 /// Line of a solid of the file.
 std::string solid_line(const Solid& solid, std::size_t index) {
-    const double yaw_deg = kDeg * std::atan2(solid.sin_yaw, solid.cos_yaw);
+    const double yaw_deg = kDegPerRad * std::atan2(solid.sin_yaw, solid.cos_yaw);
     const std::size_t look = index % std::size(kLooks);
     if (solid.round) {
         return fmt::format(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
 namespace surefoot::experiments {
@@ -15,7 +16,6 @@ using Eigen::Vector2d;
 
 constexpr double kReach_m = 1.1;
 constexpr double kCell_m = 0.025;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// Higher than this over the ground around it the camera sees the face of a thing, not its top.
 constexpr float kTall_m = 0.25F;
 
@@ -157,9 +157,9 @@ SceneCells::SceneCells(const HazardScene& scene, const Sight& sight)
     // iy).
     const int samples = 2 * side + 2;
     struct Sample {
-        float z_m = kNan;
-        float under_m = kNan;
-        float top_m = kNan;
+        float z_m = kNanF;
+        float under_m = kNanF;
+        float top_m = kNanF;
     };
     Image<Sample> field(samples, samples);
     for (int v = 0; v < samples; ++v) {
@@ -181,7 +181,7 @@ SceneCells::SceneCells(const HazardScene& scene, const Sight& sight)
             Cell& cell = cells_.at(ix, iy);
             cell.low_m = std::numeric_limits<float>::infinity();
             cell.high_m = cell.highest_m = -cell.low_m;
-            cell.under_m = cell.top_m = kNan;
+            cell.under_m = cell.top_m = kNanF;
             for (int v = 0; v < 4; ++v) {
                 for (int u = 0; u < 4; ++u) {
                     const Sample& sample = field.at(2 * ix + u, 2 * iy + v);
@@ -230,10 +230,10 @@ namespace {
 
 MadeMap empty_map(const grid::GridGeometry& g) {
     return {g,
-            Image<float>(g.nx, g.ny, kNan),
-            Image<float>(g.nx, g.ny, kNan),
+            Image<float>(g.nx, g.ny, kNanF),
+            Image<float>(g.nx, g.ny, kNanF),
             Image<float>(g.nx, g.ny, 0.0F),
-            Image<float>(g.nx, g.ny, kNan)};
+            Image<float>(g.nx, g.ny, kNanF)};
 }
 
 /// A cell of the clean map: the highest surface; under what hangs, floor with its clearance.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::experiments {
 
 using Eigen::Vector2d;
@@ -16,7 +18,6 @@ Heights heights_at(const HazardScene& scene, const Vector2d& p_m) {
         if (solid.covers(p_m) && (highest == nullptr || solid.top_m > highest->top_m))
             highest = &solid;
     }
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     if (highest == nullptr) return {kNan, kNan, std::numeric_limits<double>::infinity()};
     const Solid* below = nullptr;  // the highest that ends below it
     bool joined = false;           // or that it stands on

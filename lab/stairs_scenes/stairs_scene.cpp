@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "lab/scenes/scene_cases.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/rendering/renderer.hpp"
@@ -21,7 +23,6 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::uint64_t kRigStream = 101;
 constexpr std::uint64_t kOdomStream = 102;
 /// Where it looks before a door that the way leads through, as base_link stands.
@@ -131,9 +132,7 @@ Image<std::uint8_t> floor_pixels(const Image<float>& disparity_px,
 
 double median(std::vector<double> values) {
     if (values.empty()) return std::nan("");
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 bool all_floor_around(const Image<std::uint8_t>& floor, int u, int v) {

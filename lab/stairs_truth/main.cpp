@@ -46,6 +46,7 @@
 #include "lab/stairs_scenes/stairs_observation.hpp"
 #include "lab/stairs_scenes/stairs_scene.hpp"
 #include "service/console/log.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
@@ -63,7 +64,6 @@ using experiments::TrueFeature;
 using experiments::TrueKind;
 using experiments::turned_rad;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr int kCalls = 4;
 constexpr double kDoorNear_m = 0.3;
 constexpr double kDoorTurn_rad = 15.0 / kDegPerRad;

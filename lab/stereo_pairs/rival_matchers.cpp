@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/speckles.hpp"
@@ -14,7 +14,6 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kLeftRight_px = 1;  ///< OpenCV's check of the right eye, the same as ours
 
 /// With wider borders: OpenCV leaves them without a match.
@@ -32,7 +31,7 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
     matcher.compute(padded(pair.left, pair.disparities, margin_px),
                     padded(pair.right, pair.disparities, margin_px),
                     steps);
-    Image<float> disparity_px(pair.left.width(), pair.left.height(), kNan);
+    Image<float> disparity_px(pair.left.width(), pair.left.height(), kNanF);
     for (int v = 0; v < disparity_px.height(); ++v) {
         const auto* const row =
             steps.ptr<std::int16_t>(v + margin_px) + pair.disparities + margin_px;
@@ -123,7 +122,8 @@ Match trusted_chain() {
     return [](const TruePair& pair) {
         DepthImage depth = chain_depth(pair);
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
-            if (depth.outlier_probability.data()[i] > kTrusted) depth.disparity_px.data()[i] = kNan;
+            if (depth.outlier_probability.data()[i] > kTrusted)
+                depth.disparity_px.data()[i] = kNanF;
         }
         return depth.disparity_px;
     };

@@ -4,17 +4,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::experiments {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kStepsPerPixel = 16.0F;
 
 struct PairFiles {
@@ -72,7 +71,7 @@ TruePair load_pair(const std::string& root, const PairFiles& files) {
     const GreyImage other =
         files.right_truth != nullptr ? load(folder + files.right_truth) : GreyImage();
     const GreyImage mask = files.mask != nullptr ? load(folder + files.mask) : GreyImage();
-    pair.truth_px = Image<float>(truth.width(), truth.height(), kNan);
+    pair.truth_px = Image<float>(truth.width(), truth.height(), kNanF);
     for (int v = 0; v < truth.height(); ++v) {
         for (int u = 0; u < truth.width(); ++u) {
             const double d = truth.at(u, v) / files.scale;
@@ -116,7 +115,7 @@ Result<TruePair> simulated_pair(const sim::SceneOptions& options) {
     pair.right = (*frame)->right;
     const double fb_px_m = rectifier->rig().depth_to_disparity_px_m();
     const Image<float>& depth_m = (*source)->last_depth_m();
-    pair.truth_px = Image<float>(depth_m.width(), depth_m.height(), kNan);
+    pair.truth_px = Image<float>(depth_m.width(), depth_m.height(), kNanF);
     for (std::size_t i = 0; i < depth_m.size(); ++i) {
         if (depth_m.data()[i] > 0.0F)
             pair.truth_px.data()[i] =
@@ -132,7 +131,7 @@ void forget_hidden(TruePair& pair) {
             float& truth_px = pair.truth_px.at(u, v);
             const float x = static_cast<float>(u) - truth_px;
             if (std::isnan(x)) continue;
-            if (x >= seen_from || x < 0.0F) truth_px = kNan;
+            if (x >= seen_from || x < 0.0F) truth_px = kNanF;
             seen_from = std::fmin(seen_from, x);
         }
     }
@@ -141,13 +140,13 @@ void forget_hidden(TruePair& pair) {
 Image<float> filled(const Image<float>& disparity_px) {
     Image<float> result = disparity_px;
     for (int v = 0; v < result.height(); ++v) {
-        std::vector<float> from_left(static_cast<std::size_t>(result.width()), kNan);
-        float last = kNan;
+        std::vector<float> from_left(static_cast<std::size_t>(result.width()), kNanF);
+        float last = kNanF;
         for (int u = 0; u < result.width(); ++u) {
             if (!std::isnan(disparity_px.at(u, v))) last = disparity_px.at(u, v);
             from_left[static_cast<std::size_t>(u)] = last;
         }
-        last = kNan;
+        last = kNanF;
         for (int u = result.width() - 1; u >= 0; --u) {
             if (!std::isnan(disparity_px.at(u, v))) last = disparity_px.at(u, v);
             result.at(u, v) = std::fmin(from_left[static_cast<std::size_t>(u)], last);

@@ -13,9 +13,8 @@ namespace surefoot::app {
 /// century in both directions, so that adding it to a clock cannot overflow; NaN gives 0.
 [[nodiscard]] inline std::int64_t paced_ns(std::int64_t since_first_ns, double speed) noexcept {
     constexpr std::int64_t kCentury_ns = std::int64_t{3'155'760'000} * 1'000'000'000;
-    return std::clamp(saturated_integer<std::int64_t>(static_cast<double>(since_first_ns) / speed),
-                      -kCentury_ns,
-                      kCentury_ns);
+    return clamped_integer<std::int64_t>(
+        static_cast<double>(since_first_ns) / speed, -kCentury_ns, kCentury_ns);
 }
 
 }  // namespace surefoot::app

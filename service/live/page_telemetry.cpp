@@ -11,6 +11,7 @@
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/eval/maps/shown_part.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/io/settings/urdf_file.hpp"
 
 namespace surefoot::app {
@@ -51,10 +52,8 @@ bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
     return true;
 }
 
-double median(std::deque<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double median(const std::deque<double>& values) {
+    return upper_median(std::vector<double>(values.begin(), values.end()));
 }
 
 /// The part of a map that is shown: all of a small map, or the 64 x 64 cell blocks around the known

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/io/settings/machine_file.hpp"
 #include "surefoot/io/settings/model_file.hpp"
@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr double kTenthMm_m = 1e-4;  ///< rounding of the machine file
 
 class RexModel : public ::testing::Test {
@@ -92,8 +91,8 @@ TEST_F(RexModel, RangesAreThoseOfTheMachineFile) {
         for (const auto& [name, sign] : {std::pair(all[i].left, all[i].left_sign),
                                          std::pair(all[i].right, all[i].right_sign)}) {
             const auto [low, high] = std::minmax({sign * range.min_deg, sign * range.max_deg});
-            EXPECT_NEAR(joint(name).min_rad * kDeg, low, 1e-9) << name;
-            EXPECT_NEAR(joint(name).max_rad * kDeg, high, 1e-9) << name;
+            EXPECT_NEAR(joint(name).min_rad * kDegPerRad, low, 1e-9) << name;
+            EXPECT_NEAR(joint(name).max_rad * kDegPerRad, high, 1e-9) << name;
         }
     }
 }

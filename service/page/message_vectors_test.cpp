@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <limits>
 
 #include "service/page/feature_lists.hpp"
 #include "service/page/page_decoder_testing.hpp"
 #include "service/page/page_messages.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::page {
 namespace {
@@ -18,8 +18,6 @@ using testing::Json;
 const std::string kContract = std::string(SUREFOOT_SOURCE_DIR) + "/service/page/messages.json";
 const std::string kVectors =
     std::string(SUREFOOT_SOURCE_DIR) + "/service/page/message_vectors.json";
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 PageMap small_map() {
     PageMap map;
@@ -87,7 +85,7 @@ PagePose pose() {
 }
 
 PageLayer layer() {
-    PageLayer layer{9, -500, 1250, 250, 2, Image<float>(3, 2, kNan)};
+    PageLayer layer{9, -500, 1250, 250, 2, Image<float>(3, 2, kNanF)};
     layer.values.at(0, 0) = 0.5F;
     layer.values.at(2, 1) = -1.25F;
     return layer;
@@ -156,7 +154,7 @@ stairs::TerrainFeatures features() {
     stairs::Flight step = flight;  // a single step has no going
     step.kind = stairs::FlightKind::down;
     step.steps = 1;
-    step.going_m = step.going_sigma_m = step.going_spread_m = kNan;
+    step.going_m = step.going_sigma_m = step.going_spread_m = kNanF;
     step.cut = true;
     step.tracked.id = 8;
     features.flights.push_back(step);
@@ -172,7 +170,7 @@ stairs::TerrainFeatures features() {
     features.kerbs.push_back(line);
     line.height_m = 0.03125;
     features.sills.push_back(line);
-    features.doors.push_back({line.pose, 0.875, 0.015625, 0.03125, 0.0078125, kNan, tracked});
+    features.doors.push_back({line.pose, 0.875, 0.015625, 0.03125, 0.0078125, kNanF, tracked});
     stairs::Edge edge;
     edge.from_m = {1.5, -1.0};
     edge.to_m = {1.5, 0.5};

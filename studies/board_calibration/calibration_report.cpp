@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "studies/board_calibration/calibration_pictures.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/eval/report/html_report.hpp"
 
 namespace surefoot::app {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 void add_pictures(const CalibrationRun& run, eval::ReportContent& content) {
     if (run.stereo) {

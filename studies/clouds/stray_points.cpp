@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::app {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOff_m = 0.015;
 constexpr double kOffShare = 0.5;
 constexpr double kGrazing_deg = 3.0;
@@ -46,7 +44,7 @@ double StrayFilter::range_m(std::ptrdiff_t at, std::ptrdiff_t row) const {
 std::ptrdiff_t StrayFilter::beams_apart(double range_m, double step_rad) const {
     const double width_m = beam_exit_m_ + beam_divergence_rad_ * range_m;
     const double apart = std::ceil(width_m / (step_rad * range_m));
-    return std::clamp(saturated_integer<std::ptrdiff_t>(apart), std::ptrdiff_t{1}, kMostApart);
+    return clamped_integer<std::ptrdiff_t>(apart, std::ptrdiff_t{1}, kMostApart);
 }
 
 bool StrayFilter::stays(std::size_t at, std::size_t row) const {

@@ -8,10 +8,11 @@
 #include <numeric>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::app {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// Largest number of points of a band in memory: 12 bytes each, and a copy sorted by cell.
 constexpr std::int64_t kMostPoints = 1 << 25;
 
@@ -67,9 +68,9 @@ class CellHeights {
 };
 
 struct CellGround {
-    float z_m = kNaN;
+    float z_m = kNanF;
     float points = 0.0F;  ///< points of the group that contains the ground
-    float clearance_m = kNaN;
+    float clearance_m = kNanF;
 };
 
 class CellReducer {
@@ -127,7 +128,7 @@ class CellReducer {
             // Sparse cloud: the whole cell has fewer points than a surface needs.
             const bool sparse =
                 static_cast<int>(heights.of(number(ix, iy)).size()) < rules_.reduction.min_points;
-            return sparse ? witnessed_m(heights, group, wanted, ix, iy) : kNaN;
+            return sparse ? witnessed_m(heights, group, wanted, ix, iy) : kNanF;
         }
         return dense_surface_m(group, wanted);
     }
@@ -157,7 +158,7 @@ class CellReducer {
             const auto end = std::lower_bound(rest.begin(), rest.end(), found->z_m - half_width_m_);
             rest = rest.first(static_cast<std::size_t>(end - rest.begin()));
         }
-        if (n < rules_.reduction.min_face_points) return kNaN;
+        if (n < rules_.reduction.min_face_points) return kNanF;
         return group[group.size() - static_cast<std::size_t>(wanted)];
     }
     /// The highest point that has enough neighbours (witnesses) in the surrounding cells: their
@@ -179,7 +180,7 @@ class CellReducer {
             }
             if (witnesses >= wanted) return *z;
         }
-        return kNaN;
+        return kNanF;
     }
 
     const SurfaceRules& rules_;
@@ -208,8 +209,8 @@ void remove_thin(const grid::Layer& points, SurfaceDem& dem) {
                 around.begin() + static_cast<std::ptrdiff_t>(around.size() * 3 / 4);
             std::nth_element(around.begin(), quartile, around.end());
             if (points.at(ix, iy) >= kShare * *quartile) continue;
-            dem.height_m.at(ix, iy) = kNaN;
-            dem.clearance_m.at(ix, iy) = kNaN;
+            dem.height_m.at(ix, iy) = kNanF;
+            dem.clearance_m.at(ix, iy) = kNanF;
         }
     }
 }
@@ -223,8 +224,8 @@ Result<SurfaceDem> surface_dem(const eval::DemGrid& grid,
     const grid::GridGeometry& geometry = grid.geometry;
     const auto nx = static_cast<std::uint32_t>(geometry.nx);
     SurfaceDem dem;
-    dem.height_m = grid::Layer(geometry.nx, geometry.ny, kNaN);
-    dem.clearance_m = grid::Layer(geometry.nx, geometry.ny, kNaN);
+    dem.height_m = grid::Layer(geometry.nx, geometry.ny, kNanF);
+    dem.clearance_m = grid::Layer(geometry.nx, geometry.ny, kNanF);
     const auto is_kept = [&](const Eigen::Vector3d& p_m) {
         return p_m.z() >= rules.lowest_z_m && p_m.z() <= rules.highest_z_m;
     };

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "studies/clouds/cloud_pictures.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/eval/clouds/cloud_distance.hpp"
 #include "surefoot/eval/clouds/cloud_measures.hpp"
 #include "surefoot/eval/maps/map_edges.hpp"
@@ -17,7 +17,6 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Height differences beyond this many times their median belong to another surface.
 constexpr double kOutlier =
     4.5;  // 4.5 median absolute deviations are 3 sigma of a normal distribution

@@ -33,7 +33,7 @@ PlaceSession::PlaceSession(const std::string& file, place_recognition::Place sav
 void PlaceSession::after_frame(const FrameReport& report, const pipeline::Pipeline& pipeline) {
     // A repeated or torn image contains no information about the pose.
     if (!report.frame_status.is_new_and_whole()) return;
-    tracker_->update(report.motion);
+    tracker_->follow(report.motion);
     const GreyImage& left = pipeline.pair().left;
     if (report.work != Work::full || left.empty()) return;
     const auto seen = tracker_->see(pipeline.rig(), left.view(), pipeline.depth());

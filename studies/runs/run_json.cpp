@@ -11,6 +11,7 @@
 #include "studies/runs/report_parts.hpp"
 #include "studies/runs/run_output.hpp"
 #include "studies/runs/stairs_json.hpp"
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -19,7 +20,6 @@ namespace {
 using gate_process::Json;
 using gate_process::number;
 
-constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;
 
 /// The `count` numbers of a list; nullopt if the list is missing or has another size or content.

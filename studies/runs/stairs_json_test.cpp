@@ -4,16 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "studies/runs/run_features.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::app {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Removes blanks and line breaks.
 std::string packed(const std::string& json) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/assert.hpp"
 
 namespace surefoot::camera {
@@ -19,7 +20,6 @@ constexpr int kMaxZoomSteps = 700;   ///< 1.002^700 = 4 times
 /// of the angle of the middle one.
 constexpr double kWidestPlane_deg = 150.0;
 constexpr int kMaxSide_px = 16384;
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Rectangle on the plane z = 1 of the rectified frame.
 struct View {
@@ -187,14 +187,14 @@ std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_h
     }
     if (rectified_focal_px == 0.0) return std::nullopt;
     const double longest = std::max(width, height) - 1;
-    const double view_deg = 2.0 * std::atan2(0.5 * longest, rectified_focal_px) * kDegreesPerRadian;
+    const double view_deg = 2.0 * std::atan2(0.5 * longest, rectified_focal_px) * kDegPerRad;
     if (!(rectified_focal_px > 0.0 && view_deg <= kWidestPlane_deg)) {
         return fmt::format(
             "camera.rectified_focal_px = {} must be at least {:.0f} for a {}x{} image: a plane "
             "image "
             "shows at most {} deg",
             rectified_focal_px,
-            std::ceil(0.5 * longest / std::tan(0.5 * kWidestPlane_deg / kDegreesPerRadian)),
+            std::ceil(0.5 * longest / std::tan(0.5 * kWidestPlane_deg / kDegPerRad)),
             width,
             height,
             kWidestPlane_deg);

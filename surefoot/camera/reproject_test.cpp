@@ -9,12 +9,12 @@
 
 #include "surefoot/camera/simd_targets_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::camera {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 RectifiedRig rig_of(int width, int height) {
     RectifiedRig rig;
@@ -62,7 +62,7 @@ TEST(Reproject, EveryTargetGivesTheExactPoint) {
 }
 
 TEST(Reproject, WhatIsNoDistanceIsUnknown) {
-    const float strange[] = {kNaN, kInfinity, -kInfinity, 0.0F, -0.0F, -3.0F, 1e-45F};
+    const float strange[] = {kNanF, kInfinity, -kInfinity, 0.0F, -0.0F, -3.0F, 1e-45F};
     constexpr int kWidth = 40;  // a whole vector and a rest on every target
     for (const float value : strange) {
         const Image<float> disparity_px(kWidth, 1, value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <limits>
 #include <optional>
@@ -32,6 +33,12 @@ template <std::integral Int, std::floating_point Real>
     if (fits_integer<Int>(value)) return static_cast<Int>(value);  // in range, as checked
     if (value != value) return of_nan;
     return value > Real{0} ? std::numeric_limits<Int>::max() : std::numeric_limits<Int>::lowest();
+}
+
+/// The integer part of a number, moved into [least, most]. A value of NaN counts as 0.
+template <std::integral Int, std::floating_point Real>
+[[nodiscard]] constexpr Int clamped_integer(Real value, Int least, Int most) noexcept {
+    return std::clamp(saturated_integer<Int>(value), least, most);
 }
 
 }  // namespace surefoot

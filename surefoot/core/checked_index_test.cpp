@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot {
 namespace {
 
@@ -67,6 +69,15 @@ TEST(CheckedIndexDeathTest, TheSanitizerStopsAnUncheckedConversion) {
     EXPECT_EQ(convert(5.5), 5);
 }
 #endif
+
+TEST(CheckedIndex, ClampedIntegersStayWithinTheirBoundsForEveryNumber) {
+    EXPECT_EQ(clamped_integer<int>(3.9, 0, 10), 3);
+    EXPECT_EQ(clamped_integer<int>(-3.9, 0, 10), 0);
+    EXPECT_EQ(clamped_integer<int>(1e300, 0, 10), 10);
+    EXPECT_EQ(clamped_integer<int>(-1e300, -5, 10), -5);
+    EXPECT_EQ(clamped_integer<int>(kNan, -5, 10), 0);
+    EXPECT_EQ(clamped_integer<int>(kNan, 2, 10), 2);
+}
 
 }  // namespace
 }  // namespace surefoot

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr double kNanPose = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -57,7 +57,7 @@ void expect_whole(const ElevationMap& map, const std::string& after) {
 
 /// Smallest variance of a known cell; NaN where none is.
 float least_variance(const ElevationMap& map) {
-    float least_m2 = kNan;
+    float least_m2 = kNanF;
     for (std::size_t i = 0; i < map.layers().height_m.size(); ++i)
         least_m2 = std::fmin(least_m2, map.layers().height_var_m2.data()[i]);
     return least_m2;
@@ -73,13 +73,13 @@ ElevationConfig open_config() {
 
 TEST(BadInput, PointsThatAreNoMeasurementAreNotCounted) {
     std::vector<MeasuredPoint> points;
-    for (const float bad : {kNan, kInf, -kInf}) {
+    for (const float bad : {kNanF, kInf, -kInf}) {
         for (int axis = 0; axis < 3; ++axis) {
             points.push_back(floor_ahead().front());
             points.back().p_sensor_m[axis] = bad;
         }
     }
-    for (const float bad : {kNan, kInf, -kInf, -1e-6F, -1e30F}) {
+    for (const float bad : {kNanF, kInf, -kInf, -1e-6F, -1e30F}) {
         points.push_back({{1.0F, 0.0F, -1.0F}, bad, kVar_m2});
         points.push_back({{1.0F, 0.0F, -1.0F}, kVar_m2, bad});
     }
@@ -227,7 +227,7 @@ TEST(BadInput, ImagesOfNoneAndOneAndOfInvalidPixelsAddNothing) {
         depth.resize(width, height);
         depth.sigma_px.fill(0.2F);
         depth.outlier_probability.fill(0.0F);
-        for (const float disparity_px : {kNan, kInf, -kInf, 0.0F, -3.0F, 1e-44F, 3e38F}) {
+        for (const float disparity_px : {kNanF, kInf, -kInf, 0.0F, -3.0F, 1e-44F, 3e38F}) {
             depth.disparity_px.fill(disparity_px);
             ElevationMap map({});
             map.add(rig, body_at(0.0), depth, 0);

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "surefoot/core/time.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Trust in what hangs over a cell: a sighting adds two, a line of sight through it takes one away.
 /// Two sightings are believed, one may be a wrong match; what was the cell's height, for more than
@@ -29,7 +27,7 @@ constexpr int kGone = 16;
 
 template <typename F>
 void ElevationCells::for_each_layer_of_known(const F& f) {
-    f(settled_var_m2_, kNan);
+    f(settled_var_m2_, kNanF);
     f(viewpoint_, ViewpointHistory::kNever);
     f(steady_, std::uint8_t{0});
     f(seen_through_, std::uint16_t{0});
@@ -37,26 +35,26 @@ void ElevationCells::for_each_layer_of_known(const F& f) {
 
 template <typename F>
 void ElevationCells::for_each_layer(const F& f) {
-    f(layers_.height_m, kNan);
-    f(layers_.height_var_m2, kNan);
+    f(layers_.height_m, kNanF);
+    f(layers_.height_var_m2, kNanF);
     f(layers_.count, std::uint32_t{0});
     f(layers_.seen_ns, std::int64_t{0});
-    f(layers_.horizontal_drift_m, kNan);
-    f(layers_.highest_m, kNan);
-    f(layers_.lowest_m, kNan);
-    f(layers_.clearance_m, kNan);
-    f(layers_.free_above_m, kNan);
-    f(layers_.confidence, kNan);
-    f(layers_.density_ratio, kNan);
+    f(layers_.horizontal_drift_m, kNanF);
+    f(layers_.highest_m, kNanF);
+    f(layers_.lowest_m, kNanF);
+    f(layers_.clearance_m, kNanF);
+    f(layers_.free_above_m, kNanF);
+    f(layers_.confidence, kNanF);
+    f(layers_.density_ratio, kNanF);
     if (aligns()) {
-        f(aligned_var_m2_, kNan);
+        f(aligned_var_m2_, kNanF);
         f(aligned_step_, std::uint32_t{0});
         f(is_asked_, std::uint8_t{0});
     }
-    f(overhead_m_, kNan);
+    f(overhead_m_, kNanF);
     f(overhead_trust_, std::uint8_t{0});
     f(overhead_hangs_, std::uint8_t{0});
-    f(bottom_m_, kNan);
+    f(bottom_m_, kNanF);
 }
 
 ElevationCells::ElevationCells(const ElevationConfig& config, int nx, int ny) : config_(config) {
@@ -190,7 +188,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     const float confidence = region.confidence.data()[from];
     set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstObservation);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
-    layers_.free_above_m.data()[cell] = kNan;
+    layers_.free_above_m.data()[cell] = kNanF;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
@@ -206,17 +204,17 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
 void ElevationCells::forget(std::size_t cell) {
     const float before_m = bottom_m(cell);
     const int trust = trust_in(cell);
-    bottom_m_.data()[cell] = kNan;
-    layers_.height_m.data()[cell] = kNan;
-    layers_.height_var_m2.data()[cell] = kNan;
+    bottom_m_.data()[cell] = kNanF;
+    layers_.height_m.data()[cell] = kNanF;
+    layers_.height_var_m2.data()[cell] = kNanF;
     layers_.count.data()[cell] = 0;
     layers_.seen_ns.data()[cell] = 0;
-    layers_.horizontal_drift_m.data()[cell] = kNan;
-    layers_.highest_m.data()[cell] = kNan;
-    layers_.lowest_m.data()[cell] = kNan;
-    layers_.clearance_m.data()[cell] = kNan;
-    layers_.confidence.data()[cell] = kNan;
-    layers_.density_ratio.data()[cell] = kNan;
+    layers_.horizontal_drift_m.data()[cell] = kNanF;
+    layers_.highest_m.data()[cell] = kNanF;
+    layers_.lowest_m.data()[cell] = kNanF;
+    layers_.clearance_m.data()[cell] = kNanF;
+    layers_.confidence.data()[cell] = kNanF;
+    layers_.density_ratio.data()[cell] = kNanF;
     forget_overhead(cell);
     seen_through_.data()[cell] = 0;
     // What stood here may have been a thing that one sees under. Until lines of sight have passed
@@ -242,7 +240,7 @@ void ElevationCells::see_no_more_above(std::size_t cell) {
 }
 
 void ElevationCells::forget_overhead(std::size_t cell) {
-    overhead_m_.data()[cell] = kNan;
+    overhead_m_.data()[cell] = kNanF;
     overhead_trust_.data()[cell] = 0;
     overhead_hangs_.data()[cell] = 0;
 }
@@ -258,7 +256,7 @@ bool ElevationCells::is_sure_of_overhead(std::size_t cell) const {
 
 void ElevationCells::set_clearance(std::size_t cell) {
     const float free_m = overhead_m_.data()[cell] - layers_.height_m.data()[cell];
-    layers_.clearance_m.data()[cell] = is_sure_of_overhead(cell) ? free_m : kNan;
+    layers_.clearance_m.data()[cell] = is_sure_of_overhead(cell) ? free_m : kNanF;
 }
 
 void ElevationCells::surface(grid::Layer& out_m) const {
@@ -290,7 +288,7 @@ void ElevationCells::start(std::size_t cell,
     layers_.lowest_m.data()[cell] = measured.lowest_m;
     set_confidence(cell, kFirstObservation);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
-    layers_.free_above_m.data()[cell] = kNan;
+    layers_.free_above_m.data()[cell] = kNanF;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = look.view;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/cell_row_blocks.hpp"
 #include "surefoot/elevation/fusion/reduce_cells.hpp"
 #include "surefoot/elevation/region/region_transfer.hpp"
@@ -15,7 +15,6 @@
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// So many times the points that level ground would show at the height of the lowest ones are a
 /// face, seen from the side. Floor under a table top and the top together bring twice as many at
 /// most. ASSUMPTION.
@@ -274,7 +273,7 @@ void ElevationMap::fuse_block(int block,
                     cells_.see_over(cell, std::max(lowest_z_m_, not_above_m));
                 continue;
             }
-            CellObservation seen{measured[ix], kNan, measured[ix].z_m};
+            CellObservation seen{measured[ix], kNanF, measured[ix].z_m};
             if (expected != nullptr) {
                 const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
                 const float level = expected->at(ix, iy, measured[ix].z_m);

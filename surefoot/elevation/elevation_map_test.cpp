@@ -8,10 +8,11 @@
 #include <set>
 #include <string>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int64_t kFrame_ns = 66'666'667;
 
 Pose body_at(double x_m, double y_m, double z_m = 1.0) {
@@ -43,7 +44,7 @@ ElevationConfig exact_config() {
 
 float at(const ElevationMap& map, const ElevationLayers::Layer& layer, double x_m, double y_m) {
     const auto cell = map.geometry().cell_at(x_m, y_m);
-    return cell ? layer.at(cell->ix, cell->iy) : kNan;
+    return cell ? layer.at(cell->ix, cell->iy) : kNanF;
 }
 float height_at(const ElevationMap& map, double x_m, double y_m) {
     return at(map, map.layers().height_m, x_m, y_m);
@@ -217,12 +218,12 @@ TEST(ElevationMap, CountsWhatIsLeftOutAndWhy) {
     ElevationMap map(config);
     const Pose T_odom_body = body_at(0, 0);
     std::vector<MeasuredPoint> points = flat_patch(T_odom_body, 1.0, 0.0, 0.0);
-    points.push_back({{0.1F, 0.0F, 0.0F}, 1e-4F, 1e-4F});   // nearer than 0.3 m
-    points.push_back({{30.0F, 0.0F, 0.0F}, 1e-4F, 1e-4F});  // beyond 20 m
-    points.push_back({{1.0F, 0.0F, 1.5F}, 1e-4F, 1e-4F});   // a lintel
-    points.push_back({{2.0F, 2.0F, -1.0F}, 1e-4F, 1e-4F});  // alone
-    points.push_back({{kNan, 2.0F, -1.0F}, 1e-4F, 1e-4F});  // no measurement
-    points.push_back({{1.0F, 0.0F, -1.0F}, kNan, 1e-4F});   // no measurement
+    points.push_back({{0.1F, 0.0F, 0.0F}, 1e-4F, 1e-4F});    // nearer than 0.3 m
+    points.push_back({{30.0F, 0.0F, 0.0F}, 1e-4F, 1e-4F});   // beyond 20 m
+    points.push_back({{1.0F, 0.0F, 1.5F}, 1e-4F, 1e-4F});    // a lintel
+    points.push_back({{2.0F, 2.0F, -1.0F}, 1e-4F, 1e-4F});   // alone
+    points.push_back({{kNanF, 2.0F, -1.0F}, 1e-4F, 1e-4F});  // no measurement
+    points.push_back({{1.0F, 0.0F, -1.0F}, kNanF, 1e-4F});   // no measurement
     for (int i = 0; i < 8; ++i)
         points.push_back({{5.0F, 0.01F * static_cast<float>(i), -1.0F}, 1e-4F, 1e-4F});
     const FusionCounts counts = map.add_points(points, {}, T_odom_body, 0);

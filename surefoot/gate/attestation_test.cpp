@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
@@ -11,7 +12,7 @@ namespace {
 /// Where the camera sees nothing: within 0.7 m of the machine.
 std::unique_ptr<grid::MapSnapshot> blind_zone() {
     Terrain terrain;
-    terrain.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNaN));
+    terrain.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNanF));
     return terrain.snapshot();
 }
 
@@ -104,9 +105,9 @@ TEST(Attestation, is_void_for_good_once_nobody_knew_where_the_machine_was) {
 // The rim of a platform in the blind zone, 0.45 m ahead; the camera looks over it.
 TEST(Attestation, covers_no_drop_that_lines_of_sight_showed) {
     Terrain edge;
-    edge.box(-3.0, 0.975, -3.0, 3.0, kNaN);
+    edge.box(-3.0, 0.975, -3.0, 3.0, kNanF);
     edge.box(0.975, 3.0, -3.0, 3.0, -1.0);
-    grid::Layer free_m(240, 240, kNaN);
+    grid::Layer free_m(240, 240, kNanF);
     edge.paint(free_m, 0.625, 0.975, -3.0, 3.0, -0.24);
     edge.input.free_above_m = std::as_const(free_m).view();
     const auto map = edge.snapshot();

@@ -298,8 +298,7 @@ bool gather_cells(const Scene& scene,
             const GroundCell cell = scene.ground.cell(ix, iy);
             const Finding here = finding_at(ix, iy, foot.foot, 0, 0);
             if (!cell.known()) {
-                const bool outside = cell.knowledge == Knowledge::outside;
-                findings.deny(outside ? Reason::outside_map : Reason::unknown_cells, here);
+                findings.deny(reason_of_unknown(cell.knowledge), here);
                 return false;
             }
             if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))

@@ -228,7 +228,7 @@ void judge_sweep(const Machine& machine,
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
     if (!stance.both_tenth_mm) {  // no height to compare with: the unknown cells have been reported
-        findings.deny(Reason::unknown_cells);
+        findings.deny(reason_of_unknown(Knowledge::unknown));
         return;
     }
     if (movement.movement_class == MovementClass::stair)

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/findings.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"
@@ -224,7 +225,7 @@ TEST(GateBounds, a_refusal_says_what_was_not_proven_and_lives_for_nothing) {
     EXPECT_FALSE(verdict.evidence.lacks(Proof::left_supported));
     EXPECT_FALSE(verdict.evidence.lacks(Proof::corridors_clear));
     Terrain nothing;
-    nothing.height.fill(kNaN);
+    nothing.height.fill(kNanF);
     const Verdict blind = ask(nothing, kForward);
     EXPECT_FALSE(blind.evidence.stance_known);
     EXPECT_EQ(blind.evidence.stance_height_tenth_mm, 0);
@@ -234,7 +235,7 @@ TEST(GateBounds, a_refusal_says_what_was_not_proven_and_lives_for_nothing) {
 
 TEST(GateBounds, where_no_ground_is_known_under_the_feet_the_rest_is_not_asked) {
     Terrain blind;  // and a wall behind, which the body of a step backwards would meet
-    blind.box(-0.2, 0.4, -0.5, 0.5, static_cast<double>(kNaN));
+    blind.box(-0.2, 0.4, -0.5, 0.5, static_cast<double>(kNanF));
     blind.box(-0.6, -0.5, -0.5, 0.5, 0.7);
     const Verdict verdict = ask(blind, kBackward);
     EXPECT_EQ(verdict.reasons, ReasonSet(Reason::unknown_cells)) << words(verdict);

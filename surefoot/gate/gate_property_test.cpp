@@ -12,6 +12,7 @@
 
 #include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
@@ -34,7 +35,7 @@ std::unique_ptr<grid::MapSnapshot> random_map(Rng& rng) {
         const double kind = rng.uniform();
         const double value = kind < 0.4   ? rng.uniform(0.03, 0.8)
                              : kind < 0.8 ? rng.uniform(-0.5, -0.03)
-                                          : static_cast<double>(kNaN);
+                                          : static_cast<double>(kNanF);
         terrain.box(x, x + rng.uniform(0.03, 0.4), y, y + rng.uniform(0.03, 0.4), value);
     }
     return terrain.snapshot();

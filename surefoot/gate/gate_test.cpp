@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 #include "surefoot/gate/verdict_text.hpp"
 
@@ -132,14 +133,14 @@ TEST(Gate, finer_cells_are_no_excuse_for_averaging_more) {
 
 TEST(Gate, given_an_empty_map_then_nothing_is_ok) {
     Terrain nothing;
-    nothing.height.fill(kNaN);
+    nothing.height.fill(kNanF);
     for (int code = 1; code < Machine::kMovementCodes; ++code)
         expect_refused(ask(nothing, static_cast<std::uint8_t>(code)), Reason::unknown_cells);
 }
 
 TEST(Gate, given_one_unknown_cell_under_the_landing_foot_then_it_is_named) {
     Terrain floor;
-    floor.paint(floor.height, 0.45, 0.474, 0.175, 0.199, static_cast<double>(kNaN));
+    floor.paint(floor.height, 0.45, 0.474, 0.175, 0.199, static_cast<double>(kNanF));
     const Verdict verdict = ask(floor, kForward);
     expect_refused(verdict, Reason::unknown_cells);
     EXPECT_EQ(verdict.evidence.worst_x_tenth_mm, 4625);
@@ -279,7 +280,7 @@ TEST(Gate, kerbs_up_and_down_are_refused_and_small_steps_are_not) {
 TEST(Gate, given_half_a_foot_over_a_platform_edge_then_drop_off) {
     for (const bool below_is_seen : {true, false}) {
         Terrain platform;
-        platform.box(0.46, 3.0, -3.0, 3.0, below_is_seen ? -0.5 : static_cast<double>(kNaN));
+        platform.box(0.46, 3.0, -3.0, 3.0, below_is_seen ? -0.5 : static_cast<double>(kNanF));
         const Verdict verdict = ask(platform, kForward);
         expect_refused(verdict, below_is_seen ? Reason::drop_off : Reason::unknown_cells);
         expect_ok(ask(platform, kBackward));
@@ -297,7 +298,7 @@ TEST(Gate, given_a_drop_in_the_band_beyond_the_toes_then_drop_off) {
 
 TEST(Gate, given_only_the_far_side_of_a_drop_was_seen_then_its_edge_is_a_drop) {
     Terrain platform;
-    platform.box(0.70, 1.0, -3.0, 3.0, static_cast<double>(kNaN));  // in the shadow of the edge
+    platform.box(0.70, 1.0, -3.0, 3.0, static_cast<double>(kNanF));  // in the shadow of the edge
     platform.box(1.0, 3.0, -3.0, 3.0, -0.3);
     const Verdict verdict = ask(platform, kForward);
     expect_refused(verdict, Reason::drop_off);
@@ -504,7 +505,7 @@ TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
     Terrain hidden;
     hidden.paint(hidden.variance, 0.075, 0.10, 0.30, 0.325, 0.0119 * 0.0119);
     expect_ok(ask(hidden, kForward));
-    hidden.box(0.075, 0.10, 0.325, 0.35, kNaN);
+    hidden.box(0.075, 0.10, 0.325, 0.35, kNanF);
     EXPECT_TRUE(ask(hidden, kForward).reasons.contains(Reason::not_resolvable));
 }
 
@@ -551,7 +552,7 @@ TEST(Gate, one_cell_alone_above_or_below_the_step_is_no_step_but_two_are) {
             EXPECT_TRUE(ask(two, kForward).reasons.contains(step)) << x0 << " " << y0;
         }
         Terrain unseen = pebble;
-        unseen.box(0.425, 0.45, 0.15, 0.175, kNaN);
+        unseen.box(0.425, 0.45, 0.15, 0.175, kNanF);
         expect_refused(ask(unseen, kForward), Reason::unknown_cells);
     }
     // On pegs in rows the whole foot would stand: one in a foot is a pebble, two are not.
@@ -620,7 +621,7 @@ TEST(Gate, given_too_much_drift_since_a_cell_was_seen_then_memory_uncertain) {
     const Verdict verdict = ask(floor, kBackward);
     expect_refused(verdict, Reason::memory_uncertain);
     EXPECT_EQ(verdict.evidence.value_tenth_mm, 300);
-    floor.drift.fill(kNaN);
+    floor.drift.fill(kNanF);
     expect_refused(ask(floor, kForward), Reason::memory_uncertain);
 }
 
@@ -679,7 +680,7 @@ struct AttestedStart : ::testing::Test {
 
     /// Floor known from 0.6 m ahead on, as at start-up.
     void SetUp() override {
-        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNaN));
+        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNanF));
         rebuild();
         query = query_at_body(kForward, *map);
         query.attested = {true, 0, 0, 8500, 0};
@@ -703,7 +704,7 @@ TEST_F(AttestedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) 
 TEST_F(AttestedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
     // All that is unknown lies in the area, but base_link has just left it.
     Terrain spot;
-    spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNaN));
+    spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNanF));
     map = spot.snapshot();
     query.attested = {true, -6000, 0, 6000, 0};
     expect_ok(ask_now());
@@ -727,7 +728,7 @@ TEST_F(AttestedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
     // The row of cells at the lower border of the image: seen by few points, from one place.
     const auto row_with = [&](double height_m, std::uint16_t sigma_tenth_mm, double x_m) {
         floor = Terrain();
-        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNaN));
+        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNanF));
         floor.box(x_m, x_m + 0.025, -1.0, 1.0, height_m);
         rebuild();
         for (double y_m = -0.99; y_m < 1.0; y_m += 0.025)
@@ -757,7 +758,7 @@ TEST_F(AttestedStart, leaves_what_hangs_over_an_unsure_cell_and_evidence_of_a_dr
     constexpr std::uint16_t kUnsure = 150;
     const auto unsure_cell = [&] {
         floor = Terrain();
-        floor.box(-3.0, 0.4, -3.0, 3.0, static_cast<double>(kNaN));
+        floor.box(-3.0, 0.4, -3.0, 3.0, static_cast<double>(kNanF));
         rebuild();
         const std::size_t at = cell_at(*map, 0.51, 0.18);
         map->sigma_tenth_mm[at] = kUnsure;
@@ -1010,7 +1011,7 @@ TEST(GateReadiness, a_class_that_is_off_has_no_movements) {
 
 TEST(GateReadiness, an_error_hides_no_terrain_and_beats_it) {
     Terrain nothing;
-    nothing.height.fill(kNaN);
+    nothing.height.fill(kNanF);
     nothing.input.frame_time_ns = 0;
     expect_error(ask(nothing, kForward), Reason::frame_stale);
 }

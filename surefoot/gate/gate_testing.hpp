@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/machine.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
@@ -18,7 +18,6 @@ namespace surefoot::gate::testing {
 
 inline constexpr std::int64_t kNowNs = 5'000'000'000;
 inline constexpr std::int64_t kMs = 1'000'000;
-inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 inline constexpr double kResolutionM = 0.025;
 
 // Joystick codes of the REX.
@@ -88,7 +87,7 @@ struct Terrain {
     grid::Layer height{240, 240, 0.0F};
     grid::Layer variance{240, 240, 16e-6F};  // (4 mm)^2
     grid::Layer drift{240, 240, 0.005F};
-    grid::Layer clearance{240, 240, kNaN};
+    grid::Layer clearance{240, 240, kNanF};
     grid::SnapshotInput input;
 
     Terrain() {
@@ -126,7 +125,7 @@ struct Terrain {
                 const char symbol = rows[r][c];
                 const double x1 = top_m - 0.2 * static_cast<double>(r);
                 const double y1 = left_m - 0.2 * static_cast<double>(c);
-                const double value = symbol == '?'   ? static_cast<double>(kNaN)
+                const double value = symbol == '?'   ? static_cast<double>(kNanF)
                                      : symbol == 'd' ? -0.3
                                      : symbol == '.' ? 0.0
                                                      : 0.1 * (symbol - '0');

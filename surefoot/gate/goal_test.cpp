@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
@@ -54,14 +55,14 @@ TEST(Goal, what_hangs_over_an_edge_or_was_never_seen_does_not_carry) {
     const auto map = edge.snapshot();
     EXPECT_EQ(point_at(*map, 1.4, 0.0).decision, Decision::not_traversable);
     Terrain unseen;
-    unseen.box(1.0, 2.0, -1.0, 1.0, static_cast<double>(kNaN));
+    unseen.box(1.0, 2.0, -1.0, 1.0, static_cast<double>(kNanF));
     EXPECT_EQ(point_at(*unseen.snapshot(), 1.5, 0.0).primary, Reason::unknown_cells);
     EXPECT_EQ(point_at(*map, 50.0, 0.0).primary, Reason::outside_map);
 }
 
 TEST(Goal, where_the_machine_stands_must_be_known) {
     Terrain blind;
-    blind.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNaN));
+    blind.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNanF));
     const Verdict verdict = point_at(*blind.snapshot(), 1.5, -1.0);
     EXPECT_EQ(verdict.primary, Reason::disconnected) << words(verdict);
     EXPECT_FALSE(verdict.evidence.has_worst_cell) << "it is not about the goal";
@@ -78,7 +79,7 @@ TEST(Goal, damage_where_the_machine_stands_is_an_error_though_the_goal_is_elsewh
 
 TEST(Goal, vouched_ground_belongs_to_where_the_machine_stands) {
     Terrain blind;
-    blind.box(-0.9, 0.9, -0.9, 0.9, static_cast<double>(kNaN));
+    blind.box(-0.9, 0.9, -0.9, 0.9, static_cast<double>(kNanF));
     const auto map = blind.snapshot();
     Query here = query_at_body(0, *map);
     here.attested = {true, 0, 0, 10'000, 0};

@@ -15,6 +15,12 @@ namespace surefoot::gate {
 /// What speaks for the ground in a cell. Only `vouched` and `measured` are knowledge.
 enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
 
+/// The reason for which the gate refuses a cell whose height is not known. Only this function turns
+/// unknown ground into a reason; every proof that meets such a cell denies with it.
+[[nodiscard]] constexpr Reason reason_of_unknown(Knowledge knowledge) noexcept {
+    return knowledge == Knowledge::outside ? Reason::outside_map : Reason::unknown_cells;
+}
+
 /// One cell as the gate sees it. The numbers mean something only when `known()`, but for the
 /// evidence of a drop, which an unknown cell may have too.
 struct GroundCell {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
@@ -31,7 +32,7 @@ GroundCell cell_of(const Ground& ground, const grid::MapSnapshot& map, double x_
 
 TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) {
     Terrain nothing;
-    nothing.height.fill(kNaN);
+    nothing.height.fill(kNanF);
     const auto map = nothing.snapshot();
     Rng rng(6);
     for (int round = 0; round < 20; ++round) {
@@ -62,7 +63,7 @@ TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) 
 
 TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) {
     Terrain nothing;
-    nothing.height.fill(kNaN);
+    nothing.height.fill(kNanF);
     const auto map = nothing.snapshot();
     const Query query = attestation(0.0, 0.0, 0.5, 0.0, 0.0);  // of ground at -123
     const Ground ground(*map, query, rex().limits);
@@ -287,7 +288,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
 
 TEST(ReachableSurfaces, of_a_vouched_area_are_those_that_it_touches_at_its_height) {
     Terrain islands;
-    islands.height.fill(kNaN);
+    islands.height.fill(kNanF);
     islands.box(0.50, 0.60, -0.05, 0.05, 0.0);  // touches the circle of 0.5 m
     islands.box(0.70, 0.80, -0.05, 0.05, 0.0);  // too far away
     islands.box(-0.3, -0.2, -0.05, 0.05, 0.3);  // inside, but a box of 0.3 m

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "surefoot/core/time.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
@@ -116,7 +117,7 @@ TEST(Readiness, ground_that_is_not_where_the_soles_are_is_no_ground) {
     }
     // What was not measured is told by nobody, or by an operator: the cells decide.
     Terrain unseen;
-    unseen.box(-0.5, 0.5, -0.5, 0.5, static_cast<double>(kNaN));
+    unseen.box(-0.5, 0.5, -0.5, 0.5, static_cast<double>(kNanF));
     EXPECT_TRUE(snapshot_faults(rex(), *unseen.snapshot(), kNowNs).empty());
 }
 

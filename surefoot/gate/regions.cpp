@@ -54,12 +54,8 @@ bool is_sure(const Scene& scene, const Place& place) noexcept {
 bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const GroundCell& cell = place.cell;
-    if (cell.knowledge == Knowledge::outside) {
-        deny(findings, Reason::outside_map, place, 0, 0);
-        return false;
-    }
     if (!cell.known()) {
-        deny(findings, Reason::unknown_cells, place, 0, 0);
+        deny(findings, reason_of_unknown(cell.knowledge), place, 0, 0);
         return false;
     }
     if (!is_sure(scene, place))

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 grid::MapSnapshot& map_with(std::uint32_t sigma_urad) {
     static const auto map = std::make_unique<grid::MapSnapshot>();

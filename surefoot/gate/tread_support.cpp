@@ -165,8 +165,7 @@ struct BandCell {
     [[nodiscard]] bool check_knowledge(const GateLimits& limits, Findings& findings) const {
         ++findings.evidence.cells;
         if (!cell.known()) {
-            const bool outside = cell.knowledge == Knowledge::outside;
-            deny(findings, outside ? Reason::outside_map : Reason::unknown_cells, 0, 0);
+            deny(findings, reason_of_unknown(cell.knowledge), 0, 0);
             return false;
         }
         Evidence& evidence = findings.evidence;
@@ -381,7 +380,7 @@ void check_tread(const Scene& scene,
                  const ReachableSurfaces& reachable,
                  Findings& findings) noexcept {
     if (!tread.known) {
-        findings.deny(Reason::unknown_cells);
+        findings.deny(reason_of_unknown(Knowledge::unknown));
         return;
     }
     const GateLimits& limits = scene.machine.limits;

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::gate::testing {
@@ -237,7 +238,7 @@ TEST(GateTreads, the_tread_beyond_the_nosing_is_within_a_step_and_known) {
     expect_refused(beyond(-1.5), Reason::drop_off);
     // Within the limit, but not surely: 4 mm sigma, 3.4 times.
     expect_refused(beyond(-kRise_m - 0.170), Reason::not_resolvable);
-    expect_refused(beyond(static_cast<double>(kNaN)), Reason::unknown_cells);
+    expect_refused(beyond(static_cast<double>(kNanF)), Reason::unknown_cells);
 }
 
 TEST(GateTreads, ground_is_lower_at_one_end_of_the_foot_alone) {

@@ -6,6 +6,7 @@
 
 #include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::geometry {
 namespace {
@@ -52,9 +53,7 @@ double median_over(std::span<const Pair> pairs, double Pair::*value) {
         if (pair.counts) values.push_back(pair.*value);
     }
     if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 SurfacePairs::SurfacePairs(const KdTree& reference,

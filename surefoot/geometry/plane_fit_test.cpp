@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::geometry {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// z = slope_x x + slope_y y + height over a square of 2 m, with noise along z.
@@ -43,7 +43,7 @@ TEST(PlaneFit, NoPlaneThroughALineOrASinglePlace) {
 
 TEST(PlaneFit, PointsThatAreNotFiniteAreLeftOut) {
     Points points{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-    points.emplace_back(kNaN, 0.0, 0.0);
+    points.emplace_back(kNan, 0.0, 0.0);
     points.emplace_back(0.0, kInfinity, 0.0);
     const auto fit = fit_plane(points);
     ASSERT_TRUE(fit);
@@ -51,7 +51,7 @@ TEST(PlaneFit, PointsThatAreNotFiniteAreLeftOut) {
     EXPECT_LE((fit->plane.normal - Eigen::Vector3d::UnitZ()).norm(), 1e-15);
     EXPECT_NEAR(fit->plane.offset_m, -1.0, 1e-15);
 
-    EXPECT_FALSE(fit_plane(Points{{0, 0, 1}, {1, 0, 1}, {kNaN, 1, 1}}));
+    EXPECT_FALSE(fit_plane(Points{{0, 0, 1}, {1, 0, 1}, {kNan, 1, 1}}));
 }
 
 TEST(PlaneFit, ExactPlaneIsFoundExactly) {

@@ -4,17 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::geometry {
 namespace {
 
 using Rotations = std::vector<Eigen::Quaterniond>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding_rad = 1e-12;
 
 Eigen::Quaterniond random_rotation(Rng& rng) {
@@ -26,8 +25,8 @@ TEST(QuaternionMean, NothingWithoutAUsableRotation) {
     EXPECT_FALSE(quaternion_mean({}));
     EXPECT_FALSE(quaternion_mean(one, std::vector<double>{0.0}));
     EXPECT_FALSE(quaternion_mean(one, std::vector<double>{-1.0}));
-    EXPECT_FALSE(quaternion_mean(one, std::vector<double>{kNaN}));
-    EXPECT_FALSE(quaternion_mean(Rotations{Eigen::Quaterniond(kNaN, 0, 0, 0)}));
+    EXPECT_FALSE(quaternion_mean(one, std::vector<double>{kNan}));
+    EXPECT_FALSE(quaternion_mean(Rotations{Eigen::Quaterniond(kNan, 0, 0, 0)}));
     EXPECT_FALSE(
         quaternion_mean(Rotations{Eigen::Quaterniond(1, 0, 0, 0), Eigen::Quaterniond(0, 1, 0, 0)}))
         << "half a turn apart: no unique mean";

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::geometry {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const Eigen::Vector3d kNormal = Eigen::Vector3d(-0.1, 0.05, 1.0).normalized();
 constexpr double kOffset_m = 0.9;
@@ -41,7 +41,7 @@ TEST(RansacPlane, TooFewOrCollinearPointsHaveNoPlane) {
     Points line;
     for (int i = 0; i < 50; ++i) line.emplace_back(0.25 * i, 0.0, 0.0);
     EXPECT_FALSE(ransac_plane(line, options, rng));
-    EXPECT_FALSE(ransac_plane(Points(20, Eigen::Vector3d(kNaN, 0, 0)), options, rng));
+    EXPECT_FALSE(ransac_plane(Points(20, Eigen::Vector3d(kNan, 0, 0)), options, rng));
 }
 
 TEST(RansacPlane, EndsWhenThePlaneThatIsWantedWouldHaveBeenFound) {
@@ -83,7 +83,7 @@ TEST(RansacPlane, KnownPlaneIsFoundAmongHalfOutliersForManySeeds) {
 TEST(RansacPlane, InliersAreExactlyThePointsWithinTheTolerance) {
     Rng data_rng(5);
     Points points = plane_with_outliers(300, 100, 0.01, data_rng);
-    points.emplace_back(kNaN, kNaN, kNaN);
+    points.emplace_back(kNan, kNan, kNan);
     RansacPlaneOptions options;
     options.tolerance_m = 0.03;
     options.max_refinements = 50;

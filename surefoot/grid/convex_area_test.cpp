@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::grid {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 using Cells = std::set<std::pair<std::int64_t, std::int64_t>>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Unit cells: metres are cells.

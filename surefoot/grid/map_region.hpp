@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 
 #include "surefoot/core/pose.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/core/views.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
@@ -86,17 +86,16 @@ struct RegionLayer {
 template <typename Visit>
 void for_each_layer(const Visit& visit) {
     using R = MapRegion;
-    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    visit(RegionLayer{"elevation", "m"}, &R::height_m, kNan);
-    visit(RegionLayer{"variance", "m2"}, &R::height_var_m2, kNan);
+    visit(RegionLayer{"elevation", "m"}, &R::height_m, kNanF);
+    visit(RegionLayer{"variance", "m2"}, &R::height_var_m2, kNanF);
     visit(RegionLayer{"count", ""}, &R::count, std::uint32_t{0});
     visit(RegionLayer{"seen", "ns"}, &R::seen_ns, std::int64_t{0});
-    visit(RegionLayer{"drift", "m"}, &R::horizontal_drift_m, kNan);
-    visit(RegionLayer{"highest", "m"}, &R::highest_m, kNan);
-    visit(RegionLayer{"lowest", "m"}, &R::lowest_m, kNan);
-    visit(RegionLayer{"clearance", "m"}, &R::clearance_m, kNan);
-    visit(RegionLayer{"confidence", ""}, &R::confidence, kNan);
-    visit(RegionLayer{"density_ratio", ""}, &R::density_ratio, kNan);
+    visit(RegionLayer{"drift", "m"}, &R::horizontal_drift_m, kNanF);
+    visit(RegionLayer{"highest", "m"}, &R::highest_m, kNanF);
+    visit(RegionLayer{"lowest", "m"}, &R::lowest_m, kNanF);
+    visit(RegionLayer{"clearance", "m"}, &R::clearance_m, kNanF);
+    visit(RegionLayer{"confidence", ""}, &R::confidence, kNanF);
+    visit(RegionLayer{"density_ratio", ""}, &R::density_ratio, kNanF);
 }
 
 /// What `region` knows of another box; cells that it does not reach are unknown. `box.problem()`

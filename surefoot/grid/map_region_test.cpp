@@ -6,12 +6,12 @@
 #include <cmath>
 #include <functional>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/moving_window.hpp"
 
 namespace surefoot::grid {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// All cells known; the height tells the place: 100 x + y in lattice cells.
@@ -31,9 +31,9 @@ MapRegion known_region(const LatticeBox& box) {
     region.horizontal_drift_m = Image<float>(box.nx, box.ny, 0.0F);
     region.highest_m = Image<float>(box.nx, box.ny, 0.1F);
     region.lowest_m = Image<float>(box.nx, box.ny, 0.0F);
-    region.clearance_m = Image<float>(box.nx, box.ny, kNan);
+    region.clearance_m = Image<float>(box.nx, box.ny, kNanF);
     region.confidence = Image<float>(box.nx, box.ny, 0.5F);
-    region.density_ratio = Image<float>(box.nx, box.ny, kNan);
+    region.density_ratio = Image<float>(box.nx, box.ny, kNanF);
     return region;
 }
 
@@ -101,22 +101,22 @@ TEST(MapRegion, EveryNumberThatCannotBeIsNamed) {
         {"name", [](MapRegion& r) { r.frame = ""; }},
         {"name", [](MapRegion& r) { r.frame = "o\n"; }},
         {"name", [](MapRegion& r) { r.frame.assign(kMaxFrameName + 1, 'x'); }},
-        {"base_link", [](MapRegion& r) { r.T_frame_body.translation_m.x() = kNan; }},
+        {"base_link", [](MapRegion& r) { r.T_frame_body.translation_m.x() = kNanF; }},
         {"base_link", [](MapRegion& r) { r.T_frame_body.rotation.w() = 2.0; }},
         {"layer drift", [](MapRegion& r) { r.horizontal_drift_m = Image<float>(2, 3, 0.0F); }},
         {"(1, 1) has elevation inf", [](MapRegion& r) { r.height_m.at(1, 1) = kInf; }},
         {"(1, 1) has variance 0", [](MapRegion& r) { r.height_var_m2.at(1, 1) = 0.0F; }},
-        {"(1, 1) has variance nan", [](MapRegion& r) { r.height_var_m2.at(1, 1) = kNan; }},
-        {"(0, 1) has drift nan", [](MapRegion& r) { r.horizontal_drift_m.at(0, 1) = kNan; }},
+        {"(1, 1) has variance nan", [](MapRegion& r) { r.height_var_m2.at(1, 1) = kNanF; }},
+        {"(0, 1) has drift nan", [](MapRegion& r) { r.horizontal_drift_m.at(0, 1) = kNanF; }},
         {"(0, 1) has drift -1", [](MapRegion& r) { r.horizontal_drift_m.at(0, 1) = -1.0F; }},
-        {"(0, 0) has highest nan", [](MapRegion& r) { r.highest_m.at(0, 0) = kNan; }},
+        {"(0, 0) has highest nan", [](MapRegion& r) { r.highest_m.at(0, 0) = kNanF; }},
         {"(0, 0) has lowest -inf", [](MapRegion& r) { r.lowest_m.at(0, 0) = -kInf; }},
         {"(0, 0) has clearance inf", [](MapRegion& r) { r.clearance_m.at(0, 0) = kInf; }},
         {"(0, 0) has confidence 1.5", [](MapRegion& r) { r.confidence.at(0, 0) = 1.5F; }},
         {"(0, 0) has density_ratio -1", [](MapRegion& r) { r.density_ratio.at(0, 0) = -1.0F; }},
         {"(1, 0) has count 0", [](MapRegion& r) { r.count.at(1, 0) = 0; }},
         {"(1, 0) has variance 0.0001 where the height is unknown",
-         [](MapRegion& r) { r.height_m.at(1, 0) = kNan; }},
+         [](MapRegion& r) { r.height_m.at(1, 0) = kNanF; }},
     };
     for (const Case& c : cases) {
         MapRegion region = known_region({0, 0, 2, 2});

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/sliding_layer.hpp"
 
 namespace surefoot::grid {
 namespace {
 
 constexpr int kUnknown = -1;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Lattice = std::map<std::pair<std::int64_t, std::int64_t>, int>;
 

@@ -56,7 +56,7 @@ struct Window {
 Window window_around_body(const SnapshotInput& input) {
     const auto start = [](double body_m, double origin_m, double res_m, int n, int size) {
         const double first = std::floor((body_m - origin_m) / res_m) - size / 2.0;
-        return std::clamp(saturated_integer<int>(first), 0, n - size);
+        return clamped_integer<int>(first, 0, n - size);
     };
     const GridGeometry& g = input.geometry;
     const Eigen::Vector3d& body_m = input.T_odom_body.translation_m;

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::grid {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// Layers of a map and the input that looks at them.
 struct TestMap {
@@ -35,7 +34,7 @@ struct TestMap {
         for (int v = 0; v < geometry.ny; ++v) {
             for (int u = 0; u < geometry.nx; ++u) {
                 const char c = rows[static_cast<std::size_t>(v)][static_cast<std::size_t>(u)];
-                height.at(u, v) = c == '?' ? kNaN : static_cast<float>(c - '0') * 0.1F;
+                height.at(u, v) = c == '?' ? kNanF : static_cast<float>(c - '0') * 0.1F;
             }
         }
     }
@@ -136,14 +135,14 @@ TEST(MapSnapshot, padding_bytes_do_not_count) {
 TEST(SnapshotBuilder, rounds_against_the_cell_and_keeps_unknown_unknown) {
     TestMap map({"00000000"});
     map.height.at(1, 0) = 0.12346F;
-    map.height.at(2, 0) = kNaN;
+    map.height.at(2, 0) = kNanF;
     map.height.at(3, 0) = std::numeric_limits<float>::infinity();
     map.variance.at(0, 0) = 4.0001e-6F;  // 2.00002 mm
-    map.variance.at(4, 0) = kNaN;
+    map.variance.at(4, 0) = kNanF;
     map.variance.at(5, 0) = -1.0F;
     map.variance.at(6, 0) = 100.0F;  // 10 m
-    map.drift.at(0, 0) = kNaN;
-    Layer clearance(8, 1, kNaN);
+    map.drift.at(0, 0) = kNanF;
+    Layer clearance(8, 1, kNanF);
     clearance.at(0, 0) = 1.23456F;
     clearance.at(1, 0) = -0.5F;
     clearance.at(4, 0) = 50.0F;
@@ -280,7 +279,7 @@ TEST(SnapshotBuilder, labels_match_the_slow_oracle_on_random_maps) {
         for (int v = 0; v < 19; ++v) {
             for (int u = 0; u < 23; ++u)
                 map.height.at(u, v) =
-                    rng.uniform() < 0.25 ? kNaN : static_cast<float>(rng.uniform(0.0, 0.12));
+                    rng.uniform() < 0.25 ? kNanF : static_cast<float>(rng.uniform(0.0, 0.12));
         }
         const MapSnapshot& s = map.build();
         const std::vector<int> slow = slow_labels(s, 500);
@@ -329,7 +328,7 @@ TEST(SnapshotBuilder, a_drop_marks_its_upper_edge_across_a_shadow_only) {
 
 TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
     TestMap map({"55????555????55"});
-    Layer free_m(15, 1, kNaN);
+    Layer free_m(15, 1, kNanF);
     free_m.at(2, 0) = 0.48F;
     free_m.at(4, 0) = 0.44F;  // 60 mm below the edges on both sides
     free_m.at(10, 0) = 0.46F;
@@ -345,7 +344,7 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
 
 TEST(SnapshotBuilder, what_lines_of_sight_left_for_unknown_ground_is_kept_and_is_no_measurement) {
     TestMap map({"5???5"});
-    Layer free_m(5, 1, kNaN);
+    Layer free_m(5, 1, kNanF);
     free_m.at(0, 0) = -1.0F;     // of a known cell: says nothing
     free_m.at(1, 0) = 0.12341F;  // rounded up: ground lies lower
     free_m.at(3, 0) = 2000.0F;   // no height of anything
@@ -385,7 +384,7 @@ TEST(SnapshotBuilder, ray_evidence_is_kept_on_unknown_cells) {
     TestMap map({"0??0"});
     Layer rays(4, 1, 0.0F);
     rays.at(1, 0) = 0.5F;
-    rays.at(2, 0) = kNaN;
+    rays.at(2, 0) = kNanF;
     SnapshotInput input = map.input();
     input.drop_evidence = std::as_const(rays).view();
     ASSERT_TRUE(build_snapshot(input, *map.out).ok());

@@ -13,7 +13,7 @@ inline constexpr int kMostCells = 1 << 24;
 
 /// The integer part of a number of cells, at most kMostCells to either side. NaN gives 0.
 [[nodiscard]] inline int whole_cells(double cells) noexcept {
-    return std::clamp(saturated_integer<int>(cells), -kMostCells, kMostCells);
+    return clamped_integer<int>(cells, -kMostCells, kMostCells);
 }
 
 /// A way in cells, halves away from zero. Larger moves than 2^30 cells make no difference: they

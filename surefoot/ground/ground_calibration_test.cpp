@@ -5,20 +5,19 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::ground {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kRounding = 1e-12;
 
 /// What a body sees that leans by `roll_deg`, `pitch_deg` at a height.
 GroundSighting sighting(double roll_deg, double pitch_deg, double height_m, bool accepted = true) {
     const Eigen::Quaterniond R_world_body =
-        exp_so3({0.0, pitch_deg * kDeg, 0.0}) * exp_so3({roll_deg * kDeg, 0.0, 0.0});
+        exp_so3({0.0, pitch_deg * kRadPerDeg, 0.0}) * exp_so3({roll_deg * kRadPerDeg, 0.0, 0.0});
     GroundSighting sighting;
     GroundObservation& observation = sighting.observation;
     observation.accepted = accepted;
@@ -94,7 +93,7 @@ TEST(GroundCalibration, NoiseAveragesOut) {
     const Eigen::Vector3d truth = sighting(3.0, -2.0, 1.04).observation.normal;
     const double sigmas = 4.0 / std::sqrt(100.0);
     EXPECT_LE(std::acos(std::min(1.0, alignment.normal_body.dot(truth))),
-              sigmas * std::sqrt(2.0) * kTilt_deg * kDeg);
+              sigmas * std::sqrt(2.0) * kTilt_deg * kRadPerDeg);
     EXPECT_NEAR(alignment.height_m, 1.04, sigmas * kHeight_m);
 }
 
@@ -107,7 +106,7 @@ TEST(GroundCalibration, DisagreeingSingleShotsAreLeftOut) {
     ASSERT_TRUE(alignment.accepted);
     EXPECT_EQ(alignment.agreeing, 7);
     EXPECT_EQ(alignment.rejected, 2);
-    EXPECT_NEAR(alignment.tilt_rad, 1.0 * kDeg, 1e-9);
+    EXPECT_NEAR(alignment.tilt_rad, 1.0 * kRadPerDeg, 1e-9);
     EXPECT_NEAR(alignment.height_m, 1.0, kRounding);
 }
 
@@ -129,7 +128,7 @@ TEST(GroundCalibration, WindowForgetsABadStart) {
     for (int i = 0; i < 10; ++i) calibration.add(sighting(0.0, 2.0, 1.0));
     const GroundAlignment alignment = calibration.alignment();
     EXPECT_TRUE(alignment.accepted);
-    EXPECT_NEAR(alignment.tilt_rad, 2.0 * kDeg, 1e-9);
+    EXPECT_NEAR(alignment.tilt_rad, 2.0 * kRadPerDeg, 1e-9);
     calibration.clear();
     EXPECT_EQ(calibration.alignment().reason, CalibrationReason::no_observation);
 }

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/frames_testing.hpp"
@@ -18,12 +18,11 @@ namespace surefoot::ground {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kNoise_m = 0.005;
 constexpr double kSensorHeight_m = 1.0;
 // The plane's one-sigma tilt is noise / (sqrt(n) extent) < 0.01 deg here; the voxel choice and the
 // cut at three sigma add to it.
-constexpr double kTiltLimit_rad = 0.15 * kDeg;
+constexpr double kTiltLimit_rad = 0.15 * kRadPerDeg;
 constexpr double kHeightLimit_m = 0.004;
 
 /// A world with the sensor at the origin and the floor 1 m below it.
@@ -111,8 +110,8 @@ TEST(GroundObservation, FloorAloneIsFound) {
 TEST(GroundObservation, TiltIsMeasured) {
     for (const double tilt_deg : {2.0, 5.0, 10.0}) {
         // The body leans forward by the tilt and to its side by half of it.
-        const Eigen::Quaterniond R_world_body =
-            exp_so3({0.0, tilt_deg * kDeg, 0.0}) * exp_so3({0.5 * tilt_deg * kDeg, 0.0, 0.0});
+        const Eigen::Quaterniond R_world_body = exp_so3({0.0, tilt_deg * kRadPerDeg, 0.0}) *
+                                                exp_so3({0.5 * tilt_deg * kRadPerDeg, 0.0, 0.0});
         const Points points = Scene(3).floor(2000).wall(1000).seen_by(R_world_body);
         const GroundSighting sighting = sight(points);
         ASSERT_TRUE(sighting.observation.accepted) << tilt_deg << ' ' << to_string(sighting.reason);
@@ -125,7 +124,7 @@ TEST(GroundObservation, TiltIsMeasured) {
 }
 
 TEST(GroundObservation, FloorBeyondTheTiltLimitIsNoGround) {
-    const Points points = Scene(4).floor(3000).seen_by(exp_so3({0.0, 25.0 * kDeg, 0.0}));
+    const Points points = Scene(4).floor(3000).seen_by(exp_so3({0.0, 25.0 * kRadPerDeg, 0.0}));
     EXPECT_EQ(sight(points).reason, GroundReason::no_plane);
     GroundConfig wide;
     wide.max_tilt_deg = 30.0;
@@ -192,7 +191,7 @@ void expect_ground(const std::vector<test::Surface>& surfaces,
             observe_ground({}, test::seen(surfaces, {.seed = seed}), Eigen::Vector3d::UnitZ(), seed)
                 .observation;
         ASSERT_TRUE(ground.accepted) << "seed " << seed;
-        EXPECT_LE(angle_rad(ground.normal, Eigen::Vector3d::UnitZ()), tilt_limit_deg * kDeg)
+        EXPECT_LE(angle_rad(ground.normal, Eigen::Vector3d::UnitZ()), tilt_limit_deg * kRadPerDeg)
             << "seed " << seed;
         EXPECT_NEAR(ground.height_m, kSensorHeight_m, height_limit_m) << "seed " << seed;
     }
@@ -244,13 +243,13 @@ TEST(GroundObservation, FramesOfANoisyCameraAgreeOnTheFloorBeforeARamp) {
         }
         const GroundAlignment alignment = calibration.alignment();
         EXPECT_TRUE(alignment.accepted);
-        EXPECT_LE(alignment.tilt_rad, 0.5 * kDeg);
+        EXPECT_LE(alignment.tilt_rad, 0.5 * kRadPerDeg);
         EXPECT_NEAR(alignment.height_m, kSensorHeight_m, 0.008);
     }
 }
 
 TEST(GroundObservation, FloorWinsOverTheRampThatStartsAhead) {
-    const double rise = std::tan(10.0 * kDeg);
+    const double rise = std::tan(10.0 * kRadPerDeg);
     for (const double sign : {1.0, -1.0}) {        // up and down
         for (const double share : {0.33, 0.67}) {  // ramp larger, floor larger
             const double edge_m = 0.5 + 3.0 * share;
@@ -269,7 +268,7 @@ TEST(GroundObservation, FloorWinsOverTheRampThatStartsAhead) {
             EXPECT_TRUE(sighting.observation.accepted);
             // 15 mm (three sigma) of the ramp pass for floor: its first 85 mm, next to 1 m of
             // floor.
-            EXPECT_LE(sighting.tilt_rad, 1.0 * kDeg);
+            EXPECT_LE(sighting.tilt_rad, 1.0 * kRadPerDeg);
             EXPECT_NEAR(sighting.observation.height_m, kSensorHeight_m, 0.015);
         }
     }

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/cloud.hpp"
@@ -25,7 +26,6 @@ namespace {
 
 using geometry::Plane;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kMaxPlanes = 10;
 constexpr int kMaxLevels = 3;  ///< across which one plane may lie, see near_side.hpp
 constexpr int kDraws = 500;

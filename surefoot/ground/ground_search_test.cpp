@@ -5,8 +5,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/ground/ground_views_testing.hpp"
 
 namespace surefoot::ground {
@@ -15,8 +15,6 @@ namespace {
 using test::Block;
 using test::Camera;
 using test::Errors;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 double tilt_error_deg(const GroundSighting& found, const Eigen::Vector3d& up) {
     const Eigen::Vector3d& n = found.observation.normal;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/sample_points.hpp"
 
@@ -111,7 +112,6 @@ inline View view_of(const std::vector<Block>& blocks,
                     const Errors& errors,
                     std::uint64_t seed,
                     int step_px = 6) {
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     constexpr double kTogether_px = 40.0;
     constexpr double kMatched_px = 30.0;
     constexpr double kRelief_m = 0.15;

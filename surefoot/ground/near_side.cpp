@@ -107,7 +107,7 @@ Split best_split(const std::vector<Sample>& samples, int axis) {
     Sums after;
     for (const Sample& sample : samples) {
         const double strip = std::floor((sample.at_m[axis] - first_m) / strip_m);
-        const int k = std::clamp(saturated_integer<int>(strip), 0, kStrips - 1);
+        const int k = clamped_integer<int>(strip, 0, kStrips - 1);
         strips[static_cast<std::size_t>(k)] += sample.sums;
         after += sample.sums;
     }

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "surefoot/core/angles.hpp"
 #include "surefoot/ground/frames_testing.hpp"
 
 namespace surefoot::ground {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kBand_m = 0.05;
 
 geometry::Plane refined(const FramePoints& frame, const geometry::Plane& start) {
@@ -27,8 +25,8 @@ TEST(RefinePlane, IsExactWithoutNoiseFromAnyStartWithinTheBand) {
     const FramePoints frame = test::seen({{}}, {.noise_px = 1e-6});
     for (const auto& [tilt_deg, height_m] :
          {std::pair{0.0, 1.0}, {1.0, 1.0}, {-1.0, 0.99}, {0.0, 1.03}}) {
-        const geometry::Plane start{exp_so3({0.0, tilt_deg * kDeg, 0.0}) * Eigen::Vector3d::UnitZ(),
-                                    height_m};
+        const geometry::Plane start{
+            exp_so3({0.0, tilt_deg * kRadPerDeg, 0.0}) * Eigen::Vector3d::UnitZ(), height_m};
         const geometry::Plane plane = refined(frame, start);
         EXPECT_LT(tilt_rad(plane), 1e-6) << tilt_deg;
         EXPECT_NEAR(plane.offset_m, 1.0, 1e-6) << tilt_deg;
@@ -50,8 +48,8 @@ TEST(RefinePlane, NoiseAveragesOutWithoutABias) {
         worst_rad = std::max(worst_rad, tilt_rad(plane));
     }
     EXPECT_NEAR(height_m, 1.0, 2e-4);
-    EXPECT_LT(tilt_rad({normal.normalized(), 1.0}), 0.01 * kDeg);
-    EXPECT_LT(worst_rad, 0.1 * kDeg);
+    EXPECT_LT(tilt_rad({normal.normalized(), 1.0}), 0.01 * kRadPerDeg);
+    EXPECT_LT(worst_rad, 0.1 * kRadPerDeg);
 }
 
 TEST(RefinePlane, WhatLiesOnItOrMayBeAnywhereTakesNoPart) {
@@ -65,7 +63,7 @@ TEST(RefinePlane, WhatLiesOnItOrMayBeAnywhereTakesNoPart) {
         frame.inverse_range_sigma.push_back(0.5);
     }
     const geometry::Plane plane = refined(frame, {Eigen::Vector3d::UnitZ(), 1.0});
-    EXPECT_LT(tilt_rad(plane), 0.15 * kDeg);
+    EXPECT_LT(tilt_rad(plane), 0.15 * kRadPerDeg);
     EXPECT_NEAR(plane.offset_m, 1.0, 0.003);
 }
 

@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/ground/ground_observation.hpp"
 
 namespace surefoot::ground {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kCameraHeight_m = 1.0;
 
 /// The camera of the machine: 1 m above the floor (base_link at the floor), 32 deg down.
@@ -45,7 +45,7 @@ DepthImage floor_depth(const camera::RectifiedRig& rig) {
             const double z_m = -kCameraHeight_m / fall;
             const bool seen = fall < 0.0 && z_m < 20.0;
             depth.disparity_px.at(u, v) =
-                seen ? static_cast<float>(rig.depth_to_disparity_px_m() / z_m) : kNaN;
+                seen ? static_cast<float>(rig.depth_to_disparity_px_m() / z_m) : kNanF;
         }
     }
     return depth;
@@ -124,12 +124,12 @@ TEST(SamplePoints, UnknownUnlikelyAndImpossiblePixelsAreLeftOut) {
     depth.disparity_px.fill(10.0F);
     depth.sigma_px.fill(0.2F);
     depth.outlier_probability.fill(0.0F);
-    depth.disparity_px.at(0, 0) = kNaN;
+    depth.disparity_px.at(0, 0) = kNanF;
     depth.disparity_px.at(1, 0) = 0.0F;
     depth.disparity_px.at(2, 0) = std::numeric_limits<float>::infinity();
     depth.outlier_probability.at(3, 0) = 0.9F;
-    depth.outlier_probability.at(4, 0) = kNaN;
-    depth.sigma_px.at(5, 0) = kNaN;
+    depth.outlier_probability.at(4, 0) = kNanF;
+    depth.sigma_px.at(5, 0) = kNanF;
     depth.sigma_px.at(6, 0) = 0.0F;
     depth.sigma_px.at(7, 0) = std::numeric_limits<float>::infinity();
     FramePoints seen;

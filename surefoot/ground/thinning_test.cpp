@@ -6,12 +6,13 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::ground {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 using Indices = std::vector<std::size_t>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Thinning, KeepsTheFirstPointOfAVoxelInInputOrder) {
@@ -21,7 +22,7 @@ TEST(Thinning, KeepsTheFirstPointOfAVoxelInInputOrder) {
 }
 
 TEST(Thinning, LeavesOutFarAndInvalidPoints) {
-    const Points points{{9.0, 0, 0}, {kNaN, 0, 0}, {0, -kInfinity, 0}, {1.0, 0, 0}};
+    const Points points{{9.0, 0, 0}, {kNan, 0, 0}, {0, -kInfinity, 0}, {1.0, 0, 0}};
     EXPECT_EQ(thin(points, Eigen::Vector3d::Zero(), 5.0, 0.1, 100), (Indices{3}));
     EXPECT_TRUE(thin(Points{}, Eigen::Vector3d::Zero(), 5.0, 0.1, 100).empty());
 }

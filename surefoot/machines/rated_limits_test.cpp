@@ -15,6 +15,7 @@
 #include <string>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
@@ -170,7 +171,7 @@ Case random_case(std::uint64_t seed) {
         }
         case 11: {  // ground that an operator attests
             attested_m = uniform(0.6, 1.9);
-            terrain.box(-0.6, 0.6, -0.6, 0.6, static_cast<double>(gate::testing::kNaN));
+            terrain.box(-0.6, 0.6, -0.6, 0.6, static_cast<double>(kNanF));
             break;
         }
         case 12: evidence = uniform(1.0, 255.0); break;

@@ -8,6 +8,7 @@
 
 #include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/odometry/inertial/inertial_tracker.hpp"
 #include "surefoot/odometry/machine_tracker.hpp"
@@ -299,9 +300,7 @@ double Odometry::Impl::scene_depth_m(const PoseSolution& pose) const {
             depths.push_back(forward.dot(map.at(front->tracks()[i].slot).p_odom_m -
                                          pose.T_world_camera.translation_m));
     if (depths.empty()) return 0.0;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    return *middle;
+    return upper_median_in_place(depths);
 }
 
 HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& pose) const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/geometry/statistics.hpp"
+
 namespace surefoot::odometry {
 namespace {
 
@@ -15,12 +17,6 @@ constexpr double kChi2Limit = 22.46;
 /// for the difference, sqrt(2 ln 2) for the median of a Rayleigh variable.
 constexpr double kMedianOfNoise = 1.67;
 constexpr std::size_t kMinShared = 20;  ///< points that both frames must see
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 
@@ -41,7 +37,7 @@ bool StillDetector::update(std::span<const Track> tracks,
     const Vector6 motion = difference(T_odom_camera_, T_odom_camera);
     const Matrix6 sum = covariance_ + covariance;
     const double most_px = std::hypot(parallax_px_, kMedianOfNoise * residual_px);
-    if (parallax_.size() >= kMinShared && median(parallax_) < most_px &&
+    if (parallax_.size() >= kMinShared && upper_median_in_place(parallax_) < most_px &&
         motion.dot(sum.ldlt().solve(motion)) < kChi2Limit) {
         held_ += 1;
         return true;

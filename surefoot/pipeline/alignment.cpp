@@ -5,12 +5,13 @@
 
 #include <cmath>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::pipeline {
 namespace {
 
 /// Of the known height: far more than a mount or a kerb brings about.
 constexpr double kMostHeightShare = 0.35;
-constexpr double kDegPerRad = 180.0 / M_PI;
 
 /// Rotation that takes `up_body` to odom z and keeps the heading of base_link at zero yaw.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {

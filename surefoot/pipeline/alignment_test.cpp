@@ -5,11 +5,12 @@
 
 #include <cmath>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::pipeline {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 /// Up in a base_link that is pitched down and rolled.
 Eigen::Vector3d up_in_body(double pitch_down_rad, double roll_rad) {

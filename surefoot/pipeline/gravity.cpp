@@ -7,11 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::pipeline {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 using Basis = Eigen::Matrix<double, 3, 2>;
 

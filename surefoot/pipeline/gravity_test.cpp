@@ -8,12 +8,12 @@
 #include <cmath>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kGravity_m_s2 = 9.81;
 
 Direction direction(const Eigen::Vector3d& unit, double sigma_rad) {

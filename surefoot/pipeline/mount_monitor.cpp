@@ -2,14 +2,13 @@
 #include "surefoot/pipeline/mount_monitor.hpp"
 
 #include <algorithm>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Between two frames: above the noise of odometry, below any sway.
 constexpr double kStanding_m = 1e-3;
 constexpr double kStanding_rad = 5e-4;

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <functional>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kPeriod_s = 0.1;
 
 Eigen::Quaterniond leaning(double roll_deg, double pitch_deg) {

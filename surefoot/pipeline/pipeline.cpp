@@ -67,7 +67,7 @@ ground::GroundSighting in_first_body(ground::GroundSighting ground, const Pose& 
     return ground;
 }
 
-Alignment told(const Pose& T_odom_body) {
+Alignment known_alignment(const Pose& T_odom_body) {
     Alignment alignment;
     alignment.T_odom_body = T_odom_body;
     alignment.gravity_source = grid::GravitySource::plane;
@@ -134,7 +134,8 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
     correct_right_camera(first_frames);
-    alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
+    alignment_ =
+        T_odom_first_body ? known_alignment(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
     tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
     feature_tracker_.forget();  // odom is another one
@@ -167,10 +168,10 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
             exposure_state_of(frame) != ExposureState::well_exposed)
             continue;
         const MotionEstimate motion = track(frame, scout, Pose{});
-        rectify(frame);
-        measure_depth(frame);
+        const DepthImage& depth = measure_depth(frame, rectify(frame));
         const ground::GroundSighting sighting =
-            look.searched ? search_ground() : observe_ground(motion.T_odom_body, up_hint_body);
+            look.searched ? search_ground(depth)
+                          : observe_ground(depth, motion.T_odom_body, up_hint_body);
         calibration.add(in_first_body(sighting, motion.T_odom_body));
         if (sighting.image_share < look.image_share) continue;
         look.image_share = sighting.image_share;
@@ -233,56 +234,72 @@ void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
 }
 
 FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
-    FrameReport report;
-    report.time_ns = frame.time_ns;
-    report.index = frame.index;
-    report.work = work;
-    report.frame_status = watch_.look(frame);
-    const ExposureState light = exposure_state_of(frame);
-    camera_monitor_.add(report.frame_status, light);
-    report.camera = camera_state();
-    if (!report.frame_status.is_new_and_whole()) {
-        report.work = Work::odometry;
-        odometry_.skip(frame, report.frame_status);
-        report.motion = odometry::unseen_motion(
-            config_.odometry, last_motion_, frame.time_ns, report.frame_status);
-        report.known_cells = map_.known_cells();
-        return report;
-    }
+    FrameReport report = check(frame, work);
+    if (!report.frame_status.is_new_and_whole()) return skip(frame, std::move(report));
     StageTimer timer(clock_, report);
 
-    report.motion = track(frame, odometry_, alignment_.T_odom_body);
-    if (!frame.known_motion) report.motion = tilt_drift_correction_.level(report.motion);
-    follow(report.motion);
-    timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
-    if (light != ExposureState::well_exposed)
-        report.work = Work::odometry;  // flat grey matches anything
+    const MotionEstimate motion = move(frame);
+    report.motion = motion;
+    timer.finished(Stage::odometry);
     if (report.work == Work::full) {
-        rectify(frame);
+        const camera::RectifiedPair& pair = rectify(frame);
         timer.finished(Stage::rectify);
-        measure_depth(frame);
+        const DepthImage& depth = measure_depth(frame, pair);
         timer.finished(Stage::stereo);
         report.ground =
-            observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
-        tilt_drift_correction_.see(report.ground);
-        watch_mount(report);
-        watch_mirrors(report.motion, report.ground);
+            observe_ground(depth, motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
+        watch_mount(motion, report.ground);
+        watch_mirrors(pair, depth, motion, report.ground);
         timer.finished(Stage::ground);
-        report.fusion = fuse(report.motion);
+        report.fusion = fuse(depth, motion);
         timer.finished(Stage::fuse);
         rate();
         timer.finished(Stage::traversability);
-        find_features();
+        find_features(depth, motion);
         timer.finished(Stage::stairs);
-        report.depth_pixels = count_valid(depth_.disparity_px);
-        report.image_pixels = static_cast<std::int64_t>(depth_.disparity_px.size());
+        report.depth_pixels = count_valid(depth.disparity_px);
+        report.image_pixels = static_cast<std::int64_t>(depth.disparity_px.size());
     } else if (rated_at_m_ != map_.geometry().origin_m) {
         rate();  // the window moved: the ratings are those of other cells
         timer.finished(Stage::traversability);
     }
     hide_mirrored_ground();
+    report.camera = camera_state();
     report.known_cells = map_.known_cells();
     return report;
+}
+
+FrameReport Pipeline::check(const StereoFrame& frame, Work wanted) {
+    FrameReport report;
+    report.time_ns = frame.time_ns;
+    report.index = frame.index;
+    report.frame_status = watch_.look(frame);
+    const ExposureState exposure = exposure_state_of(frame);
+    camera_monitor_.add(report.frame_status, exposure);
+    report.camera = camera_state();
+    // Flat grey matches anything, so a badly exposed frame gets no depth.
+    const bool has_depth =
+        report.frame_status.is_new_and_whole() && exposure == ExposureState::well_exposed;
+    report.work = has_depth ? wanted : Work::odometry;
+    return report;
+}
+
+FrameReport Pipeline::skip(const StereoFrame& frame, FrameReport report) {
+    odometry_.skip(frame, report.frame_status);
+    report.motion =
+        odometry::unseen_motion(config_.odometry, last_motion_, frame.time_ns, report.frame_status);
+    report.known_cells = map_.known_cells();
+    return report;
+}
+
+MotionEstimate Pipeline::move(const StereoFrame& frame) {
+    MotionEstimate motion = track(frame, odometry_, alignment_.T_odom_body);
+    if (!frame.known_motion) motion = tilt_drift_correction_.level(motion);
+    map_.follow(motion.T_odom_body, motion.relative_covariance);
+    feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
+    if (motion.health == Health::lost) feature_tracker_.forget();
+    last_motion_ = motion;
+    return motion;
 }
 
 MotionEstimate Pipeline::track(const StereoFrame& frame,
@@ -294,45 +311,49 @@ MotionEstimate Pipeline::track(const StereoFrame& frame,
     return motion;
 }
 
-void Pipeline::rectify(const StereoFrame& frame) {
+const camera::RectifiedPair& Pipeline::rectify(const StereoFrame& frame) {
     if (frame.known_depth) {
         pair_ = {};
     } else {
         rectifier_->rectify(frame, pair_);
     }
+    return pair_;
 }
 
-void Pipeline::measure_depth(const StereoFrame& frame) {
+const DepthImage& Pipeline::measure_depth(const StereoFrame& frame,
+                                          const camera::RectifiedPair& pair) {
     if (frame.known_depth) {
         SUREFOOT_ASSERT(frame.known_depth->disparity_px.width() == rig().width &&
                         frame.known_depth->disparity_px.height() == rig().height);
         depth_ = *frame.known_depth;
-    } else if (pair_.right.empty()) {
+    } else if (pair.right.empty()) {
         depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m, depth_);
     } else {
-        matcher_->match(pair_.left.view(), pair_.right.view(), *executor_, depth_);
+        matcher_->match(pair.left.view(), pair.right.view(), *executor_, depth_);
     }
+    return depth_;
 }
 
 /// The matcher's errors hang together over more.
 constexpr int kGroundStep_px = 6;
 
-ground::GroundSighting Pipeline::observe_ground(const Pose& T_level_body,
+ground::GroundSighting Pipeline::observe_ground(const DepthImage& depth,
+                                                const Pose& T_level_body,
                                                 const Eigen::Vector3d& up_level) {
     // The plane is looked for in base_link: its height is that of the machine, not of odom.
-    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
+    ground::sample_points(rectifier_->rig(), depth, kGroundStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
 }
 
-ground::GroundSighting Pipeline::search_ground() {
-    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
+ground::GroundSighting Pipeline::search_ground(const DepthImage& depth) {
+    ground::sample_points(rectifier_->rig(), depth, kGroundStep_px, ground_points_);
     return ground::search_ground(config_.ground, ground_points_, kGroundSeed);
 }
 
-void Pipeline::watch_mount(FrameReport& report) {
-    if (config_.ground.expected_height_m > 0.0) mount_monitor_.add(report.motion, report.ground);
-    report.camera = camera_state();
+void Pipeline::watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body) {
+    tilt_drift_correction_.see(ground_body);
+    if (config_.ground.expected_height_m > 0.0) mount_monitor_.add(motion, ground_body);
 }
 
 CameraState Pipeline::camera_state() const noexcept {
@@ -341,12 +362,15 @@ CameraState Pipeline::camera_state() const noexcept {
     return images == CameraState::ok && mount_monitor_.leans() ? CameraState::leaning : images;
 }
 
-void Pipeline::watch_mirrors(const MotionEstimate& motion, const GroundObservation& ground_body) {
+void Pipeline::watch_mirrors(const camera::RectifiedPair& pair,
+                             const DepthImage& depth,
+                             const MotionEstimate& motion,
+                             const GroundObservation& ground_body) {
     if (motion.health == Health::lost) return;
     mirror_watch_.add(rectifier_->rig(),
                       motion.T_odom_body,
-                      pair_.left.view(),
-                      depth_.disparity_px.view(),
+                      pair.left.view(),
+                      depth.disparity_px.view(),
                       specular::level_floor_z_m(ground_body, motion.T_odom_body));
 }
 
@@ -361,17 +385,10 @@ void Pipeline::hide_mirrored_ground() {
     specular::hide_behind(panes(), config_.specular, geometry, hidden_.view());
 }
 
-void Pipeline::follow(const MotionEstimate& motion) {
-    map_.follow(motion.T_odom_body, motion.relative_covariance);
-    feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
-    if (motion.health == Health::lost) feature_tracker_.forget();
-    last_motion_ = motion;
-}
-
-FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
+FusionCounts Pipeline::fuse(const DepthImage& depth, const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // where would it go?
     const FusionCounts counts =
-        map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
+        map_.add(rectifier_->rig(), motion.T_odom_body, depth, motion.time_ns, *executor_);
     if (!shows_ground(counts, map_.geometry().resolution_m)) return counts;
     last_fused_ns_ = motion.time_ns;
     ++version_;
@@ -402,7 +419,7 @@ stairs::View Pipeline::view() const {
             .unmapped_px = static_cast<double>(config_.elevation.pixels.reach_px)};
 }
 
-stairs::Terrain Pipeline::terrain() const {
+stairs::Terrain Pipeline::terrain(const DepthImage& depth, const MotionEstimate& motion) const {
     const elevation::ElevationLayers& layers = map_.layers();
     return {.geometry = map_.geometry(),
             .height_m = layers.height_m.view(),
@@ -410,22 +427,21 @@ stairs::Terrain Pipeline::terrain() const {
             .free_above_m = layers.free_above_m.view(),
             .clearance_m = layers.clearance_m.view(),
             .density_ratio = layers.density_ratio.view(),
-            .looks = layers.count.view(),
-            .stance_m = last_motion_.T_odom_body.translation_m.head<2>(),
+            .observations = layers.count.view(),
+            .stance_m = motion.T_odom_body.translation_m.head<2>(),
             .view = view(),
-            .disparity_px = depth_.disparity_px.view()};
+            .disparity_px = depth.disparity_px.view()};
 }
 
-void Pipeline::find_features() {
-    const stairs::Terrain now = terrain();
+void Pipeline::find_features(const DepthImage& depth, const MotionEstimate& motion) {
+    const stairs::Terrain now = terrain(depth, motion);
     feature_finder_.find(now, found_features_);
-    feature_tracker_.follow(
-        found_features_, now, {last_motion_.time_ns, feature_drift_}, features_);
+    feature_tracker_.update(found_features_, now, {motion.time_ns, feature_drift_}, features_);
     feature_drift_ = {};
 }
 
 stairs::GroundClasses Pipeline::ground_classes() const {
-    return stairs::classify_ground(config_.stairs, terrain(), features_);
+    return stairs::classify_ground(config_.stairs, terrain(depth_, last_motion_), features_);
 }
 
 grid::Layer Pipeline::reach_step_m() const {

@@ -128,23 +128,36 @@ class Pipeline {
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);
-    void rectify(const StereoFrame& frame);
-    void measure_depth(const StereoFrame& frame);
-    [[nodiscard]] ground::GroundSighting observe_ground(const Pose& T_level_body,
+    /// Tests the frame and decides how much work it can get.
+    [[nodiscard]] FrameReport check(const StereoFrame& frame, Work wanted);
+    /// Report of a repeated or torn frame: the map and the ratings stay.
+    [[nodiscard]] FrameReport skip(const StereoFrame& frame, FrameReport report);
+    /// Motion up to this frame. The map window and its remembered cells move with it.
+    MotionEstimate move(const StereoFrame& frame);
+    /// The result is kept until the next call; empty if the frame brings its own depth.
+    const camera::RectifiedPair& rectify(const StereoFrame& frame);
+    /// The result is kept until the next call.
+    const DepthImage& measure_depth(const StereoFrame& frame, const camera::RectifiedPair& pair);
+    [[nodiscard]] ground::GroundSighting observe_ground(const DepthImage& depth,
+                                                        const Pose& T_level_body,
                                                         const Eigen::Vector3d& up_level);
-    /// For a camera of which nothing tells how it is mounted.
-    [[nodiscard]] ground::GroundSighting search_ground();
-    /// Only where a machine carries the camera: the height of base_link is known.
-    void watch_mount(FrameReport& report);
+    /// Finds the ground without a hint of how the camera is mounted.
+    [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
+    /// Passes the plane to the tilt drift correction and, if a machine carries the camera and the
+    /// height of base_link is known, to the mount monitor.
+    void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
     [[nodiscard]] CameraState camera_state() const noexcept;
     /// Compares the floor with its own mirror images, where a level floor is in view.
-    void watch_mirrors(const MotionEstimate& motion, const GroundObservation& ground_body);
+    void watch_mirrors(const camera::RectifiedPair& pair,
+                       const DepthImage& depth,
+                       const MotionEstimate& motion,
+                       const GroundObservation& ground_body);
     void hide_mirrored_ground();
-    void follow(const MotionEstimate& motion);
-    [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
+    [[nodiscard]] FusionCounts fuse(const DepthImage& depth, const MotionEstimate& motion);
     void rate();
-    [[nodiscard]] stairs::Terrain terrain() const;
-    void find_features();
+    [[nodiscard]] stairs::Terrain terrain(const DepthImage& depth,
+                                          const MotionEstimate& motion) const;
+    void find_features(const DepthImage& depth, const MotionEstimate& motion);
 
     PipelineConfig config_;
     Executor* executor_;

@@ -2,7 +2,8 @@
 #include "surefoot/pipeline/rgbd_depth.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::pipeline {
 
@@ -10,7 +11,6 @@ void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,
                      const Image<float>& depth_m,
                      DepthImage& out) {
-    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     elevation::SensorConfig kinect = sensor;
     kinect.model = elevation::SensorModel::kinect;
     const double fb_px_m = rectifier.rig().depth_to_disparity_px_m();
@@ -23,8 +23,8 @@ void depth_from_rgbd(const camera::Rectifier& rectifier,
         const double disparity_px = fb_px_m / z_m;
         const auto variance = elevation::ray_variance(kinect, {.depth_m = z_m, .range_m = z_m});
         const double sigma_px = disparity_px * std::sqrt(variance.along_m2) / z_m;
-        out.disparity_px.data()[i] = known ? static_cast<float>(disparity_px) : kNaN;
-        out.sigma_px.data()[i] = known ? static_cast<float>(sigma_px) : kNaN;
+        out.disparity_px.data()[i] = known ? static_cast<float>(disparity_px) : kNanF;
+        out.sigma_px.data()[i] = known ? static_cast<float>(sigma_px) : kNanF;
         out.outlier_probability.data()[i] = known ? 0.0F : 1.0F;
     }
 }

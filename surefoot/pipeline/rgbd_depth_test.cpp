@@ -4,12 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::pipeline {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 camera::Rectifier kinect_rectifier() {
     camera::StereoRig rig;
@@ -23,7 +22,7 @@ TEST(RgbdDepth, GivesBackTheMeasuredDepthWithTheKinectsSigma) {
     const camera::Rectifier rectifier = kinect_rectifier();
     Image<float> depth_m(64, 48, 2.0F);
     depth_m.at(10, 20) = 1.0F;
-    depth_m.at(11, 20) = kNaN;
+    depth_m.at(11, 20) = kNanF;
     depth_m.at(12, 20) = 0.0F;
     DepthImage out;
     depth_from_rgbd(rectifier, {}, depth_m, out);

@@ -73,7 +73,7 @@ class Terrain {
     void frame(int k) {
         const std::int64_t time_ns = k * kFrame_ns;
         const Pose T_odom_body{Eigen::Quaterniond::Identity(), {0.03 * k, -0.01 * k, 1.0}};
-        map_.update(T_odom_body, 1e-8 * Matrix6::Identity());
+        map_.follow(T_odom_body, 1e-8 * Matrix6::Identity());
         const DepthImage& depth = depths_[k % 30 < 20 ? 0 : 1];
         const FusionCounts counts = map_.add(rig_, T_odom_body, depth, time_ns);
         cleared_ += counts.cells_cleared;

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// A sighting counts for the time since the one before, at most for this: after a pause the first
 /// one does not outweigh all others.
 constexpr double kLongest_s = 1.0;

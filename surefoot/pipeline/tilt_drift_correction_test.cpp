@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kPeriod_s = 0.1;
 constexpr double kRounding_deg_s = 1e-9;
 

@@ -2,13 +2,12 @@
 #include "surefoot/place_recognition/place_memory.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::place_recognition {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A keyframe's opinion: where the view was taken in the map, and how many corners say so.
 struct Opinion {

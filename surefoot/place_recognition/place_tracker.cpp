@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::place_recognition {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// While odometry was lost the motion is a guess: the pose graph must not be held by it.
 constexpr double kLostSigma_m = 2.0;
 constexpr double kLostSigma_rad = 1.0;

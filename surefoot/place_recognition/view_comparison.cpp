@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/odometry/visual/pose_solver.hpp"
 
@@ -17,8 +17,7 @@ using odometry::PoseSolution;
 using odometry::StereoPixel;
 
 constexpr std::uint64_t kSeed = 1;  ///< the same views always give the same pose
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr int kBorder_px = 32;  ///< nearer to the border there are no features
+constexpr int kBorder_px = 32;      ///< nearer to the border there are no features
 
 StereoPixel pixel_of(const Feature& feature) {
     return feature.pixel_px.cast<double>();
@@ -79,8 +78,8 @@ int find_at(const ComparisonConfig& config,
 int part_of(const ComparisonConfig& config,
             const camera::RectifiedRig& rig,
             const StereoPixel& pixel) {
-    const int u = std::clamp(saturated_integer<int>(pixel.x()), 0, rig.width - 1);
-    const int v = std::clamp(saturated_integer<int>(pixel.y()), 0, rig.height - 1);
+    const int u = clamped_integer<int>(pixel.x(), 0, rig.width - 1);
+    const int v = clamped_integer<int>(pixel.y(), 0, rig.height - 1);
     const int column = u * config.part_columns / rig.width;
     const int row = v * config.part_rows / rig.height;
     return row * config.part_columns + column;

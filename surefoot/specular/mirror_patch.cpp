@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::specular {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kCut = 2.5F;  ///< standard deviations
 /// One standard deviation over the mean of absolute values, of a normal distribution.
 constexpr float kSigmaOfMean = 1.2533F;
@@ -23,14 +23,14 @@ bool is_known(float value) {
 
 /// Of inner cells with four known neighbours; others unknown.
 void laplacian(const Image<float>& grey, Image<float>& out) {
-    std::fill_n(out.row(0), grey.width(), kUnknown);
-    std::fill_n(out.row(grey.height() - 1), grey.width(), kUnknown);
+    std::fill_n(out.row(0), grey.width(), kNanF);
+    std::fill_n(out.row(grey.height() - 1), grey.width(), kNanF);
     for (int i = 1; i + 1 < grey.height(); ++i) {
         const float* before = grey.row(i - 1);
         const float* here = grey.row(i);
         const float* after = grey.row(i + 1);
         float* to = out.row(i);
-        to[0] = to[grey.width() - 1] = kUnknown;
+        to[0] = to[grey.width() - 1] = kNanF;
         for (int c = 1; c + 1 < grey.width(); ++c)
             to[c] = 4.0F * here[c] - before[c] - after[c] - here[c - 1] - here[c + 1];
     }
@@ -42,7 +42,7 @@ struct Strength {
 
     /// One standard deviation; NaN where too little is known.
     [[nodiscard]] float sigma() const {
-        return known >= kLeastInTile && sum > 0.0F ? kSigmaOfMean * sum / known : kUnknown;
+        return known >= kLeastInTile && sum > 0.0F ? kSigmaOfMean * sum / known : kNanF;
     }
 };
 
@@ -200,7 +200,7 @@ void MirrorPatch::sample(const grid::GridGeometry& geometry,
             const float side = static_cast<float>(c) - 0.5F * (kLineCells - 1);
             const float x = middle.x() + ahead * cosine - side * sine;
             const float y = middle.y() + ahead * sine + side * cosine;
-            to[c] = kUnknown;
+            to[c] = kNanF;
             if (!(x >= 0.0F && y >= 0.0F && x < last_x && y < last_y)) continue;
             const int ix = static_cast<int>(x);  // in range: inside the picture
             const int iy = static_cast<int>(y);  // in range: inside the picture

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::specular {
 namespace {
@@ -61,12 +62,6 @@ double raw_score(const Total& total, double mean_square, int least_pairs) {
     if (total.pairs < least_pairs) return kNone;
     return static_cast<double>(total.sum) /
            (mean_square * std::sqrt(static_cast<double>(total.pairs)));
-}
-
-double median_of(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// By how much each score exceeds the mean of those 3 to 10 lines beside it; the larger of that and
@@ -138,7 +133,7 @@ PatchLine MirrorScan::rated(PatchLine line, int first, int last, double raw) {
     }
     if (noise_.size() < kLeastBeside) return line;
     const double highest = *std::max_element(noise_.begin(), noise_.end());
-    const double median = median_of(noise_);
+    const double median = upper_median_in_place(noise_);
     double away = 0.0;
     for (const double score : noise_) away += std::abs(score - median);
     const double spread =

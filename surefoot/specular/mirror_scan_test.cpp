@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/specular/fake_floor_testing.hpp"
 #include "surefoot/specular/suspicion.hpp"
 
@@ -13,8 +13,6 @@ namespace surefoot::specular {
 namespace {
 
 using namespace testing;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A picture of the floor with 3 grey values of noise.
 struct Picture {

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/specular/suspicion.hpp"
 
 namespace surefoot::specular {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kAhead_m = 0.8;      ///< from the body to the middle of the patches
 constexpr int kAheadDirections = 41;  ///< within 20 deg of the heading
 /// Every direction comes up once in 180 turns, and neighbours far apart in time.

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "surefoot/core/allocations_testing.hpp"
+#include "surefoot/core/angles.hpp"
 #include "surefoot/specular/fake_floor_testing.hpp"
 
 namespace surefoot::specular {
@@ -14,7 +14,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kAngle_rad = 3.0 * kRadPerDeg;
 constexpr double kOffset_m = 1.6;
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stairs/terrain_testing.hpp"
 
 namespace surefoot::stairs {
@@ -20,7 +21,6 @@ using testing::kRadPerDeg;
 using testing::TestFlight;
 using testing::TestMap;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// An edge along the rows lies anywhere within its cells, half a cell from their middles at most;
 /// one that crosses them is known far better.
 constexpr double kAcross_m = 0.0131;
@@ -326,7 +326,7 @@ TEST(FeatureFinder, heights_of_8_bits_and_holes_are_no_trouble) {
     for (std::size_t i = 0; i < map.height_m.size(); ++i) {
         float& z_m = map.height_m.data()[i];
         z_m = std::round(z_m / 0.0049F) * 0.0049F;
-        if (rng.uniform() < 0.05) z_m = kNaN;
+        if (rng.uniform() < 0.05) z_m = kNanF;
     }
     const TerrainFeatures found = find(map.terrain());
     ASSERT_EQ(found.flights.size(), 1U);
@@ -344,7 +344,7 @@ TEST(FeatureFinder, nothing_sensible_gives_nothing) {
     const TestMap flat([](double, double) { return 0.4; }, 0.0, {0.0, 0.0});
     expect_nothing(flat.terrain(), "flat");
     TestMap unknown = flat;
-    unknown.height_m.fill(kNaN);
+    unknown.height_m.fill(kNanF);
     expect_nothing(unknown.terrain(), "unknown");
     TestMap broken = flat;
     broken.height_m.fill(std::numeric_limits<float>::infinity());
@@ -396,7 +396,7 @@ View view_from(const TestMap& map, double x_m, double yaw_rad) {
 TEST(FeatureFinder, ground_that_ends_in_sight_is_a_drop_whose_bottom_is_not_seen) {
     TestMap map([](double x_m, double) { return x_m < 1.5 ? 0.0 : -3.0; }, 0.6, {-0.8, -0.6});
     for (std::size_t i = 0; i < map.height_m.size(); ++i)
-        if (map.height_m.data()[i] < -1.0F) map.height_m.data()[i] = kNaN;
+        if (map.height_m.data()[i] < -1.0F) map.height_m.data()[i] = kNanF;
     Terrain terrain = map.terrain({0.0, 0.0});
     EXPECT_TRUE(find(terrain).drops.empty());  // who knows where the camera looked?
     terrain.view = view_from(map, 0.0, 0.6);

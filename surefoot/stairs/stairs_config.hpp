@@ -52,7 +52,7 @@ struct StairsConfig {
     DoorConfig doors;
     PatchConfig patches;
     ClassConfig classes;
-    TrackingConfig update;
+    TrackingConfig tracking;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.

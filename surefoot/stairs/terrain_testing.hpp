@@ -5,14 +5,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
 namespace surefoot::stairs::testing {
-
-inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Height of the ground at a place of the world; NaN where there is none.
 using Ground = std::function<double(double x_m, double y_m)>;

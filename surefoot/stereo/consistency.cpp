@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/match_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 #include "surefoot/stereo/row_runs.hpp"
@@ -14,7 +15,6 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 static_assert(kFarthest_px == rows::kFarthest_px);
 constexpr float kSteepestGround = 0.4F;
 constexpr int kBlockColumns = 256;
@@ -29,7 +29,7 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
         if (std::isnan(d[u])) continue;
         const float x = right_pixel(u, d[u]);
         if (!(x >= 0.0F && x < static_cast<float>(width))) {
-            d[u] = kNan;
+            d[u] = kNanF;
             continue;
         }
         float& nearest = claim[static_cast<std::size_t>(x)];  // in range: as checked above
@@ -39,7 +39,7 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
         if (std::isnan(d[u])) continue;
         // in range: the loop above has made NaN of all others
         if (claim[static_cast<std::size_t>(right_pixel(u, d[u]))] > d[u] + tolerance_px)
-            d[u] = kNan;
+            d[u] = kNanF;
     }
 }
 

@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Image<float> row_image(const std::vector<float>& values) {
     Image<float> image(static_cast<int>(values.size()), 1);
@@ -35,7 +33,7 @@ TEST(DropHidden, NothingKnownStaysNothing) {
     Serial serial;
     Image<float> empty;
     drop_hidden(serial, 1.0, empty);
-    Image<float> unknown = row_image({kNan, kNan});
+    Image<float> unknown = row_image({kNanF, kNanF});
     drop_hidden(serial, 1.0, unknown);
     EXPECT_TRUE(known_columns(unknown).empty());
 }
@@ -43,14 +41,14 @@ TEST(DropHidden, NothingKnownStaysNothing) {
 TEST(DropHidden, ABackgroundPixelBehindANearerOneGoes) {
     Serial serial;
     // Column 6 with disparity 4 and column 4 with disparity 2 both claim right column 2.
-    Image<float> image = row_image({kNan, kNan, kNan, 2, 2, 2, 4, 4});
+    Image<float> image = row_image({kNanF, kNanF, kNanF, 2, 2, 2, 4, 4});
     drop_hidden(serial, 1.0, image);
     EXPECT_EQ(known_columns(image), (std::vector<int>{3, 6, 7}));
 }
 
 TEST(DropHidden, ASlantedSurfaceStays) {
     Serial serial;
-    Image<float> image = row_image({kNan, kNan, kNan, 2.0F, 2.6F, 3.2F, 3.8F, 4.4F});
+    Image<float> image = row_image({kNanF, kNanF, kNanF, 2.0F, 2.6F, 3.2F, 3.8F, 4.4F});
     drop_hidden(serial, 1.0, image);
     EXPECT_EQ(known_columns(image), (std::vector<int>{3, 4, 5, 6, 7}));
 }
@@ -74,7 +72,7 @@ TEST(MarkJumps, BothSidesOfAStepAndAcrossAHole) {
     EXPECT_EQ(jumps.at(2, 0), 255);
     EXPECT_EQ(jumps.at(3, 0), 255);
     EXPECT_EQ(jumps.at(0, 0), 0);
-    jumps = jumps_of(row_image({5, 5, kNan, kNan, 9, 9}));
+    jumps = jumps_of(row_image({5, 5, kNanF, kNanF, 9, 9}));
     EXPECT_EQ(jumps.at(1, 0), 255);
     EXPECT_EQ(jumps.at(4, 0), 255);
 }
@@ -95,7 +93,7 @@ TEST(MarkJumps, GroundAtAUsableAngleIsNone) {
     for (int v = 0; v < 30; ++v) {
         for (int u = 0; u < 30; ++u) floor.at(u, v) = 3.0F + 0.3F * static_cast<float>(v);
     }
-    floor.at(10, 10) = kNan;
+    floor.at(10, 10) = kNanF;
     const Image<std::uint8_t> jumps = jumps_of(floor);
     for (std::size_t i = 0; i < jumps.size(); ++i) EXPECT_EQ(jumps.data()[i], 0) << "pixel " << i;
 }
@@ -124,7 +122,7 @@ TEST(MarkJumps, FollowsTheRuleOnEveryProcessorAndThread) {
         for (std::size_t i = 0; i < in.size(); ++i) {
             if (rng.uniform() < 0.1) surface_px = static_cast<float>(rng.uniform(15.0, 25.0));
             surface_px += static_cast<float>(rng.uniform(-0.5, 0.5));
-            in.data()[i] = rng.uniform() < 0.3 ? kNan : surface_px;
+            in.data()[i] = rng.uniform() < 0.3 ? kNanF : surface_px;
         }
         Image<std::uint8_t> expected(width, height, 0);
         for (int v = 0; v < height; ++v) mark_line(in.row(v), expected.row(v), width, 1);
@@ -186,7 +184,7 @@ TEST(CountUnknown, CountsTheWindowInsideTheImage) {
     Rng rng(6);
     Image<float> image(37, 70, 1.0F);
     for (int n = 0; n < 600; ++n)
-        image.at(static_cast<int>(rng.below(37)), static_cast<int>(rng.below(70))) = kNan;
+        image.at(static_cast<int>(rng.below(37)), static_cast<int>(rng.below(70))) = kNanF;
     Serial serial;
     UnknownCounts counts;
     count_unknown(serial, image, kRadius, counts);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
@@ -83,9 +84,8 @@ TEST(Refine, InfinitelyFarIsNoDepth) {
 float selected_plainly(const SelectionConfig& config, const Winners& w, int u, int v) {
     const int d = w.disparity.at(u, v);
     const int cost = w.cost.at(u, v);
-    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    if (d == 0 || d > u) return kNan;
-    if (w.second_cost.at(u, v) * (100 - config.uniqueness_percent) < 100 * cost) return kNan;
+    if (d == 0 || d > u) return kNanF;
+    if (w.second_cost.at(u, v) * (100 - config.uniqueness_percent) < 100 * cost) return kNanF;
     int claimed = d;
     int cheapest = cost;
     for (int other = 0; other < w.cost.width(); ++other) {
@@ -96,7 +96,7 @@ float selected_plainly(const SelectionConfig& config, const Winners& w, int u, i
         claimed = its_d;
         cheapest = its_cost;
     }
-    if (std::abs(claimed - d) > config.left_right_px) return kNan;
+    if (std::abs(claimed - d) > config.left_right_px) return kNanF;
     const int below = w.cost_below.at(u, v);
     const int above = w.cost_above.at(u, v);
     const int curvature = below + above - 2 * cost;

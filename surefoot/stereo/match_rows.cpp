@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/columns-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,8 +20,6 @@ namespace surefoot::stereo::rows::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::uint64_t bits_of(hn::ScalableTag<float> d, hn::Mask<hn::ScalableTag<float>> mask) {
     std::uint8_t bytes[8] = {};
@@ -44,7 +42,7 @@ void link_row(const float* disparity_px,
     for (int u = 0; u < width; u += kWord) {
         const float* from = disparity_px + u;
         if (u + kWord >= width) {
-            std::fill(std::copy(from, disparity_px + width, rest), rest + kWord + 1, kNan);
+            std::fill(std::copy(from, disparity_px + width, rest), rest + kWord + 1, kNanF);
             from = rest;
         }
         std::uint64_t known_bits = 0;
@@ -103,7 +101,7 @@ HWY_INLINE void median_here(
     const auto middles = middle_of(at(middle, 0), at(middle, 1), at(middle, 2));
     const auto highs = hn::Min(hn::Min(at(high, 0), at(high, 1)), at(high, 2));
     const auto median = middle_of(lows, middles, highs);
-    hn::StoreU(hn::IfThenElse(hn::Gt(median, hn::Zero(d)), median, hn::Set(d, kNan)), d, out);
+    hn::StoreU(hn::IfThenElse(hn::Gt(median, hn::Zero(d)), median, hn::Set(d, kNanF)), d, out);
 }
 
 void median_row(const float* const lines[3], int width, float* scratch, float* out) {
@@ -157,7 +155,7 @@ void select_row(const SelectionRow& row) {
         const int divisor = curved ? 2 * curvature : 1;
         const int dividend = curved ? below - above : 0;
         const float vertex = static_cast<float>(dividend) / static_cast<float>(divisor);
-        out[u] = good ? static_cast<float>(d) + vertex : kNan;
+        out[u] = good ? static_cast<float>(d) + vertex : kNanF;
     }
 }
 

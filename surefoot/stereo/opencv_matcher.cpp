@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/clipped.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/finisher.hpp"
@@ -13,7 +13,6 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// OpenCV's disparities are integers in sixteenths of a pixel.
 constexpr float kPixelPerStep = 1.0F / 16.0F;
 constexpr int kSgbmPrefilterCap = 63;
@@ -68,7 +67,7 @@ class OpenCvMatcher final : public Matcher {
                 float* const d = disparity_px.row(v);
                 for (int u = 0; u < disparity_px.width(); ++u) {
                     // 0 would be infinitely far away, below it stands "no match".
-                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNan;
+                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNanF;
                 }
             }
         });

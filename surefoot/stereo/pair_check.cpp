@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/stereo/window_shift.hpp"
 
 namespace surefoot::stereo {
@@ -26,12 +27,6 @@ cv::Mat as_mat(ImageView<const std::uint8_t> image) {
             CV_8UC1,
             const_cast<std::uint8_t*>(image.data),
             static_cast<std::size_t>(image.stride)};
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// Where a corner went, in whole pixels: the best normalised correlation.
@@ -107,8 +102,8 @@ PairCheck check_pair(ImageView<const std::uint8_t> left,
         absolute_px.push_back(std::abs(corner.rows_px));
         check.backward += corner.columns_px > 1.0 ? 1 : 0;
     }
-    check.row_offset_px = median(std::move(rows_px));
-    check.row_error_px = median(std::move(absolute_px));
+    check.row_offset_px = upper_median(std::move(rows_px));
+    check.row_error_px = upper_median(std::move(absolute_px));
     return check;
 }
 

@@ -6,20 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stereo/scene_testing.hpp"
 #include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const test::SyntheticPair& plane() {
     static const test::SyntheticPair pair = [] {
@@ -90,7 +88,7 @@ Errors errors_of(const Image<float>& disparity_px, const Image<float>& truth_px)
 
 std::vector<float> smoothed(const std::vector<float>& row) {
     constexpr int kRadius = 4;
-    std::vector<float> padded(row.size() + 2 * kRadius, kNan);
+    std::vector<float> padded(row.size() + 2 * kRadius, kNanF);
     std::copy(row.begin(), row.end(), padded.begin() + kRadius);
     std::vector<float> out(row.size());
     smooth_along(padded.data() + kRadius, static_cast<int>(row.size()), kRadius, 1.5, out.data());
@@ -106,7 +104,7 @@ TEST(SmoothAlong, KeepsASlantedPlane) {
 TEST(SmoothAlong, DoesNotMixSurfacesAndKeepsTheUnknownUnknown) {
     std::vector<float> row(12, 5.0F);
     std::fill(row.begin() + 6, row.end(), 9.0F);
-    row[3] = kNan;
+    row[3] = kNanF;
     const std::vector<float> out = smoothed(row);
     for (std::size_t u = 0; u < row.size(); ++u) {
         if (u == 3) {
@@ -155,7 +153,7 @@ TEST(SmoothDown, DoesNotMoveEdgesAndKeepsTheUnknownUnknown) {
     EXPECT_FLOAT_EQ(out[5], 5.0F + 4.0F / 9.0F) << "rows 3 to 11 as seen from row 5";
     EXPECT_FLOAT_EQ(out[7], 6.0F - 2.0F / 9.0F) << "rows 5 to 13";
     std::fill(step.begin() + 7, step.end(), 9.0F);
-    step[3] = kNan;
+    step[3] = kNanF;
     out = smoothed_down(step, 2);
     for (std::size_t v = 0; v < step.size(); ++v) {
         if (v == 3)
@@ -225,7 +223,7 @@ TEST(SubpixelRefiner, UnknownStaysUnknownEvenInTinyImages) {
     Serial serial;
     for (const int side : {1, 2, 7}) {
         const GreyImage grey(side, side, 90);
-        const Refined refined = refine(grey, grey, Image<float>(side, side, kNan), serial);
+        const Refined refined = refine(grey, grey, Image<float>(side, side, kNanF), serial);
         EXPECT_TRUE(std::isnan(refined.disparity_px.at(0, 0)));
         EXPECT_TRUE(std::isnan(refined.shift_px.at(0, 0)));
     }
@@ -254,7 +252,7 @@ class PlainRefinement {
         float disparity_px, residual_grey, gradient_grey_px, shift_px;
     };
     [[nodiscard]] Pixel solved(int u, int v) const {
-        if (std::isnan(found_px_.at(u, v))) return {kNan, kNan, kNan, kNan};
+        if (std::isnan(found_px_.at(u, v))) return {kNanF, kNanF, kNanF, kNanF};
         const Sums sums = sum_around(u, v);
         const int side = 2 * config_.window_radius_px + 1;
         const auto n = static_cast<float>(sums.n);
@@ -392,7 +390,7 @@ struct WildPair {
                 static_cast<std::uint8_t>(std::clamp(grey + 9.0 * rng.normal(), 0.0, 255.0));
             if (rng.uniform() < 0.02) surface_px = static_cast<float>(rng.uniform(1.0, 15.0));
             const float scatter_px = static_cast<float>(0.4 * rng.normal());
-            found_px.data()[i] = rng.uniform() < 0.1 ? kNan : surface_px + scatter_px;
+            found_px.data()[i] = rng.uniform() < 0.1 ? kNanF : surface_px + scatter_px;
             jump_distance_px.data()[i] =
                 static_cast<std::uint8_t>(rng.uniform() < 0.5 ? 255.0 : rng.uniform(0.0, 15.0));
         }

@@ -4,8 +4,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "surefoot/core/angles.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -21,9 +23,7 @@ constexpr double kLeastSigma_px = 0.02;
 
 double median_abs(std::vector<double> values) {
     for (double& value : values) value = std::abs(value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 struct Row {
@@ -93,7 +93,6 @@ std::optional<RigSelfCalibration> estimate_self_calibration(const SelfCalibratio
         }
         parameters = information.ldlt().solve(gradient);
     }
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     if (!parameters.allFinite() || parameters.head<2>().norm() > config.max_turn_deg * kRadPerDeg ||
         std::abs(parameters[2]) > config.max_focal_share) {
         return std::nullopt;

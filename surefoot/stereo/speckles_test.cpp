@@ -4,16 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::stereo {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// The definition: flood from every pixel, count, drop.
 Image<float> flooded(const Image<float>& in, int min_size, double same_px) {
@@ -36,7 +34,7 @@ Image<float> flooded(const Image<float>& in, int min_size, double same_px) {
                 }
             }
             if (static_cast<int>(island.size()) >= min_size) continue;
-            for (const auto& [u, v] : island) out.at(u, v) = kNan;
+            for (const auto& [u, v] : island) out.at(u, v) = kNanF;
         }
     }
     return out;
@@ -54,8 +52,9 @@ TEST(SpeckleFilter, IsTheFloodFillForEveryExecutor) {
                            1 + static_cast<int>(rng.uniform(0.0, 140.0)));
         for (std::size_t i = 0; i < image.size(); ++i) {
             const double luck = rng.uniform();
-            image.data()[i] =
-                luck < 0.25 ? kNan : static_cast<float>(luck < 0.6 ? 10.0 : rng.uniform(8.0, 14.0));
+            image.data()[i] = luck < 0.25
+                                  ? kNanF
+                                  : static_cast<float>(luck < 0.6 ? 10.0 : rng.uniform(8.0, 14.0));
         }
         const Image<float> expected = flooded(image, 12, 1.0);
         filter.remove(*executors[seed % 3], 12, 1.0, image);
@@ -76,7 +75,7 @@ TEST(SpeckleFilter, JoinsOverTheBordersOfBands) {
     constexpr int kWidth = 9;
     constexpr int kHeight = 100;
     for (const int min_size : {kHeight, kHeight + 1}) {
-        Image<float> image(kWidth, kHeight, kNan);
+        Image<float> image(kWidth, kHeight, kNanF);
         for (int v = 0; v < kHeight; ++v) image.at(4, v) = 10.0F;
         Backwards backwards;
         SpeckleFilter().remove(backwards, min_size, 1.0, image);
@@ -89,7 +88,7 @@ TEST(SpeckleFilter, NothingInNothingOut) {
     SpeckleFilter filter;
     Image<float> empty;
     filter.remove(serial(), 10, 1.0, empty);
-    Image<float> unknown(5, 4, kNan);
+    Image<float> unknown(5, 4, kNanF);
     filter.remove(serial(), 10, 1.0, unknown);
     EXPECT_TRUE(std::isnan(unknown.at(2, 2)));
 }

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr TraversabilityConfig::Weights kEqual{1.0, 1.0, 1.0};
 constexpr float kRounding = 1e-7F;
 
@@ -44,11 +44,11 @@ TEST(Combine, MeanIsUnknownIfAnyLayerIs) {
     for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(std::isnan(combined(Combine::mean_nan,
                                         kEqual,
-                                        i == 0 ? kNaN : 0.0F,
-                                        i == 1 ? kNaN : 0.0F,
-                                        i == 2 ? kNaN : 0.0F)));
+                                        i == 0 ? kNanF : 0.0F,
+                                        i == 1 ? kNanF : 0.0F,
+                                        i == 2 ? kNanF : 0.0F)));
     }
-    EXPECT_TRUE(std::isnan(combined(Combine::mean_nan, {1.0, 1.0, 0.0}, 1.0F, 1.0F, kNaN)))
+    EXPECT_TRUE(std::isnan(combined(Combine::mean_nan, {1.0, 1.0, 0.0}, 1.0F, 1.0F, kNanF)))
         << "a weight of 0 makes no unknown cell known";
 }
 
@@ -58,8 +58,8 @@ TEST(Combine, MeanOnlyLosesTheShareOfAZero) {
 
 TEST(Combine, ZeroDominatesAlsoOverUnknown) {
     EXPECT_EQ(combined(Combine::zero_dominates, kEqual, 1.0F, 0.0F, 1.0F), 0.0F);
-    EXPECT_EQ(combined(Combine::zero_dominates, kEqual, kNaN, 0.0F, kNaN), 0.0F);
-    EXPECT_TRUE(std::isnan(combined(Combine::zero_dominates, kEqual, kNaN, 1.0F, 1.0F)));
+    EXPECT_EQ(combined(Combine::zero_dominates, kEqual, kNanF, 0.0F, kNanF), 0.0F);
+    EXPECT_TRUE(std::isnan(combined(Combine::zero_dominates, kEqual, kNanF, 1.0F, 1.0F)));
 }
 
 TEST(Combine, LayerWithoutWeightForcesNoZero) {

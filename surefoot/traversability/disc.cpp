@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::traversability {
 namespace {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 double limit_cells2(double radius_m, double resolution_m) noexcept {
     const double radius_cells = radius_m / resolution_m;
@@ -36,8 +34,8 @@ void PaddedLayer::reset(const CellRect& rect, int margin) {
     for (int row = 0; row < cells_.height(); ++row) {
         float* const cells = cells_.row(row);
         const bool padding = row < margin || row >= above;
-        std::fill_n(cells, padding ? width : margin, kUnknown);
-        std::fill(cells + margin + rect.nx, cells + width, kUnknown);
+        std::fill_n(cells, padding ? width : margin, kNanF);
+        std::fill(cells + margin + rect.nx, cells + width, kNanF);
     }
 }
 
@@ -46,7 +44,7 @@ void PaddedLayer::load(ImageView<const float> source, const CellRect& rect) {
         const float* from = source.row(iy) + rect.ix0;
         float* to = cell(rect.ix0, iy);
         for (int i = 0; i < rect.nx; ++i) {
-            to[i] = std::isfinite(from[i]) ? from[i] : kUnknown;
+            to[i] = std::isfinite(from[i]) ? from[i] : kNanF;
         }
     }
 }

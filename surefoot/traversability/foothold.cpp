@@ -8,13 +8,13 @@
 #include <numbers>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/traversability/disc.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 /// In the memory of `widths`: asked for in every frame.
@@ -30,7 +30,7 @@ int reach_of(const std::vector<int>& half_widths) {
 }
 
 float at_or_nan(ImageView<const float> layer, int ix, int iy) {
-    return layer.empty() ? kNan : layer.at(ix, iy);
+    return layer.empty() ? kNanF : layer.at(ix, iy);
 }
 
 double variance_of(const FootholdGround& ground, int ix, int iy) {
@@ -206,7 +206,7 @@ void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
         const auto mean_m = static_cast<float>(z_m / cells);
         const auto doubt_m =
             static_cast<float>(config_.sigma_factor * std::sqrt(var_m2 / cells * per_error));
-        patch_m_.at(ix, iy) = known ? mean_m : kNan;
+        patch_m_.at(ix, iy) = known ? mean_m : kNanF;
         patch_doubt_m_.at(ix, iy) = doubt_m;
         patch_high_.row(iy)[ix] = known ? mean_m + doubt_m : kNothing;
         patch_low_.row(iy)[ix] = known ? -(mean_m - doubt_m) : kNothing;

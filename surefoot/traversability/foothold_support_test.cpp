@@ -9,17 +9,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/convex_area.hpp"
 #include "surefoot/traversability/foothold.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kCell_m = 0.025;
 constexpr int kSide = 64;
 constexpr double kFootLength_m = 0.366;  ///< of the REX
@@ -53,7 +52,7 @@ struct Ground {
                     z += edge_m;
                 if (std::hypot(ix - bump_x, iy - bump_y) < 4.0) z += bump_m;
                 const bool hole = rng.uniform() < 1e-4;
-                height_m.at(ix, iy) = hole ? kNan : static_cast<float>(z + noise_m * rng.normal());
+                height_m.at(ix, iy) = hole ? kNanF : static_cast<float>(z + noise_m * rng.normal());
             }
         }
     }

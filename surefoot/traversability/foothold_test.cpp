@@ -7,16 +7,15 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kCell_m = 0.025;
 constexpr int kSide = 60;
 
@@ -24,8 +23,8 @@ constexpr int kSide = 60;
 struct Map {
     Image<float> height_m{kSide, kSide, 0.0F};
     Image<float> var_m2{kSide, kSide, 0.0F};
-    Image<float> clearance_m{kSide, kSide, kNan};
-    Image<float> free_above_m{kSide, kSide, kNan};
+    Image<float> clearance_m{kSide, kSide, kNanF};
+    Image<float> free_above_m{kSide, kSide, kNanF};
     Image<float> reach_m{kSide, kSide, 0.0F};
     Image<std::uint32_t> looks{kSide, kSide, 2U};
 
@@ -45,7 +44,7 @@ struct Map {
     }
     void forget_from(int column) {
         for (int iy = 0; iy < kSide; ++iy)
-            for (int ix = column; ix < kSide; ++ix) height_m.at(ix, iy) = kNan;
+            for (int ix = column; ix < kSide; ++ix) height_m.at(ix, iy) = kNanF;
     }
 };
 
@@ -251,7 +250,7 @@ TEST(Foothold, FloorIsSafeAsFarAsAllOfItIsKnown) {
         EXPECT_EQ(holds.at(kSide / 2, i), known ? Foothold::safe : Foothold::unknown) << i;
     }
     Map hole([](int) { return 0.0; });
-    hole.height_m.at(30, 30) = kNan;
+    hole.height_m.at(30, 30) = kNanF;
     EXPECT_EQ(found(hole).at(30, 30 + 13), Foothold::unknown);
     EXPECT_EQ(found(hole).at(30, 30 + 14), Foothold::safe);
 }
@@ -388,7 +387,7 @@ TEST(Foothold, UnderLessThanASquareOfWhatHangsNothingIsSure) {
     EXPECT_EQ(found(floor).at(30, 30), Foothold::low);
     FootholdConfig strict = narrow();
     strict.overhead_side_m = 0.0;
-    floor.clearance_m.at(31, 30) = kNan;
+    floor.clearance_m.at(31, 30) = kNanF;
     EXPECT_EQ(found(floor, strict).at(30, 30), Foothold::low);
     EXPECT_EQ(found(floor, strict).at(30 - 14, 30), Foothold::safe);
 }
@@ -405,7 +404,7 @@ TEST(Foothold, ADropThatOneLookAloneSawIsUnsure) {
 
 TEST(Foothold, ATableTopIsFlatAndOutOfReach) {
     Map floor([](int) { return 0.0; });
-    floor.reach_m.at(30, 30) = kNan;
+    floor.reach_m.at(30, 30) = kNanF;
     EXPECT_EQ(found(floor).at(30, 30), Foothold::unreachable);
     EXPECT_EQ(found(floor).at(31, 30), Foothold::safe);
 }
@@ -422,13 +421,13 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
             for (int ix = 0; ix < kSide; ++ix) {
                 const double z = 3.0 + slope * ix * kCell_m - (ix + iy > 70 ? step_m : 0.0) +
                                  noise_m * rng.normal();
-                map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNan : static_cast<float>(z);
+                map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNanF : static_cast<float>(z);
                 map.var_m2.at(ix, iy) = static_cast<float>(1.5 * noise_m * noise_m * rng.uniform());
                 // Alone, or in a row of six.
                 if (rng.uniform() < 1e-4)
                     for (int i = 0; i < (seed % 2 == 0 ? 1 : 6); ++i)
                         map.clearance_m.at(std::min(ix + i, kSide - 1), iy) = 1.0F;
-                if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNan;
+                if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNanF;
                 if (rng.uniform() < 0.2) map.looks.at(ix, iy) = 1;
                 if (rng.uniform() < 0.5)
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());

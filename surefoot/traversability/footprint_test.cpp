@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/grid/convex_area.hpp"
 
 namespace surefoot::traversability {
@@ -23,7 +24,6 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kResolution_m = 0.025;
 const Points kFoot{{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}};
@@ -44,7 +44,7 @@ struct Ground {
 
 /// What is not finite is unknown.
 float unknown_value(Rng& rng) {
-    constexpr float kValues[] = {kNan, kNan, kNan, HUGE_VALF, -HUGE_VALF};
+    constexpr float kValues[] = {kNanF, kNanF, kNanF, HUGE_VALF, -HUGE_VALF};
     return kValues[rng.below(5)];
 }
 
@@ -508,7 +508,7 @@ TEST(Footprint, unknown_ground_is_unsafe_and_a_shape_outside_is_so_under_every_p
     EXPECT_EQ(known.unknown_share(), 0.0);
     EXPECT_TRUE(is_traversable(known, 0.8));
 
-    ground.rating.at(40, 40) = kNan;
+    ground.rating.at(40, 40) = kNanF;
     const FootprintReport hole = query(foot, {}, ground.layers());
     EXPECT_EQ(hole.unknown, 1);
     EXPECT_EQ(hole.unknown_share(), 1.0 / 128.0);
@@ -516,7 +516,7 @@ TEST(Footprint, unknown_ground_is_unsafe_and_a_shape_outside_is_so_under_every_p
     EXPECT_TRUE(is_traversable(hole, 0.8, UnknownPolicy::ignored));
 
     ground.rating.at(40, 40) = 1.0F;
-    ground.height_m.at(40, 40) = kNan;
+    ground.height_m.at(40, 40) = kNanF;
     EXPECT_FALSE(is_traversable(query(foot, {}, ground.layers()), 0.8));
     FootprintLayers without_heights = ground.layers();
     without_heights.height_m = {};
@@ -529,7 +529,7 @@ TEST(Footprint, unknown_ground_is_unsafe_and_a_shape_outside_is_so_under_every_p
     EXPECT_FALSE(is_traversable(half, 0.8));
     EXPECT_TRUE(is_traversable(half, 0.8, UnknownPolicy::ignored));
 
-    ground.rating.fill(kNan);
+    ground.rating.fill(kNanF);
     const FootprintReport unknown = query(foot, {}, ground.layers());
     const FootprintReport beyond = query(foot, {3.0, 0.0, 0.0}, Ground().layers());
     EXPECT_EQ(beyond.outcome, FootprintOutcome::outside_map);

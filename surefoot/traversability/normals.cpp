@@ -2,14 +2,12 @@
 #include "surefoot/traversability/normals.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/geometry/symmetric3.hpp"
 
 namespace surefoot::traversability {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Sums over the known cells of a disc, in metres from the centre cell and its height: all terms
 /// are of the size of the disc, so the subtraction of the mean loses nothing.
@@ -53,7 +51,7 @@ Moments moments(const float* center, const Disc& disc) noexcept {
 }
 
 Eigen::Vector3d normal_at(const float* center, const Disc& disc) noexcept {
-    if (std::isnan(*center) || disc.cells.size() < 2) return Eigen::Vector3d::Constant(kNaN);
+    if (std::isnan(*center) || disc.cells.size() < 2) return Eigen::Vector3d::Constant(kNan);
     const Moments sum = moments(center, disc);
     if (sum.n < 3.0) return Eigen::Vector3d::UnitZ();
     const geometry::SmallestAxis axis = geometry::smallest_axis(sum.covariance_m2());

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kHighest = std::numeric_limits<float>::max();  ///< of what is finite
 constexpr float kGateSigmas = 3.4F;                            ///< GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
@@ -212,8 +212,8 @@ void RatingConfidence::find_patches(const Input& input, int iy, ConfidenceLayers
         const float sigma_m = std::sqrt(variance_m2[ix] / (n * k));
         const bool unknown = !(std::abs(height_m[ix]) <= kHighest);
         const float flag = kGateSigmas * sigma_m > step_m ? 1.0F : 0.0F;
-        smallest_m[ix] = unknown ? kNaN : kGateSigmas * sigma_m;
-        hidden[ix] = unknown ? kNaN : flag;
+        smallest_m[ix] = unknown ? kNanF : kGateSigmas * sigma_m;
+        hidden[ix] = unknown ? kNanF : flag;
     }
 }
 
@@ -291,7 +291,7 @@ void RatingConfidence::find_confidence(const TraversabilityLayers& rating,
         const float half = rest < 0.5F ? right : 0.5F;
         const float by_zero = margin < 0.0F ? right : half;
         const float known = sum[ix] > 0.0F ? right : by_zero;
-        confidence[ix] = sum[ix] >= 0.0F ? known : kNaN;
+        confidence[ix] = sum[ix] >= 0.0F ? known : kNanF;
     }
 }
 

@@ -10,11 +10,11 @@
 #include <string>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kResolution_m = 0.025;
 
 double plain_cdf(double z) {
@@ -188,7 +188,7 @@ TEST(RatingConfidence, IsWhatTheDefinitionSays) {
         for (std::size_t i = 0; i < map.size(); ++i) {
             var_m2.data()[i] = static_cast<float>(std::pow(sigma_m * rng.uniform(0.5, 1.5), 2));
             if (rng.uniform() < 0.002) var_m2.data()[i] = std::numeric_limits<float>::infinity();
-            if (rng.uniform() < 0.1) map.data()[i] = kNaN;
+            if (rng.uniform() < 0.1) map.data()[i] = kNanF;
         }
         const Rated rated = rate(config, map, var_m2);
         const Plain plain(config, map, var_m2, rated);
@@ -337,7 +337,7 @@ TEST(RatingConfidence, NormalDistributionIsThatOfTheLibrary) {
     }
     EXPECT_EQ(normal_cdf(40.0F), 1.0F);
     EXPECT_LT(normal_cdf(-40.0F), 2e-9F);
-    EXPECT_TRUE(std::isnan(normal_cdf(kNaN)));
+    EXPECT_TRUE(std::isnan(normal_cdf(kNanF)));
 }
 
 }  // namespace

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// So far below all heights that no step leads there.
 constexpr std::int32_t kUnknown = -1'000'000'000;
 constexpr std::int32_t kNobody = -1;
@@ -110,9 +109,7 @@ void Reachability::gather(const grid::GridGeometry& geometry,
     stance_.clear();
     const Eigen::Vector2d middle = (body_m - geometry.origin_m) / geometry.resolution_m;
     const double reach = radius_m / geometry.resolution_m + 1.0;
-    const auto clamped = [](double at, int n) {
-        return std::clamp(saturated_integer<int>(at), 0, n);
-    };
+    const auto clamped = [](double at, int n) { return clamped_integer<int>(at, 0, n); };
     const int last_ix = clamped(middle.x() + reach, nx_);
     const int last_iy = clamped(middle.y() + reach, ny_);
     for (int iy = clamped(middle.y() - reach, ny_); iy < last_iy; ++iy) {
@@ -198,8 +195,8 @@ void Reachability::write(grid::Layer& reach_step_m) const {
         const Cell* from = cells_.data() + index(0, iy);
         float* to = reach_step_m.row(iy);
         for (int ix = 0; ix < nx_; ++ix) {
-            to[ix] =
-                from[ix].step > max_step_ ? kNaN : static_cast<float>(from[ix].step / kTenthMmPerM);
+            to[ix] = from[ix].step > max_step_ ? kNanF
+                                               : static_cast<float>(from[ix].step / kTenthMmPerM);
         }
     }
 }

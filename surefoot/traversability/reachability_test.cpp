@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kResolution_m = 0.025;
 
 grid::GridGeometry geometry_of(const grid::Layer& map) {
@@ -125,7 +125,7 @@ grid::Layer random_map(Rng& rng) {
         level_m.data()[i] = static_cast<float>(rng.uniform(-rise_m, rise_m));
     for (int iy = 0; iy < map.height(); ++iy)
         for (int ix = 0; ix < map.width(); ++ix)
-            map.at(ix, iy) = rng.uniform() < holes ? kNaN
+            map.at(ix, iy) = rng.uniform() < holes ? kNanF
                                                    : level_m.at(ix / tile, iy / tile) +
                                                          static_cast<float>(noise_m * rng.normal());
     return map;
@@ -183,19 +183,19 @@ TEST(Reachability, TheWayRoundCountsWhenItsStepsAreLower) {
     for (int i = 0; i < 6; ++i) put(map, 14 + i, 38, 1, 3, 0.02F * static_cast<float>(i + 1));
     const grid::Layer out = reach({}, map, at(map, 8, 8));
     EXPECT_FLOAT_EQ(out.at(21, 2), 0.02F);
-    put(map, 20, 38, 1, 3, kNaN);  // the ramp's head is not known
+    put(map, 20, 38, 1, 3, kNanF);  // the ramp's head is not known
     const grid::Layer cut = reach({}, map, at(map, 8, 8));
     EXPECT_FLOAT_EQ(cut.at(21, 2), 0.12F);
 }
 
 TEST(Reachability, NoGapIsBridgedAndCornersDoNotTouch) {
     grid::Layer map(60, 40, 0.0F);
-    put(map, 30, 0, 1, 40, kNaN);
+    put(map, 30, 0, 1, 40, kNanF);
     const grid::Layer out = reach({}, map, at(map, 10, 20));
     EXPECT_EQ(out.at(29, 20), 0.0F);
     EXPECT_TRUE(std::isnan(out.at(30, 20)));
     EXPECT_TRUE(std::isnan(out.at(31, 20)));
-    grid::Layer corner(60, 40, kNaN);
+    grid::Layer corner(60, 40, kNanF);
     put(corner, 0, 0, 30, 20, 0.0F);
     put(corner, 30, 20, 30, 20, 0.0F);
     EXPECT_TRUE(std::isnan(reach({}, corner, at(corner, 10, 10)).at(30, 20)));
@@ -222,7 +222,7 @@ TEST(Reachability, StandsOnTheFloorUnderATableOnTheLandingBesideAPit) {
 }
 
 TEST(Reachability, LooksFartherWhenTheGroundAtTheFeetIsNotInView) {
-    grid::Layer map(120, 120, kNaN);
+    grid::Layer map(120, 120, kNanF);
     put(map, 80, 40, 40, 40, 0.0F);
     put(map, 80, 55, 4, 10, 0.7F);  // the edge of a table comes first
     Stance stance;
@@ -234,7 +234,7 @@ TEST(Reachability, LooksFartherWhenTheGroundAtTheFeetIsNotInView) {
 }
 
 TEST(Reachability, SaysNothingWithoutGroundOrPlace) {
-    const grid::Layer unknown(20, 20, kNaN);
+    const grid::Layer unknown(20, 20, kNanF);
     Stance stance;
     const grid::Layer nothing = reach({}, unknown, at(unknown, 10, 10), &stance);
     EXPECT_EQ(stance.cells, 0);

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 float step_height_at(const float* center, const Disc& disc) noexcept {
-    if (std::isnan(*center) || disc.cells.size() < 2) return kNaN;
+    if (std::isnan(*center) || disc.cells.size() < 2) return kNanF;
     float lowest = *center;
     float highest = *center;
     for (const DiscCell& cell : disc.cells) {
@@ -33,7 +32,7 @@ float step_rating(const TraversabilityConfig::Step& config,
         if (step_m > highest) highest = step_m;
         if (static_cast<double>(step_m) > config.critical_m) ++critical;
     }
-    if (highest < 0.0F) return kNaN;
+    if (highest < 0.0F) return kNanF;
     const double max_m = static_cast<double>(highest);
     const double step_m =
         std::min(max_m, critical / static_cast<double>(config.critical_cells) * max_m);

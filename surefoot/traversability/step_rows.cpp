@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/traversability/step_rows.hpp"
 
+#include "surefoot/core/unknown.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/traversability/step_rows.cpp"
 #include <hwy/cache_control.h>
@@ -45,7 +47,6 @@ using Floats = hn::VFromD<decltype(kFloats)>;
 /// Columns by which the memory of later stripes is asked for: down a stripe every row is another
 /// page, which no processor foresees, and maps wider than a cache would wait for each of them.
 constexpr int kAhead = 32;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Two figures of a run in each lane.
@@ -157,7 +158,7 @@ void step_heights_block(const PaddedLayer& height_m,
         const auto finish = [&](int iy, const Pair& range) {
             const auto unknown = hn::IsNaN(hn::LoadU(kFloats, height_m.cell(ix, iy)));
             const Floats step_m =
-                hn::IfThenElse(unknown, hn::Set(kFloats, kNan), hn::Sub(range.b, range.a));
+                hn::IfThenElse(unknown, hn::Set(kFloats, kNanF), hn::Sub(range.b, range.a));
             hwy::Prefetch(step_height_m.cell(ix, iy) + kAhead);
             store_some(step_m, end - ix, step_height_m.cell(ix, iy));
         };
@@ -176,7 +177,7 @@ HWY_INLINE Floats rating(const RatingConstants& k, const Pair& critical) {
     const Floats positive = hn::Max(passable, hn::Set(kFloats, std::numeric_limits<float>::min()));
     const auto below = hn::Lt(step_m, hn::Set(kFloats, k.smallest_above));
     const auto known = hn::Ge(highest, hn::Zero(kFloats));
-    return hn::IfThenElse(known, hn::IfThenElseZero(below, positive), hn::Set(kFloats, kNan));
+    return hn::IfThenElse(known, hn::IfThenElseZero(below, positive), hn::Set(kFloats, kNanF));
 }
 
 void rate_step_block(const RatingConstants& constants,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -16,7 +17,6 @@ namespace surefoot::traversability {
 namespace {
 
 constexpr double kResolution_m = 0.025;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr int kSide = 21;
 constexpr int kMiddle = kSide / 2;
@@ -64,7 +64,7 @@ TEST(TraversabilityBadInput, OneHeightBeyondAllBoundsIsNeverTraversableNorBeside
 
 TEST(TraversabilityBadInput, ACellOfUnknownHeightIsNeverTraversable) {
     for (const TraversabilityConfig& config : all_configs()) {
-        for (const float bad_m : {kNan, kInf, -kInf}) {
+        for (const float bad_m : {kNanF, kInf, -kInf}) {
             grid::Layer height_m(kSide, kSide, 0.0F);
             height_m.at(kMiddle, kMiddle) = bad_m;
             const TraversabilityLayers layers = rated(height_m, config);
@@ -103,7 +103,7 @@ TEST(TraversabilityBadInput, DiscsWiderThanTheMapSeeAllOfItAndNoMore) {
 
 TEST(TraversabilityBadInput, SizesThatAreNoneAreNamed) {
     TraversabilityConfig config;
-    for (const double bad_m : {0.0, -0.08, static_cast<double>(kNan)}) {
+    for (const double bad_m : {0.0, -0.08, static_cast<double>(kNanF)}) {
         for (double* radius_m :
              {&config.normals.radius_m, &config.step.first_radius_m, &config.roughness.radius_m}) {
             const double good_m = *radius_m;
@@ -115,12 +115,12 @@ TEST(TraversabilityBadInput, SizesThatAreNoneAreNamed) {
         }
     }
     ASSERT_FALSE(config.problem(kResolution_m));
-    for (const double bad_m : {0.0, -0.025, static_cast<double>(kNan)}) {
+    for (const double bad_m : {0.0, -0.025, static_cast<double>(kNanF)}) {
         const auto problem = config.problem(bad_m);
         ASSERT_TRUE(problem) << "cells of " << bad_m << " m";
         EXPECT_NE(problem->find("cell"), std::string::npos) << *problem;
     }
-    config.weights.step = static_cast<double>(kNan);
+    config.weights.step = static_cast<double>(kNanF);
     EXPECT_TRUE(config.problem(kResolution_m)) << "a weight of NaN";
 }
 
@@ -129,7 +129,7 @@ TEST(TraversabilityBadInput, ChangesThatLieNowhereChangeNothing) {
     Traversability rater{TraversabilityConfig{}};
     TraversabilityLayers layers;
     rater.rate(height_m.view(), kResolution_m, serial(), layers);
-    height_m.fill(kNan);
+    height_m.fill(kNanF);
     for (const CellRect& rect : {CellRect{0, 0, 0, 0},
                                  CellRect{5, 5, -3, 4},
                                  CellRect{100, 100, 5, 5},
@@ -146,7 +146,7 @@ TEST(TraversabilityBadInput, AFootprintOnRatingsThatAreNoneIsNotTraversable) {
     ASSERT_TRUE(foot.ok());
     const grid::Layer height_m(kSide, kSide, 0.0F);
     const grid::GridGeometry geometry{kResolution_m, kSide, kSide, {-0.2625, -0.2625}};
-    for (const float bad : {kNan, kInf, -kInf, -1.0F, 0.0F}) {
+    for (const float bad : {kNanF, kInf, -kInf, -1.0F, 0.0F}) {
         grid::Layer rating(kSide, kSide, 1.0F);
         EXPECT_TRUE(
             is_traversable(query(*foot, {}, {geometry, rating.view(), height_m.view()}), 0.8));

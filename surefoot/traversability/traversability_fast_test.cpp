@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Normals agree to 1e-9 rad; rounding to float may then fall to the other side: one digit, 6e-8.
 constexpr double kNormalTolerance = 1e-7;
@@ -45,7 +45,7 @@ grid::Layer noisy(int nx, int ny, double hole_share, double noise_m, double base
         for (int ix = 0; ix < nx; ++ix) {
             const double z_m = base_m + 0.025 * slope * iy + (ix > edge ? step_m : 0.0);
             map.at(ix, iy) = rng.uniform() < hole_share
-                                 ? kNaN
+                                 ? kNanF
                                  : static_cast<float>(z_m + noise_m * rng.normal());
         }
     }
@@ -55,7 +55,7 @@ grid::Layer noisy(int nx, int ny, double hole_share, double noise_m, double base
 /// Noise with heights that no map should hold among it.
 grid::Layer spoilt(int nx, int ny, Rng& rng) {
     grid::Layer map = noisy(nx, ny, 0.3, 0.003, 0.0, rng);
-    const float bad[] = {kNaN, kInfinity, -kInfinity, 1e30F, -1e30F, 3e38F, -3e38F, 1e-40F};
+    const float bad[] = {kNanF, kInfinity, -kInfinity, 1e30F, -1e30F, 3e38F, -3e38F, 1e-40F};
     for (std::size_t i = 0; i < map.size(); ++i) {
         if (rng.uniform() < 0.2) map.data()[i] = bad[rng.below(std::size(bad))];
     }
@@ -110,7 +110,7 @@ std::vector<Case> spoilt_cases() {
     TraversabilityConfig huge;
     huge.normals.radius_m = huge.roughness.radius_m = 5.0;
     huge.step.first_radius_m = huge.step.second_radius_m = 5.0;
-    for (const float height_m : {kNaN, kInfinity, 1e30F, 0.0F}) {
+    for (const float height_m : {kNanF, kInfinity, 1e30F, 0.0F}) {
         const std::string at = " at " + std::to_string(height_m);
         cases.push_back({"1x1" + at, grid::Layer(1, 1, height_m), 0.025, {}});
         cases.push_back({"1x1 huge discs" + at, grid::Layer(1, 1, height_m), 0.025, huge});
@@ -267,7 +267,7 @@ TEST(TraversabilityFast, UpdatingChangedCellsGivesTheBytesOfAFullRating) {
             for (int iy = changed.iy0; iy < changed.iy0 + changed.ny; ++iy) {
                 for (int ix = changed.ix0; ix < changed.ix0 + changed.nx; ++ix) {
                     c.map.at(ix, iy) =
-                        rng.uniform() < 0.1 ? kNaN : static_cast<float>(2.0 + 0.05 * rng.normal());
+                        rng.uniform() < 0.1 ? kNanF : static_cast<float>(2.0 + 0.05 * rng.normal());
                 }
             }
             rater.rate(std::as_const(c.map).view(),

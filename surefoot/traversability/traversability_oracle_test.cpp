@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::traversability {
@@ -19,7 +20,6 @@ namespace {
 
 constexpr double kTolerance = 2e-6;       // float ratings, a few roundings each
 constexpr double kSlopeTolerance = 1e-3;  // acos near 1 turns one rounding 6e-8 into 3.5e-4 rad
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class Oracle {
   public:
@@ -38,7 +38,7 @@ class Oracle {
     }
     [[nodiscard]] double roughness(int ix, int iy) const {
         const auto n = normal(ix, iy);
-        if (!n) return kNaN;
+        if (!n) return kNan;
         const auto points = points_around(ix, iy, config_.roughness.radius_m);
         if (points.size() < 2) return 0.0;
         const Eigen::Vector3d mean = mean_of(points);
@@ -52,7 +52,7 @@ class Oracle {
         for_each_near(ix, iy, config_.step.second_radius_m, [&](int jx, int jy) {
             if (known(jx, jy)) steps.push_back(step_height(jx, jy));
         });
-        if (steps.empty()) return kNaN;
+        if (steps.empty()) return kNan;
         const double highest = *std::max_element(steps.begin(), steps.end());
         const auto n = std::count_if(
             steps.begin(), steps.end(), [&](double s) { return s > config_.step.critical_m; });
@@ -161,14 +161,14 @@ TEST(TraversabilityOracle, FiltersEqualTheirDefinitionsOnRandomMaps) {
                         ? -1.0
                         : 1.0;
                 expect_close(
-                    layers.normal_x.at(ix, iy), n ? sign * n->x() : kNaN, kTolerance, "nx", ix, iy);
+                    layers.normal_x.at(ix, iy), n ? sign * n->x() : kNan, kTolerance, "nx", ix, iy);
                 expect_close(
-                    layers.normal_y.at(ix, iy), n ? sign * n->y() : kNaN, kTolerance, "ny", ix, iy);
+                    layers.normal_y.at(ix, iy), n ? sign * n->y() : kNan, kTolerance, "ny", ix, iy);
                 expect_close(
-                    layers.normal_z.at(ix, iy), n ? n->z() : kNaN, kTolerance, "nz", ix, iy);
-                const double slope_rad = n ? std::acos(std::min(n->z(), 1.0)) : kNaN;
+                    layers.normal_z.at(ix, iy), n ? n->z() : kNan, kTolerance, "nz", ix, iy);
+                const double slope_rad = n ? std::acos(std::min(n->z(), 1.0)) : kNan;
                 expect_close(layers.slope.at(ix, iy),
-                             n ? Oracle::rating(slope_rad, config.slope.critical_rad) : kNaN,
+                             n ? Oracle::rating(slope_rad, config.slope.critical_rad) : kNan,
                              kSlopeTolerance,
                              "slope",
                              ix,

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::traversability {
 namespace {
 
 constexpr double kResolution_m = 0.025;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kRounding = 1e-6F;  // ratings are float, a few roundings of 6e-8
 
 /// Height map as literal text: numbers are centimetres, `?` is unknown, the first line has the
@@ -29,7 +29,7 @@ grid::Layer map_cm(const std::string& text) {
         std::istringstream words(line);
         std::vector<float> row;
         for (std::string word; words >> word;) {
-            row.push_back(word == "?" ? kNaN : 0.01F * std::stof(word));
+            row.push_back(word == "?" ? kNanF : 0.01F * std::stof(word));
         }
         if (!row.empty()) rows.insert(rows.begin(), row);
     }

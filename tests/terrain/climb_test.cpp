@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/sim/scenes/truth.hpp"
 #include "tests/terrain/scene_cameras.hpp"
 
@@ -82,11 +83,7 @@ struct Tread {
     int passed_known = 0;          ///< of these
     int misplaced = 0;             ///< known, and nearer to another tread
     std::vector<double> errors_m;  ///< of the known ones
-    [[nodiscard]] double median_m() {
-        const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
-        std::nth_element(errors_m.begin(), middle, errors_m.end());
-        return *middle;
-    }
+    [[nodiscard]] double median_m() { return upper_median_in_place(errors_m); }
 };
 
 /// Calls f(true height, cell, distance ahead of the body) for the cells of the window that lie on

@@ -7,6 +7,7 @@
 
 #include "service/gate_process/audit/audit_record.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 /// Random ground and questions for the tests of the audit log.
@@ -54,7 +55,7 @@ inline std::unique_ptr<grid::MapSnapshot> random_ground(Rng& rng) {
         } else if (kind < 0.5) {
             place(terrain.height, rng.uniform(-0.5, -0.03));
         } else if (kind < 0.7) {
-            place(terrain.height, static_cast<double>(gate::testing::kNaN));
+            place(terrain.height, static_cast<double>(kNanF));
         } else if (kind < 0.8) {
             place(terrain.clearance, rng.uniform(0.3, 2.5));
         } else if (kind < 0.9) {

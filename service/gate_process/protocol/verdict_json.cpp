@@ -5,10 +5,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::gate_process {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr double kTenthMmPerM = 1e4;
 constexpr std::int64_t kOpenTenthMm = 0xffff;  // of Evidence::min_clearance_tenth_mm
 

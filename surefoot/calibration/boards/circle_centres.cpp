@@ -12,6 +12,7 @@
 
 #include "surefoot/calibration/boards/board_order.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -84,12 +85,6 @@ struct Blob {
     double area_px2 = 0.0;
 };
 
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Calls `use(pixel, distance from the centre on the board / reach)` for the pixels within `reach`.
 template <typename Use>
 void for_pixels_around(const Eigen::Vector2d& centre,
@@ -128,8 +123,8 @@ std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
         if (distance < kHeart) ink_dn.push_back(dn);
     });
     if (paper_dn.empty() || ink_dn.empty()) return std::nullopt;
-    const double white_dn = median_of(std::move(paper_dn));
-    const double contrast_dn = white_dn - median_of(std::move(ink_dn));
+    const double white_dn = upper_median(std::move(paper_dn));
+    const double contrast_dn = white_dn - upper_median(std::move(ink_dn));
     if (contrast_dn < kLeastContrast_dn) return std::nullopt;
     Blob blob{Eigen::Vector2d::Zero(), 0.0};
     double weights = 0.0;
@@ -178,7 +173,7 @@ DiscImages measured_discs(const Board& board,
                                   std::numbers::pi);
         }
         if (radii_sq_m2.empty()) return {rough, 0.0};
-        discs.radius_m = std::sqrt(std::max(0.0, median_of(radii_sq_m2)));
+        discs.radius_m = std::sqrt(std::max(0.0, upper_median(radii_sq_m2)));
     }
     return discs;
 }

@@ -8,6 +8,7 @@
 
 #include "surefoot/calibration/bundle/planar_pose.hpp"
 #include "surefoot/calibration/bundle/robust_bundle.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -25,7 +26,6 @@ constexpr int kStageIterations = 30;
 constexpr double kStageTolerance = 1e-6;
 constexpr BundleOptions kLastStage{
     Freedom::everything, kStartHuber_px, kStageIterations, kStageTolerance};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Sights of one view as plane points and rays.
 struct ViewRays {

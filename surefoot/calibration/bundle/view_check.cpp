@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "surefoot/calibration/bundle/planar_pose.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -107,9 +108,7 @@ std::string summary_of(std::span<const RejectedView> rejected, std::size_t views
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 }  // namespace surefoot::calibration

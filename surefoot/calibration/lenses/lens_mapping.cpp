@@ -4,8 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 /// Central differences: the image is linear in the first four parameters, and so nearly in the
 /// coefficients that 1e-5 leaves ten digits.
 constexpr double kStep = 1e-5;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kColumns = 9;
 constexpr int kRows = 7;
 

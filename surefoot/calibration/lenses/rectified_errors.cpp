@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::calibration {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Central differences over this share of a standard deviation: depth is straight that far.
 constexpr double kStep = 0.1;
 

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Largest k with 2^k <= cells.
 int level_of(int cells) {
@@ -126,8 +127,8 @@ void HeightBounds::answer_row(const Input& input,
     const int nx = input.height_m.width;
     const int ny = input.height_m.height;
     for (int ix = 0; ix < nx; ++ix) {
-        float lowest_m = kNan;
-        float highest_m = kNan;
+        float lowest_m = kNanF;
+        float highest_m = kNanF;
         if (!std::isnan(input.height_m.row(iy)[ix])) {
             const int cells = reach(input, ix, iy);
             const int x0 = std::max(ix - cells, 0);

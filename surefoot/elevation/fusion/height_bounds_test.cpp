@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Map {
@@ -29,7 +29,7 @@ Map random_map(Rng& rng, int nx, int ny, double drift_m) {
     Map map{grid::Layer(nx, ny), grid::Layer(nx, ny), grid::Layer(nx, ny)};
     for (std::size_t i = 0; i < map.height_m.size(); ++i) {
         map.height_m.data()[i] =
-            rng.uniform(0.0, 1.0) < 0.3 ? kNan : static_cast<float>(rng.uniform(-1.0, 1.0));
+            rng.uniform(0.0, 1.0) < 0.3 ? kNanF : static_cast<float>(rng.uniform(-1.0, 1.0));
         map.var_m2.data()[i] = static_cast<float>(rng.uniform(0.0, 1e-3));
         map.drift_m.data()[i] = static_cast<float>(rng.uniform(0.0, drift_m));
     }
@@ -83,8 +83,8 @@ TEST(HeightBounds, AreWhatTheDefinitionSays) {
 TEST(HeightBounds, AnUnknownDriftReachesEverywhere) {
     Map map{grid::Layer(9, 1, 0.0F), grid::Layer(9, 1, 0.0F), grid::Layer(9, 1, 0.0F)};
     map.height_m.at(8, 0) = 1.0F;
-    map.height_m.at(4, 0) = kNan;
-    for (const float drift_m : {kNan, kInfinity, 1e30F}) {
+    map.height_m.at(4, 0) = kNanF;
+    for (const float drift_m : {kNanF, kInfinity, 1e30F}) {
         map.drift_m.at(0, 0) = drift_m;
         grid::Layer lower_m;
         grid::Layer upper_m;

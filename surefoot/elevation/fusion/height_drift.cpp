@@ -27,7 +27,7 @@ constexpr double kFrameShare = 0.5;  ///< the same for what lately aligned groun
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);
-    return std::clamp(saturated_integer<int>(bin), 0, kBins - 1);
+    return clamped_integer<int>(bin, 0, kBins - 1);
 }
 
 int tiles_along(int cells) {

@@ -6,11 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
 constexpr int kSide = 12;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kMiddle = 4 * kSide + 4;  ///< a cell that is asked
 
@@ -97,7 +98,7 @@ TEST(HeightResiduals, StepsUnknownNeighboursAndCellsOutsideOfNumbersAreLeftOut) 
         return 16 - static_cast<int>(ground.gather());
     };
     EXPECT_EQ(lost([](Ground& g) { g.measured[kMiddle].points = 0; }), 1);
-    for (const float bad : {kNan, kInf, -kInf}) {
+    for (const float bad : {kNanF, kInf, -kInf}) {
         EXPECT_EQ(lost([&](Ground& g) { g.measured[kMiddle].z_m = bad; }), 1) << bad;
         EXPECT_EQ(lost([&](Ground& g) { g.measured[kMiddle].var_m2 = bad; }), 1) << bad;
         EXPECT_EQ(lost([&](Ground& g) { g.layers.height_var_m2.data()[kMiddle] = bad; }), 1) << bad;

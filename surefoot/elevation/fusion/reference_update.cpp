@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/fusion/height_fusion.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -53,9 +53,9 @@ AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
     geometry_.nx = cells;
     geometry_.ny = cells;
     place({config.start_x_m, config.start_y_m});
-    elevation_m_ = grid::SlidingLayer<float>(cells, cells, kNan);
-    variance_m2_ = grid::SlidingLayer<float>(cells, cells, kNan);
-    time_s_ = grid::SlidingLayer<float>(cells, cells, kNan);
+    elevation_m_ = grid::SlidingLayer<float>(cells, cells, kNanF);
+    variance_m2_ = grid::SlidingLayer<float>(cells, cells, kNanF);
+    time_s_ = grid::SlidingLayer<float>(cells, cells, kNanF);
 }
 
 void AncestorMap::place(const Eigen::Vector2d& position_m) {
@@ -70,7 +70,7 @@ void AncestorMap::move_to(double x_m, double y_m) {
                             grid::nearest_cells(y_m - position_m_.y(), geometry_.resolution_m)};
     place(position_m_ + geometry_.resolution_m * Eigen::Vector2d(shift.dx, shift.dy));
     for (grid::SlidingLayer<float>* layer : {&elevation_m_, &variance_m2_, &time_s_}) {
-        layer->shift(shift, kNan);
+        layer->shift(shift, kNanF);
     }
 }
 

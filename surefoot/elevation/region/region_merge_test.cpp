@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using grid::LatticeBox;
 using grid::MapRegion;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// A variance computed in double and rounded to float once, as a share of it.
 constexpr double kFloatRounding = 6e-8;
 
@@ -44,9 +44,9 @@ MapRegion random_region(const LatticeBox& box, std::uint64_t seed) {
         r.horizontal_drift_m.data()[i] = uniform(0.0, 0.05);
         r.lowest_m.data()[i] = uniform(-0.1, 0.0);
         r.highest_m.data()[i] = uniform(0.0, 0.1);
-        r.clearance_m.data()[i] = rng.below(2) == 0 ? kNan : uniform(0.3, 2.0);
+        r.clearance_m.data()[i] = rng.below(2) == 0 ? kNanF : uniform(0.3, 2.0);
         r.confidence.data()[i] = uniform(0.1, 1.0);
-        r.density_ratio.data()[i] = rng.below(2) == 0 ? kNan : uniform(0.0, 4.0);
+        r.density_ratio.data()[i] = rng.below(2) == 0 ? kNanF : uniform(0.0, 4.0);
     }
     return r;
 }
@@ -242,7 +242,7 @@ TEST(MergeRegionsInWords, WhatDoesNotFitIsSaidAndChangesNothing) {
     refused(b, RegionErrors::shared, "a map around both would have");
     b = a;
     b.count.data()[0] += b.count.data()[0] == 0 ? 1U : 0U;
-    b.height_m.data()[0] = kNan;
+    b.height_m.data()[0] = kNanF;
     refused(b, RegionErrors::shared, "cell (0, 0)");
 }
 

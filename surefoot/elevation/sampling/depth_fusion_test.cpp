@@ -12,12 +12,12 @@
 
 #include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSigma_px = 0.25;
 
 /// Flat ground at 0, and at `height_m` beyond the line x = edge_m; a riser closes a step up.
@@ -60,12 +60,12 @@ double cast(const StepScene& scene, const Eigen::Vector3d& from_m, const Eigen::
     consider(
         to_riser,
         riser_z_m >= std::min(0.0, scene.height_m) && riser_z_m <= std::max(0.0, scene.height_m));
-    return std::isinf(nearest) ? static_cast<double>(kNan) : nearest;
+    return std::isinf(nearest) ? static_cast<double>(kNanF) : nearest;
 }
 
 DepthImage render(const StepScene& scene,
-                          const camera::RectifiedRig& rig,
-                          const Pose& T_odom_body) {
+                  const camera::RectifiedRig& rig,
+                  const Pose& T_odom_body) {
     DepthImage depth;
     depth.resize(rig.width, rig.height);
     const Pose T_odom_camera = T_odom_body * rig.T_body_camera;
@@ -349,17 +349,17 @@ TEST(DepthFusion, PixelsWithoutATrueDisparitySigmaOrTrustAreNotFused) {
         map.add(rig, body_at(0), depth, 0);
         return map.known_cells();
     };
-    EXPECT_EQ(cells_after([](auto& depth) { depth.disparity_px.fill(kNan); }), 0);
+    EXPECT_EQ(cells_after([](auto& depth) { depth.disparity_px.fill(kNanF); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) { depth.disparity_px.fill(0.0F); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) { depth.disparity_px.fill(-5.0F); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) {
                   depth.disparity_px.fill(std::numeric_limits<float>::infinity());
               }),
               0);
-    EXPECT_EQ(cells_after([](auto& depth) { depth.sigma_px.fill(kNan); }), 0);
+    EXPECT_EQ(cells_after([](auto& depth) { depth.sigma_px.fill(kNanF); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) { depth.sigma_px.fill(0.0F); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) { depth.outlier_probability.fill(0.9F); }), 0);
-    EXPECT_EQ(cells_after([](auto& depth) { depth.outlier_probability.fill(kNan); }), 0);
+    EXPECT_EQ(cells_after([](auto& depth) { depth.outlier_probability.fill(kNanF); }), 0);
     EXPECT_EQ(cells_after([](auto& depth) { depth.resize(0, 0); }), 0);
     EXPECT_GT(cells_after([](auto&) {}), 7000);
 }

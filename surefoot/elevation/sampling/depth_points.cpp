@@ -2,12 +2,11 @@
 #include "surefoot/elevation/sampling/depth_points.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// One frame on its way to points: what is constant in it, taken once.
 class DepthWalk {
@@ -83,10 +82,10 @@ class DepthWalk {
     [[nodiscard]] Neighbours neighbours(int u, int v) const {
         const int reach = config_.pixels.reach_px;
         const Image<float>& d = depth_.disparity_px;
-        return {u >= reach ? d.row(v)[u - reach] : kNan,
-                u + reach < d.width() ? d.row(v)[u + reach] : kNan,
-                v >= reach ? d.row(v - reach)[u] : kNan,
-                v + reach < d.height() ? d.row(v + reach)[u] : kNan};
+        return {u >= reach ? d.row(v)[u - reach] : kNanF,
+                u + reach < d.width() ? d.row(v)[u + reach] : kNanF,
+                v >= reach ? d.row(v - reach)[u] : kNanF,
+                v + reach < d.height() ? d.row(v + reach)[u] : kNanF};
     }
 
     /// `reading` is complete but for the range.

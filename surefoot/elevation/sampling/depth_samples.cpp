@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 DepthFrame frame_of(const ElevationConfig& config,
@@ -75,8 +75,8 @@ void DepthSampler::sample(const ElevationConfig& config,
     const auto columns = static_cast<std::size_t>(width);
     const std::size_t padded = columns + 2 * static_cast<std::size_t>(reach_px_);
     samples.reset(blocks, columns * kBlockRows);
-    nothing_px_.assign(columns, kNan);
-    padded_px_.assign(padded * static_cast<std::size_t>(blocks), kNan);
+    nothing_px_.assign(columns, kNanF);
+    padded_px_.assign(padded * static_cast<std::size_t>(blocks), kNanF);
     counts_.assign(static_cast<std::size_t>(blocks), {});
 
     struct Job {

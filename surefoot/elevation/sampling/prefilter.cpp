@@ -20,7 +20,7 @@ float distance_sq_m2(const GridPoint& a, const GridPoint& b) {
 std::int32_t lattice(float p_m, double edge_m) {
     constexpr std::int32_t kLimit = 1 << 30;
     const double index = std::floor(static_cast<double>(p_m) / edge_m);
-    return std::clamp(saturated_integer<std::int32_t>(index), -kLimit, kLimit);
+    return clamped_integer<std::int32_t>(index, -kLimit, kLimit);
 }
 
 double offset_m(float p_m, std::int32_t index, double edge_m) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 
 namespace surefoot::elevation {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::int64_t kFrame_ns = 66'666'667;  ///< 15 Hz
 constexpr int kSecond = 15;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct Box {
     Eigen::Vector3d low_m;
@@ -62,9 +62,9 @@ double meet(const Box& box, const Eigen::Vector3d& from_m, const Eigen::Vector3d
 }
 
 DepthImage look(const camera::RectifiedRig& camera,
-                        const std::vector<Box>& boxes,
-                        const Pose& T_odom_body,
-                        Rng& rng) {
+                const std::vector<Box>& boxes,
+                const Pose& T_odom_body,
+                Rng& rng) {
     constexpr double kSigma_px = 0.1;
     const Pose T_odom_camera = T_odom_body * camera.T_body_camera;
     const Eigen::Vector3d from_m = T_odom_camera.translation_m;
@@ -85,7 +85,7 @@ DepthImage look(const camera::RectifiedRig& camera,
                 std::isfinite(depth_m)
                     ? static_cast<float>(camera.depth_to_disparity_px_m() / depth_m +
                                          kSigma_px * rng.normal())
-                    : kNan;
+                    : kNanF;
         }
     }
     return depth;

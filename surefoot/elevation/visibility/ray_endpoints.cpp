@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// What is nearer than this to the camera, along x or y in cells, has no direction.
 constexpr float kNearest = 2.0F;
 /// A surface covers a cell or two: lines that end so near beyond it may have ended at it.
@@ -23,7 +23,7 @@ void RayEndpoints::reset(const grid::GridGeometry& geometry, const Eigen::Vector
     camera_z_m_ = static_cast<float>(camera_m.z());
     const auto cells =
         static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny);
-    z_m_.assign(cells, kNan);
+    z_m_.assign(cells, kNanF);
     bottom_m_.resize(cells);
 }
 

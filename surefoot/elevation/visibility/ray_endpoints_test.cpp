@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kMargin_m = 0.05F;
 const Eigen::Vector3d kCamera_m(5.013, 0.21, 1.04);
 
@@ -31,8 +31,8 @@ std::size_t index_of(const grid::GridGeometry& g, grid::Cell cell) {
 }
 
 struct CellObservation {
-    float z_m = kNan;
-    float bottom_m = kNan;
+    float z_m = kNanF;
+    float bottom_m = kNanF;
 };
 
 /// Shows every cell of the map for which `look(x, y)` has a height.
@@ -138,7 +138,7 @@ TEST(RayEndpoints, SayNothingWithoutADirection) {
             },
             camera_m);
         EXPECT_FALSE(ends.passed_through({39, 59}, 0.3F, 0.4F));  // beside (6, 0)
-        EXPECT_FALSE(ends.passed_through({39, 59}, kNan, kNan));
+        EXPECT_FALSE(ends.passed_through({39, 59}, kNanF, kNanF));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "surefoot/core/executors_testing.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/eval/clouds/clouds_testing.hpp"
 
 namespace surefoot::eval {
@@ -45,8 +46,7 @@ TEST(CloudDistance, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(DistanceFigures, ByHand) {
-    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    const DistanceFigures f = distance_figures(std::vector<float>{3.0F, kNan, -1.0F, 0.0F, 2.0F});
+    const DistanceFigures f = distance_figures(std::vector<float>{3.0F, kNanF, -1.0F, 0.0F, 2.0F});
     EXPECT_EQ(f.count, 4);
     EXPECT_DOUBLE_EQ(f.mean_m, 1.0);
     EXPECT_DOUBLE_EQ(f.std_m, std::sqrt(10.0 / 4.0));

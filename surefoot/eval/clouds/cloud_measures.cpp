@@ -7,22 +7,17 @@
 
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/pieces.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/eval/clouds/voxels.hpp"
 #include "surefoot/geometry/kd_tree.hpp"
 #include "surefoot/geometry/plane_fit.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/geometry/surface_normal.hpp"
 
 namespace surefoot::eval {
 namespace {
 
 using Eigen::Vector3f;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Bins whose count stands out of those around, the fullest of any within the least step.
 std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
@@ -39,7 +34,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
         for (std::size_t k = i - std::min(i, around); k < std::min(i + around + 1, counts.size());
              ++k)
             near.push_back(static_cast<double>(counts[k]));
-        if (near.size() > 4 && count < config.prominence * median_of(near)) continue;
+        if (near.size() > 4 && count < config.prominence * upper_median(near)) continue;
         candidates.push_back(i);
     }
     std::stable_sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
@@ -97,7 +92,7 @@ Repeated repeated(std::vector<double> values_m) {
     r.values_m = std::move(values_m);
     const auto n = static_cast<double>(r.values_m.size());
     if (r.values_m.empty()) {
-        r.mean_m = r.spread_m = r.std_error_m = kNaN;
+        r.mean_m = r.spread_m = r.std_error_m = kNan;
         return r;
     }
     for (const double v : r.values_m) r.mean_m += v / n;
@@ -363,7 +358,7 @@ std::optional<double> door_width_m(std::span<const Vector3f> points_m, const Doo
         if (side_m.size() < kFewest) return std::nullopt;
         const double nearest_m = *std::min_element(side_m.begin(), side_m.end());
         std::erase_if(side_m, [&](double s_m) { return s_m > nearest_m + kFace_m; });
-        width_m += median_of(side_m);
+        width_m += upper_median(side_m);
     }
     return width_m;
 }

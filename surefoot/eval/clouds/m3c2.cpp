@@ -19,7 +19,7 @@ constexpr std::size_t kTaken = 256;  ///< core points that one thread takes
 struct InCylinder {
     int count = 0;
     double mean_m = 0.0;
-    double std_m = M3c2Value::kNaN;
+    double std_m = kNan;
 };
 
 InCylinder look(const geometry::KdTree& cloud, const geometry::Cylinder& cylinder) {

@@ -9,6 +9,7 @@
 
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/geometry/kd_tree.hpp"
 
 namespace surefoot::eval {
@@ -32,11 +33,10 @@ struct M3c2Config {
 
 /// What M3C2 says at one core point.
 struct M3c2Value {
-    static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    double distance_m = kNaN;  ///< compared - reference along the normal; NaN: a cloud has no point
-    double lod95_m = kNaN;     ///< what scatter and registration may look like; NaN: too few points
-    double std_reference_m = kNaN;  ///< along the normal, divided by n
-    double std_compared_m = kNaN;
+    double distance_m = kNan;  ///< compared - reference along the normal; NaN: a cloud has no point
+    double lod95_m = kNan;     ///< what scatter and registration may look like; NaN: too few points
+    double std_reference_m = kNan;  ///< along the normal, divided by n
+    double std_compared_m = kNan;
     int count_reference = 0;
     int count_compared = 0;
     bool significant = false;  ///< |distance| above lod95

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/geometry/statistics.hpp"
+
 namespace surefoot::eval {
 namespace {
 
@@ -39,9 +41,7 @@ std::optional<Eigen::Vector3d> solve(std::span<const Eigen::Vector3d> points_m,
 
 double median_abs(std::vector<double> values) {
     for (double& value : values) value = std::abs(value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 }  // namespace

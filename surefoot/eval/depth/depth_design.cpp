@@ -8,10 +8,11 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::eval {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kSigmas = 3.0;
 constexpr double kRows_px = 3.0;
 

@@ -8,10 +8,11 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/core/unknown.hpp"
+#include "surefoot/geometry/statistics.hpp"
+
 namespace surefoot::eval {
 namespace {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 template <typename T>
 Status check_size(const char* name, ImageView<T> image, ImageView<const float> truth_px) {
@@ -63,9 +64,7 @@ void keep_smaller(float& kept_px, float candidate_px) {
 
 double median(std::vector<float>& values) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(upper_median_in_place(values));
 }
 
 }  // namespace
@@ -83,16 +82,16 @@ std::optional<double> suspected_factor(double truth_over_estimate) noexcept {
 }
 
 Image<float> filled(ImageView<const float> disparity_px) {
-    Image<float> result(disparity_px.width, disparity_px.height, kUnknown);
+    Image<float> result(disparity_px.width, disparity_px.height, kNanF);
     for (int v = 0; v < disparity_px.height; ++v) {
         const float* in = disparity_px.row(v);
         float* out = result.row(v);
-        float nearest_px = kUnknown;
+        float nearest_px = kNanF;
         for (int u = 0; u < disparity_px.width; ++u) {
             if (!std::isnan(in[u])) nearest_px = in[u];
             out[u] = nearest_px;
         }
-        nearest_px = kUnknown;
+        nearest_px = kNanF;
         for (int u = disparity_px.width - 1; u >= 0; --u) {
             if (!std::isnan(in[u])) {
                 nearest_px = in[u];
@@ -129,7 +128,7 @@ Result<DepthErrors> depth_errors(const DepthPair& pair) {
             if (!pair.sigma_px.empty()) sigmas_px.push_back(pair.sigma_px.at(u, v));
         }
     }
-    sigmas_px.resize(errors_px.size(), kUnknown);
+    sigmas_px.resize(errors_px.size(), kNanF);
     result.bad = all.shares();
     result.known_bad = known.shares();
     result.density_percent = result.counted == 0 ? std::numeric_limits<double>::quiet_NaN()

@@ -5,14 +5,13 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kRounding = 1e-9;  ///< shares in percent
 
 Image<float> row(std::initializer_list<float> values) {
@@ -36,8 +35,8 @@ bool same(float a, float b) {
 
 TEST(DepthErrors, ByHand) {
     //                              ok     0.75      1.5     2.5   unknown  no truth
-    const auto truth = row({10.0F, 10.0F, 10.0F, 10.0F, 10.0F, kNan});
-    const auto estimate = row({10.0F, 10.75F, 8.5F, 12.5F, kNan, 9.75F});
+    const auto truth = row({10.0F, 10.0F, 10.0F, 10.0F, 10.0F, kNanF});
+    const auto estimate = row({10.0F, 10.75F, 8.5F, 12.5F, kNanF, 9.75F});
     const DepthErrors errors = errors_of(estimate, truth);
     EXPECT_EQ(errors.counted, 5);
     EXPECT_NEAR(errors.density_percent, 80.0, kRounding);
@@ -64,7 +63,7 @@ TEST(DepthErrors, AnErrorOfExactlyTheLimitIsNotBad) {
 
 TEST(DepthErrors, TheMaskChoosesPixels) {
     const auto truth = row({4.0F, 4.0F, 4.0F, 4.0F});
-    const auto estimate = row({4.0F, 9.0F, kNan, 4.0F});
+    const auto estimate = row({4.0F, 9.0F, kNanF, 4.0F});
     Image<std::uint8_t> mask(4, 1, 255);
     mask.at(1, 0) = 0;
     const auto errors = errors_of(estimate, truth, mask);
@@ -75,8 +74,8 @@ TEST(DepthErrors, TheMaskChoosesPixels) {
 }
 
 TEST(DepthErrors, SigmaIsJudgedWhereTheEstimateIsKnown) {
-    const auto truth = row({4.0F, 4.0F, 4.0F, kNan});
-    const auto estimate = row({4.5F, 6.5F, kNan, 4.0F});
+    const auto truth = row({4.0F, 4.0F, 4.0F, kNanF});
+    const auto estimate = row({4.5F, 6.5F, kNanF, 4.0F});
     const auto sigma = row({1.0F, 1.0F, 1.0F, 1.0F});
     const auto errors = errors_of(estimate, truth, {}, sigma);
     EXPECT_EQ(errors.coverage.count, 2);
@@ -92,12 +91,12 @@ TEST(DepthErrors, FillingTakesTheSmallerNearestNeighbourInTheRow) {
     for (int trial = 0; trial < 50; ++trial) {
         Image<float> image(13, 3);
         for (std::size_t i = 0; i < image.size(); ++i)
-            image.data()[i] = rng.uniform() < 0.5 ? kNan : static_cast<float>(rng.below(9));
-        if (trial == 0) std::fill(image.row(1), image.row(1) + 13, kNan);
+            image.data()[i] = rng.uniform() < 0.5 ? kNanF : static_cast<float>(rng.below(9));
+        if (trial == 0) std::fill(image.row(1), image.row(1) + 13, kNanF);
         const Image<float> result = filled(image.view());
         for (int v = 0; v < 3; ++v) {
             for (int u = 0; u < 13; ++u) {
-                float left = kNan, right = kNan;
+                float left = kNanF, right = kNanF;
                 for (int w = u; w >= 0 && std::isnan(left); --w) left = image.at(w, v);
                 for (int w = u; w < 13 && std::isnan(right); ++w) right = image.at(w, v);
                 const float expected = std::fmin(left, right);  // the one that is a number
@@ -109,7 +108,7 @@ TEST(DepthErrors, FillingTakesTheSmallerNearestNeighbourInTheRow) {
 
 TEST(DepthErrors, AnEstimateThatKnowsNothingIsAllBad) {
     const auto truth = row({4.0F, 4.0F});
-    const auto errors = errors_of(row({kNan, kNan}), truth);
+    const auto errors = errors_of(row({kNanF, kNanF}), truth);
     EXPECT_EQ(errors.bad.over_2_percent, 100.0);
     EXPECT_EQ(errors.density_percent, 0.0);
     EXPECT_TRUE(std::isnan(errors.known_bad.over_2_percent));
@@ -117,7 +116,7 @@ TEST(DepthErrors, AnEstimateThatKnowsNothingIsAllBad) {
 }
 
 TEST(DepthErrors, NoTruthGivesNoFigure) {
-    for (const auto& errors : {errors_of(row({1.0F}), row({kNan})), errors_of({}, {})}) {
+    for (const auto& errors : {errors_of(row({1.0F}), row({kNanF})), errors_of({}, {})}) {
         EXPECT_EQ(errors.counted, 0);
         EXPECT_TRUE(std::isnan(errors.bad.over_1_percent));
         EXPECT_TRUE(std::isnan(errors.density_percent));
@@ -139,7 +138,7 @@ TEST(DepthErrors, ImagesOfDifferentSizesAreNamed) {
 }
 
 TEST(DepthErrors, NoticeATruthThatIsNotInPixels) {
-    const auto estimate = row({10.0F, 20.5F, 29.0F, kNan, 41.0F});
+    const auto estimate = row({10.0F, 20.5F, 29.0F, kNanF, 41.0F});
     const auto truth_times = [&](float factor) {
         Image<float> truth = row({10.0F, 20.0F, 30.0F, 35.0F, 40.0F});
         for (std::size_t i = 0; i < truth.size(); ++i) truth.data()[i] *= factor;

@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kRounding = 1e-12;
 
 /// The definition for sigmas that all differ: sort, take away, average, from the start each time.
@@ -124,8 +123,8 @@ TEST(Sparsification, NothingToFindIsNan) {
     EXPECT_TRUE(std::isnan(sparsification({}, {}).auc));
     EXPECT_EQ(sparsification({}, {}).count, 0);
     const std::vector<float> three = {1.0F, 2.0F, 3.0F};
-    EXPECT_EQ(sparsification(three, std::vector<float>(3, kNan)).count, 0);
-    EXPECT_EQ(sparsification(std::vector<float>(3, kNan), three).count, 0);
+    EXPECT_EQ(sparsification(three, std::vector<float>(3, kNanF)).count, 0);
+    EXPECT_EQ(sparsification(std::vector<float>(3, kNanF), three).count, 0);
     EXPECT_TRUE(std::isnan(sparsification(std::vector<float>{-0.1F, 0.1F, 0.1F}, three).auc));
     EXPECT_TRUE(std::isnan(sparsification(std::vector<float>{0.0F}, std::vector<float>{1.0F}).auc));
 }

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Points = std::vector<Eigen::Vector3d>;
 
 DemGrid grid_of(const Points& points, double resolution_m, Lattice lattice) {

@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 grid::GridGeometry grid_of(int nx, int ny) {
     return {0.1, nx, ny, {-1.0, -1.0}};
@@ -36,7 +34,7 @@ Overlays nothing_over_it() {
 TEST(LayerSheet, ShowsWhatAnyLayerKnowsAndNoMore) {
     // A far larger map than what is known of it: the cell is as large as in a small map.
     const auto area_of_one = [](int side) {
-        grid::Layer known(side, side, kNan);
+        grid::Layer known(side, side, kNanF);
         known.at(side / 2, side / 2) = 0.5F;
         const Picture sheet = render_layer_sheet(
             grid_of(side, side), {{known, grey()}}, 1, {"t", ""}, nothing_over_it());
@@ -89,7 +87,7 @@ TEST(LayerSheet, GrowsByRowsAndShowsEveryLayer) {
 }
 
 TEST(LayerSheet, AMapThatKnowsNothingIsHatched) {
-    const grid::Layer nothing(20, 20, kNan);
+    const grid::Layer nothing(20, 20, kNanF);
     const Picture sheet =
         render_layer_sheet(grid_of(20, 20), {{nothing, grey()}}, 4, {}, nothing_over_it());
     EXPECT_GT(count(sheet, hatched_grey(0, 0)), 1000);

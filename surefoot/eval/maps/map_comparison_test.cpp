@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSigma_m = 0.003;
 
 /// A floor with a 0.2 m block on it, seen from x = -1; the live map has honest noise.
@@ -26,7 +25,7 @@ MapPair floor_with_block() {
     maps.live_m = maps.truth_m;
     for (std::size_t i = 0; i < maps.live_m.size(); ++i)
         maps.live_m.data()[i] += static_cast<float>(kSigma_m * rng.normal());
-    maps.live_m.at(0, 0) = kNan;
+    maps.live_m.at(0, 0) = kNanF;
     maps.live_var_m2 = grid::Layer(80, 80, static_cast<float>(kSigma_m * kSigma_m));
     maps.truth_traversability = grid::Layer(80, 80, 1.0F);
     maps.live_traversability = grid::Layer(80, 80, 1.0F);
@@ -96,8 +95,8 @@ TEST(MapComparison, ErrorsGoToTheirDistanceAndColumn) {
 
 TEST(MapComparison, AMapThatKnowsNothing) {
     MapPair maps = floor_with_block();
-    maps.live_m.fill(kNan);
-    maps.live_traversability.fill(kNan);
+    maps.live_m.fill(kNanF);
+    maps.live_traversability.fill(kNanF);
     const MapComparison result = compare_maps(maps, {});
     EXPECT_EQ(result.elevation.count, 0);
     EXPECT_EQ(result.coverage, 0.0);

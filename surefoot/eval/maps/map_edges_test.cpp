@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/eval/report/error_bins.hpp"
 
 namespace surefoot::eval {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Rows from the smallest y up.
 grid::Layer layer_of(int nx, const std::vector<float>& values) {
@@ -33,7 +31,7 @@ TEST(HeightJumps, ByHandWithAHole) {
     const auto height = layer_of(3,
                                  {0.0F,
                                   1.0F,
-                                  kNan,  //
+                                  kNanF,  //
                                   4.0F,
                                   2.0F,
                                   7.0F});
@@ -66,7 +64,7 @@ TEST(HeightJumps, BothCellsMustBeInTheMask) {
 TEST(HeightJumps, NothingHasNoNeighbours) {
     EXPECT_TRUE(height_jumps({}, {}, {}).jump_m.empty());
     EXPECT_TRUE(height_jumps(layer_of(1, {3.0F}), {}, {}).jump_m.empty());
-    EXPECT_TRUE(height_jumps(grid::Layer(4, 4, kNan), {}, {}).jump_m.empty());
+    EXPECT_TRUE(height_jumps(grid::Layer(4, 4, kNanF), {}, {}).jump_m.empty());
 }
 
 TEST(HeightJumps, AJaggedSideIsFoundInItsColumns) {
@@ -93,7 +91,7 @@ TEST(HeightJumps, AJaggedSideIsFoundInItsColumns) {
 
 TEST(LevelFloor, IsTheLargestLevelSurfaceAwayFromEdges) {
     // A floor of 20 columns, a table of 8 columns 0.7 m higher, unknown beyond.
-    grid::Layer truth(30, 10, kNan);
+    grid::Layer truth(30, 10, kNanF);
     for (int iy = 0; iy < 10; ++iy)
         for (int ix = 0; ix < 28; ++ix) truth.at(ix, iy) = ix < 20 ? 0.0F : 0.7F;
     const CellMask mask = level_floor(truth, {});
@@ -104,19 +102,19 @@ TEST(LevelFloor, IsTheLargestLevelSurfaceAwayFromEdges) {
 }
 
 TEST(LevelFloor, KeepsWhatIsWithinTheBandOnly) {
-    const auto truth = layer_of(6, {0.010F, 0.011F, 0.0139F, 0.020F, 0.021F, kNan});
+    const auto truth = layer_of(6, {0.010F, 0.011F, 0.0139F, 0.020F, 0.021F, kNanF});
     const CellMask mask = level_floor(truth, {});
     const std::vector<int> expected = {1, 1, 1, 0, 0, 0};
     for (int ix = 0; ix < 6; ++ix)
         EXPECT_EQ(mask.at(ix, 0), expected[static_cast<std::size_t>(ix)]);
     // Of two equal surfaces the lower one; the unknown cell between makes no edge.
-    const CellMask lower = level_floor(layer_of(5, {0.5F, 0.5F, kNan, 0.1F, 0.1F}), {});
+    const CellMask lower = level_floor(layer_of(5, {0.5F, 0.5F, kNanF, 0.1F, 0.1F}), {});
     EXPECT_EQ(lower.at(0, 0), 0);
     EXPECT_EQ(lower.at(3, 0), 1);
-    const CellMask other_side = level_floor(layer_of(5, {0.1F, 0.1F, kNan, 0.5F, 0.5F}), {});
+    const CellMask other_side = level_floor(layer_of(5, {0.1F, 0.1F, kNanF, 0.5F, 0.5F}), {});
     EXPECT_EQ(other_side.at(0, 0), 1);
     EXPECT_EQ(other_side.at(3, 0), 0);
-    const CellMask none = level_floor(grid::Layer(3, 3, kNan), {});
+    const CellMask none = level_floor(grid::Layer(3, 3, kNanF), {});
     for (std::size_t i = 0; i < none.size(); ++i) EXPECT_EQ(none.data()[i], 0);
 }
 
@@ -158,15 +156,15 @@ TEST(FloorSpread, ExactPlaneAndMask) {
     EXPECT_EQ(spread.count, 8);
     EXPECT_NEAR(spread.rms_m, 0.0, 1e-12);
     EXPECT_NEAR(spread.tilt_deg, std::atan(2.0) * 180.0 / M_PI, 1e-9);
-    height.at(0, 0) = kNan;
+    height.at(0, 0) = kNanF;
     EXPECT_EQ(floor_spread(geometry, height, mask).count, 7);
 }
 
 TEST(FloorSpread, NoPlaneIsNan) {
     const grid::GridGeometry row{0.5, 3, 1, {0.0, 0.0}};
     for (const auto& height :
-         {layer_of(3, {kNan, kNan, kNan}),
-          layer_of(3, {1.F, kNan, kNan}),
+         {layer_of(3, {kNanF, kNanF, kNanF}),
+          layer_of(3, {1.F, kNanF, kNanF}),
           layer_of(3, {1.F, 1.F, 1.F})}) {  // cells in one line have no one plane
         const FloorSpread spread = floor_spread(row, height, {});
         EXPECT_EQ(spread.count, 0);

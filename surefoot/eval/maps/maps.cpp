@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/eval/report/percentile.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoShare = std::numeric_limits<double>::quiet_NaN();
 /// A centre that lies on a border up to rounding counts as on it: far below a cell, far above the
 /// rounding of coordinates of some kilometres.
@@ -103,7 +103,7 @@ grid::Layer resample_nearest(const grid::GridGeometry& from,
         from.origin_m.x(), from.resolution_m, from.nx, to.origin_m.x(), to.resolution_m, to.nx);
     const auto rows = nearest_indices(
         from.origin_m.y(), from.resolution_m, from.ny, to.origin_m.y(), to.resolution_m, to.ny);
-    grid::Layer result(to.nx, to.ny, kUnknown);
+    grid::Layer result(to.nx, to.ny, kNanF);
     for (int iy = 0; iy < to.ny; ++iy) {
         const int jy = rows[static_cast<std::size_t>(iy)];
         if (jy < 0) continue;
@@ -160,7 +160,7 @@ CellMask both(const CellMask& a, const CellMask& b) {
 
 grid::Layer height_error(const grid::Layer& live_m, const grid::Layer& truth_m) {
     SUREFOOT_ASSERT(live_m.width() == truth_m.width() && live_m.height() == truth_m.height());
-    grid::Layer error_m(live_m.width(), live_m.height(), kUnknown);
+    grid::Layer error_m(live_m.width(), live_m.height(), kNanF);
     for (std::size_t i = 0; i < error_m.size(); ++i) {
         error_m.data()[i] = live_m.data()[i] - truth_m.data()[i];  // NaN stays NaN
     }

@@ -5,14 +5,12 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 grid::Layer row(std::initializer_list<float> values) {
     grid::Layer layer(static_cast<int>(values.size()), 1);
@@ -42,7 +40,7 @@ TEST(Maps, AWholeCellShiftMovesNoValueIntoANeighbour) {
         for (int iy = 0; iy < to.ny; ++iy) {
             for (int ix = 0; ix < to.nx; ++ix) {
                 const grid::Cell cell{ix + shift, iy + 4};
-                const float expected = from.contains(cell) ? layer.at(cell.ix, cell.iy) : kNan;
+                const float expected = from.contains(cell) ? layer.at(cell.ix, cell.iy) : kNanF;
                 ASSERT_TRUE(same(moved.at(ix, iy), expected)) << shift << " " << ix << " " << iy;
             }
         }
@@ -61,7 +59,7 @@ TEST(Maps, AnyOtherLatticeTakesTheCellThatHoldsTheCentre) {
             for (int ix = 0; ix < to.nx; ++ix) {
                 const Eigen::Vector2d center = to.center_m({ix, iy});
                 const auto cell = from.cell_at(center.x(), center.y());
-                const float expected = cell ? layer.at(cell->ix, cell->iy) : kNan;
+                const float expected = cell ? layer.at(cell->ix, cell->iy) : kNanF;
                 ASSERT_TRUE(same(moved.at(ix, iy), expected)) << trial;
             }
         }
@@ -83,7 +81,7 @@ TEST(Maps, EdgeMarginByItsDefinition) {
         grid::Layer height(25, 19, 0.0F);
         for (int k = 0; k < 6; ++k) height.at(int(rng.below(25)), int(rng.below(19))) = 0.1F;
         for (int k = 0; k < 40; ++k) height.at(int(rng.below(25)), int(rng.below(19))) = 0.03F;
-        for (int k = 0; k < 20; ++k) height.at(int(rng.below(25)), int(rng.below(19))) = kNan;
+        for (int k = 0; k < 20; ++k) height.at(int(rng.below(25)), int(rng.below(19))) = kNanF;
         EvalMapsConfig config;
         config.edge_margin_cells = margin;
         const CellMask mask = away_from_edges(height, config);
@@ -119,8 +117,8 @@ TEST(Maps, OneStepLeavesOutThreeCellsOnEachSide) {
 }
 
 TEST(Maps, ElevationErrorsOfASmallMap) {
-    const grid::Layer truth = row({0, 0, 0, 0, 0, kNan, 1});
-    const grid::Layer live = row({0, -.01F, .02F, -.03F, .06F, 5, kNan});
+    const grid::Layer truth = row({0, 0, 0, 0, 0, kNanF, 1});
+    const grid::Layer live = row({0, -.01F, .02F, -.03F, .06F, 5, kNanF});
     const ElevationErrors errors = elevation_errors(live, truth, {}, {});
     constexpr double kFloat = 1e-8;  // 0.06 as float
     EXPECT_EQ(errors.count, 5);
@@ -137,15 +135,15 @@ TEST(Maps, ElevationErrorsOfASmallMap) {
 }
 
 TEST(Maps, WithoutACommonCellThereIsNoFigure) {
-    const ElevationErrors errors = elevation_errors(row({kNan, 1}), row({1, kNan}), {}, {});
+    const ElevationErrors errors = elevation_errors(row({kNanF, 1}), row({1, kNanF}), {}, {});
     EXPECT_EQ(errors.count, 0);
     EXPECT_TRUE(std::isnan(errors.median_abs_m) && std::isnan(errors.share_over_50mm));
-    EXPECT_TRUE(std::isnan(coverage(row({1, 1}), row({kNan, kNan}), {})));
+    EXPECT_TRUE(std::isnan(coverage(row({1, 1}), row({kNanF, kNanF}), {})));
 }
 
 TEST(Maps, CoverageCountsTheCellsOfTheMask) {
-    const grid::Layer truth = row({0, 0, 0, 0, kNan});
-    const grid::Layer live = row({1, kNan, 1, 1, 1});
+    const grid::Layer truth = row({0, 0, 0, 0, kNanF});
+    const grid::Layer live = row({1, kNanF, 1, 1, 1});
     EXPECT_DOUBLE_EQ(coverage(live, truth, {}), 0.75);
     CellMask mask(5, 1, 0);
     mask.at(0, 0) = mask.at(1, 0) = mask.at(4, 0) = 1;
@@ -165,8 +163,8 @@ TEST(Maps, RadiusMaskTakesCellCentres) {
 
 TEST(Maps, ConfusionOfASmallMap) {
     //                             safe-------------  unsafe----------------------  no truth
-    const grid::Layer truth = row({1, .9F, .8F, .81F, .79F, 0, .5F, .2F, .3F, 0, kNan});
-    const grid::Layer live = row({1, .8F, .79F, kNan, .80F, .9F, .1F, 0, 0, kNan, 1});
+    const grid::Layer truth = row({1, .9F, .8F, .81F, .79F, 0, .5F, .2F, .3F, 0, kNanF});
+    const grid::Layer live = row({1, .8F, .79F, kNanF, .80F, .9F, .1F, 0, 0, kNanF, 1});
     const Image<Call> calls = classify(live, truth, 0.80);
     using enum Call;
     const std::vector<Call> expected = {true_safe,
@@ -196,8 +194,8 @@ TEST(Maps, UnknownIsNeverCalledSafe) {
     Rng rng(7);
     grid::Layer live(40, 40), truth(40, 40);
     for (std::size_t i = 0; i < live.size(); ++i) {
-        live.data()[i] = rng.uniform() < 0.3 ? kNan : static_cast<float>(rng.uniform());
-        truth.data()[i] = rng.uniform() < 0.3 ? kNan : static_cast<float>(rng.uniform());
+        live.data()[i] = rng.uniform() < 0.3 ? kNanF : static_cast<float>(rng.uniform());
+        truth.data()[i] = rng.uniform() < 0.3 ? kNanF : static_cast<float>(rng.uniform());
     }
     for (const double threshold : {0.0, 0.5, 1.0}) {
         const Image<Call> calls = classify(live, truth, threshold);

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 /// Column of a point that falls into the image. Pixel u covers [u - 0.5, u + 0.5).
 std::optional<double> column_of(const Eigen::Vector3d& p_camera,
@@ -37,8 +36,8 @@ Sightings last_sightings(const grid::GridGeometry& geometry,
     std::vector<Pose> T_camera_world;
     for (const StampedPose& pose : T_world_camera)
         T_camera_world.push_back(pose.T_world_body.inverse());
-    Sightings seen{grid::Layer(geometry.nx, geometry.ny, kUnknown),
-                   grid::Layer(geometry.nx, geometry.ny, kUnknown)};
+    Sightings seen{grid::Layer(geometry.nx, geometry.ny, kNanF),
+                   grid::Layer(geometry.nx, geometry.ny, kNanF)};
     for (int iy = 0; iy < geometry.ny; ++iy) {
         for (int ix = 0; ix < geometry.nx; ++ix) {
             const auto z_m = static_cast<double>(height_m.at(ix, iy));
@@ -60,7 +59,7 @@ Sightings last_sightings(const grid::GridGeometry& geometry,
 }
 
 grid::Layer distance_to(const grid::GridGeometry& geometry, const Trajectory& trajectory) {
-    grid::Layer distance_m(geometry.nx, geometry.ny, kUnknown);
+    grid::Layer distance_m(geometry.nx, geometry.ny, kNanF);
     if (trajectory.empty()) return distance_m;
     for (int iy = 0; iy < geometry.ny; ++iy) {
         for (int ix = 0; ix < geometry.nx; ++ix) {

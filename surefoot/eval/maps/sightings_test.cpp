@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr PinholeView kView{672, 376, 350.0, 350.0, 335.5, 187.5};
 
 /// 1 m above the floor at x, looking straight ahead or turned about z.
@@ -21,7 +21,7 @@ StampedPose camera_at(double x_m, double yaw_rad = 0.0) {
 TEST(Sightings, ColumnsAndRangesByHand) {
     const grid::GridGeometry geometry{0.5, 20, 9, {0.0, -2.25}};  // centres y = -2 .. 2
     grid::Layer height(20, 9, 0.0F);
-    height.at(5, 4) = kNan;
+    height.at(5, 4) = kNanF;
     const Sightings seen = last_sightings(geometry, height, {camera_at(0.0)}, kView, 4.0);
     // Centre (3.25, 0): straight ahead. Row 1 m below: v = 187.5 + 350 / 3.25 is inside.
     EXPECT_NEAR(static_cast<double>(seen.column_px.at(6, 4)), 335.5, 1e-4);

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// 1 m x 1 m of cells of 0.1 m, middles at 0.05, 0.15 ...
 const grid::GridGeometry kGrid{0.1, 10, 10, {0.0, 0.0}};
 /// Covers 2 cells along and 4 across when it stands on a corner of cells.
@@ -40,7 +40,7 @@ TEST(ThesisPolicy, LiesWithTheRobot) {
 }
 
 TEST(ThesisPolicy, AllowsGroundThatNobodyHasSeen) {
-    const Image<float> rating(10, 10, kNan);
+    const Image<float> rating(10, 10, kNanF);
     const ThesisAnswer inside = thesis_policy(kPolicy, {0.5, 0.5, 0.0}, kGrid, rating.view());
     EXPECT_TRUE(inside.allowed);
     EXPECT_EQ(inside.unmapped, 8);
@@ -48,7 +48,7 @@ TEST(ThesisPolicy, AllowsGroundThatNobodyHasSeen) {
 }
 
 TEST(ThesisPolicy, UnmappedGroundHidesWhatIsBad) {
-    Image<float> rating(10, 10, kNan);
+    Image<float> rating(10, 10, kNanF);
     rating.at(4, 4) = 0.0F;
     EXPECT_TRUE(thesis_policy(kPolicy, {0.5, 0.5, 0.0}, kGrid, rating.view()).allowed);
     ThesisPolicy cautious;

@@ -89,7 +89,7 @@ void blend(Picture& picture, const cv::Mat& mask, int left, int top, Rgb8 color)
 
 int nearest_px(double place_px) noexcept {
     constexpr int kFarthest_px = 1 << 30;
-    return std::clamp(saturated_integer<int>(std::round(place_px)), -kFarthest_px, kFarthest_px);
+    return clamped_integer<int>(std::round(place_px), -kFarthest_px, kFarthest_px);
 }
 
 double text_width_px(const std::string& text, const TextStyle& style) {

@@ -8,16 +8,16 @@
 #include <limits>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kRounding = 1e-12;
 
 TEST(ErrorBins, FiguresByHand) {
-    const std::vector<float> errors = {-4.0F, kNan, 1.0F, 2.0F, -3.0F, 0.0F};
+    const std::vector<float> errors = {-4.0F, kNanF, 1.0F, 2.0F, -3.0F, 0.0F};
     const ErrorFigures figures = error_figures(errors);
     EXPECT_EQ(figures.count, 5);
     EXPECT_EQ(figures.median_abs, 2.0);            // 0 1 2 3 4
@@ -29,7 +29,7 @@ TEST(ErrorBins, FiguresByHand) {
 }
 
 TEST(ErrorBins, EachBinHasTheHistogramOfItsErrors) {
-    const std::vector<float> errors = {-0.004F, kNan, 0.001F, 0.02F};
+    const std::vector<float> errors = {-0.004F, kNanF, 0.001F, 0.02F};
     const std::vector<float> keys = {0.5F, 0.5F, 1.5F, 1.6F};
     const std::vector<double> edges = {0.0, 1.0, 2.0};
     const auto bins = by_bins(errors, keys, edges);
@@ -43,7 +43,7 @@ TEST(ErrorBins, EachBinHasTheHistogramOfItsErrors) {
 }
 
 TEST(ErrorBins, NothingGivesNanAndZero) {
-    for (const auto& errors : {std::vector<float>{}, std::vector<float>{kNan, kNan}}) {
+    for (const auto& errors : {std::vector<float>{}, std::vector<float>{kNanF, kNanF}}) {
         const ErrorFigures figures = error_figures(errors);
         EXPECT_EQ(figures.count, 0);
         for (const double figure : {figures.median_abs,
@@ -61,8 +61,8 @@ TEST(ErrorBins, NothingGivesNanAndZero) {
 
 TEST(ErrorBins, BordersBelongToTheUpperBinAndTheLastToTheLast) {
     const std::vector<double> edges = {0.0, 1.0, 3.0};
-    const std::vector<float> keys = {-0.1F, 0.0F, 0.9F, 1.0F, 3.0F, 3.1F, kNan, 0.5F};
-    const std::vector<float> errors = {9.0F, 1.0F, 2.0F, 3.0F, 4.0F, 9.0F, 9.0F, kNan};
+    const std::vector<float> keys = {-0.1F, 0.0F, 0.9F, 1.0F, 3.0F, 3.1F, kNanF, 0.5F};
+    const std::vector<float> errors = {9.0F, 1.0F, 2.0F, 3.0F, 4.0F, 9.0F, 9.0F, kNanF};
     const auto bins = by_bins(errors, keys, edges);
     ASSERT_EQ(bins.size(), 2u);
     EXPECT_EQ(bins[0].from, 0.0);
@@ -100,9 +100,9 @@ TEST(ErrorBins, EveryBinIsWhatAFilterFinds) {
 
 TEST(SigmaCoverage, CountsByHand) {
     const std::vector<float> errors = {
-        0.5F, -1.0F, 1.5F, -3.0F, 3.5F, kNan, 1.0F, 1.0F, 0.0F, 1.0F};
+        0.5F, -1.0F, 1.5F, -3.0F, 3.5F, kNanF, 1.0F, 1.0F, 0.0F, 1.0F};
     const std::vector<float> sigmas = {
-        1.0F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F, kNan, -1.0F, 0.0F, kInfinity};
+        1.0F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F, kNanF, -1.0F, 0.0F, kInfinity};
     const SigmaCoverage coverage = sigma_coverage(errors, sigmas);
     EXPECT_EQ(coverage.count, 6);
     EXPECT_EQ(coverage.within_1_sigma, 3.0 / 6.0);  // 0.5, -1, and 0 at sigma 0

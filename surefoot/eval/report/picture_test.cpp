@@ -8,11 +8,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kLeft = layout::kMargin_px + layout::kAxisBand_px;
 constexpr int kTop = layout::kTitleBand_px;
 
@@ -74,7 +74,7 @@ TEST(Picture, ForwardIsUpAndLeftIsLeft) {
 TEST(Picture, UnknownIsHatchedAndNeverAColourOfTheMap) {
     const grid::GridGeometry geometry = small_grid();
     const Picture picture =
-        render_layer(geometry, grid::Layer(4, 6, kNan), plain(ColorMap::safety), {});
+        render_layer(geometry, grid::Layer(4, 6, kNanF), plain(ColorMap::safety), {});
     for (int k = 1; k < 130; ++k) EXPECT_TRUE(is_hatch(picture.at(kLeft + k, kTop + 2 * k)));
     for (const ColorMap map : {ColorMap::viridis, ColorMap::cividis, ColorMap::safety}) {
         for (int k = 0; k <= 100; ++k) EXPECT_FALSE(is_hatch(color_at(map, 0.01 * k)));
@@ -216,7 +216,7 @@ TEST(Picture, OverlaysStayInsideTheMap) {
     const grid::Layer layer(240, 240, 0.0F);
     Overlays overlays = without_scale_bar();
     const Picture bare = render_layer(geometry, layer, plain(), overlays);
-    overlays.trajectory_m = {{-50.0, -50.0}, {50.0, 50.0}, {kNan, 0.0}};
+    overlays.trajectory_m = {{-50.0, -50.0}, {50.0, 50.0}, {kNanF, 0.0}};
     overlays.marks = {{{2.99, -2.99}, "corner"}};
     const Picture drawn = render_layer(geometry, layer, plain(), overlays);
     const int side = 960;
@@ -236,7 +236,7 @@ TEST(Picture, ShownRangeIgnoresAFewWildValues) {
     values.data()[0] = -500.0F;
     values.data()[999] = std::numeric_limits<float>::infinity();
     values.data()[998] = 900.0F;
-    values.data()[500] = kNan;
+    values.data()[500] = kNanF;
     LayerStyle style;
     const ValueRange range = shown_range(values, style);
     EXPECT_NEAR(range.low, 0.010, 0.002);
@@ -245,7 +245,7 @@ TEST(Picture, ShownRangeIgnoresAFewWildValues) {
     EXPECT_NEAR(shown_range(values, style).high - shown_range(values, style).low, 4.0, 1e-9);
     style.value_scale = 1000.0;
     EXPECT_NEAR(shown_range(values, style).high, 989.0, 2.0);
-    EXPECT_EQ(shown_range(Image<float>(3, 3, kNan), style).high, 1.0);
+    EXPECT_EQ(shown_range(Image<float>(3, 3, kNanF), style).high, 1.0);
 }
 
 TEST(Picture, HillShadingKeepsLevelGroundAsItIs) {
@@ -278,7 +278,8 @@ TEST(Picture, PngHoldsThePictureAndIsTheSameEachTime) {
 
 TEST(Picture, OddInputDrawsWithoutHarm) {
     EXPECT_FALSE(render_disparity(Image<float>(), 41.0, {"", ""}).empty());
-    EXPECT_FALSE(render_disparity(Image<float>(4, 4, kNan), 41.0, {"no match at all", ""}).empty());
+    EXPECT_FALSE(
+        render_disparity(Image<float>(4, 4, kNanF), 41.0, {"no match at all", ""}).empty());
     EXPECT_FALSE(render_disparity(Image<float>(4, 4, -3.0F), 41.0, {"negative", ""}).empty());
     EXPECT_FALSE(render_sigma(Image<float>(4, 4, 0.0F), "px", {"\xc3\xa4 \n \x01", ""}).empty());
     Pose lost;
@@ -313,7 +314,7 @@ TEST(Picture, TheErrorLineRisesWithTheErrorAndKeepsPeaks) {
 }
 
 TEST(Picture, ErrorsWithoutAnySampleOrSizeStillDraw) {
-    const float nan = kNan;
+    const float nan = kNanF;
     for (const auto& samples : {std::vector<ErrorSample>{},
                                 std::vector<ErrorSample>{{3.0, 0.0}},
                                 std::vector<ErrorSample>{{0.0, 0.0}, {1.0, 0.0}},

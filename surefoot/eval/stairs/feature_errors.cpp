@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <tuple>
 #include <utility>
+
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
 using stairs::FeaturePose;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What all kinds are compared by.
 struct Placed {

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kLeft = layout::kMargin_px + layout::kAxisBand_px;
 constexpr int kTop = layout::kTitleBand_px;
 constexpr int kSide_px = 800;  ///< of the map below
@@ -102,7 +102,7 @@ TEST(StairsPicture, AFlightSaysItsStepsAndWhatTheyMeasure) {
 }
 
 TEST(StairsPicture, NothingFoundIsTheMapAlone) {
-    grid::Layer with_rim(40, 40, kNan);
+    grid::Layer with_rim(40, 40, kNanF);
     for (int iy = 2; iy < 38; ++iy) {
         for (int ix = 2; ix < 38; ++ix) with_rim.at(ix, iy) = 0.0F;
     }
@@ -220,7 +220,7 @@ TEST(StairsPicture, ADoorIsALineAcrossItsOpening) {
 
 TEST(StairsPicture, ShowsWhatIsKnownAndWhereOneStands) {
     const grid::GridGeometry geometry{0.1, 200, 200, {0.0, 0.0}};
-    grid::Layer height_m(200, 200, kNan);
+    grid::Layer height_m(200, 200, kNanF);
     height_m.at(100, 100) = 0.0F;
     const Picture one = render_features(geometry, height_m, {}, without_scale_bar(), {"t", ""});
     Overlays overlays = without_scale_bar();

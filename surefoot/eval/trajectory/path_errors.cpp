@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/assert.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// evo's rel_delta_tol.
 constexpr double kLengthTolerance = 0.1;
 

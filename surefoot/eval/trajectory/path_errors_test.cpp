@@ -7,12 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::eval {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kRounding = 1e-9;
 
 std::vector<PosePair> one_to_one(std::size_t count) {

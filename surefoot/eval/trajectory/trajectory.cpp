@@ -8,18 +8,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <tuple>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::eval {
 namespace {
 
 constexpr double kShortestPath_m = 1e-3;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::vector<std::size_t> order_by_time(const Trajectory& trajectory) {
     std::vector<std::size_t> order(trajectory.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/io/bytes.hpp"
 #include "surefoot/io/clouds/cloud_rows.hpp"
 #include "surefoot/io/clouds/cloud_writer.hpp"
@@ -170,7 +171,6 @@ TEST(ShiftedReader, CountsFromNearLargeCoordinates) {
               Eigen::Vector3d(637000.0, -5403400.0, 0.0));
     const TemporaryFolder folder;
     PointCloud cloud;
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     cloud.points_m = {
         {kNan, 0, 0}, {637012.241, 851431.552, 431.667}, {637012.242, 851431.553, 431.7}};
     cloud.width = 3;

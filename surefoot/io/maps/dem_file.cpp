@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "surefoot/core/height_limit.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/images/image_file.hpp"
 #include "surefoot/io/maps/height_rules.hpp"
@@ -17,7 +18,6 @@
 namespace surefoot::io {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoData = -9999.0;
 constexpr double kFinest_m = 1e-4;  ///< cells as `surefoot dem` makes them
 constexpr double kCoarsest_m = 1000.0;
@@ -229,7 +229,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
                         geometry->ny,
                         body.size()));
     }
-    Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kUnknown), {}};
+    Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kNanF), {}};
     WordReader words(body);
     for (int row = 0; row < geometry->ny; ++row) {
         float* out = dem.values.row(geometry->ny - 1 - row);

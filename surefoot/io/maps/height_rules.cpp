@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "surefoot/core/height_limit.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::io {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 /// No map for a walking machine has a hole or a tower of this height without anything in between.
 constexpr double kFar_m = 50.0;
 constexpr double kFarOfRange = 10.0;
@@ -27,7 +27,7 @@ std::int64_t replace(std::span<float> heights_m, double low_m, double high_m) {
     for (float& height_m : heights_m) {
         const auto z_m = static_cast<double>(height_m);
         if (!(z_m >= low_m && z_m <= high_m)) continue;
-        height_m = kUnknown;
+        height_m = kNanF;
         ++cells;
     }
     return cells;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "surefoot/core/time.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/recordings/recorder.hpp"
 #include "surefoot/io/recordings/recording.hpp"
@@ -11,12 +12,6 @@ namespace surefoot::io {
 namespace {
 
 constexpr double kGapFactor = 1.5;
-
-std::int64_t median(std::vector<std::int64_t> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 void describe_stamps(const std::vector<std::int64_t>& times_ns, RecordingInfo& info) {
     std::vector<std::int64_t> intervals_ns;
@@ -30,7 +25,7 @@ void describe_stamps(const std::vector<std::int64_t>& times_ns, RecordingInfo& i
     }
     if (intervals_ns.empty()) return;
     info.duration_s = seconds_from_ns(times_ns.back() - times_ns.front());
-    const std::int64_t typical_ns = median(intervals_ns);
+    const std::int64_t typical_ns = upper_median(intervals_ns);
     info.rate_hz = 1e9 / static_cast<double>(typical_ns);
     for (const std::int64_t interval_ns : intervals_ns) {
         if (static_cast<double>(interval_ns) <= kGapFactor * static_cast<double>(typical_ns))
@@ -61,7 +56,8 @@ void describe_imu(const std::vector<ImuSample>& samples, RecordingInfo& info) {
     for (std::size_t i = 1; i < samples.size(); ++i) {
         intervals_ns.push_back(samples[i].time_ns - samples[i - 1].time_ns);
     }
-    if (!intervals_ns.empty()) info.imu_rate_hz = 1e9 / static_cast<double>(median(intervals_ns));
+    if (!intervals_ns.empty())
+        info.imu_rate_hz = 1e9 / static_cast<double>(upper_median(intervals_ns));
 }
 
 /// Decodes a video to its end: its container may announce frames that are not there.

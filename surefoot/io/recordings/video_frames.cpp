@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/images/image_file.hpp"
 
@@ -43,12 +44,7 @@ class FrameTimes {
     }
 
   private:
-    [[nodiscard]] double typical_ms() {
-        const auto middle =
-            intervals_ms_.begin() + static_cast<std::ptrdiff_t>(intervals_ms_.size() / 2);
-        std::nth_element(intervals_ms_.begin(), middle, intervals_ms_.end());
-        return *middle;
-    }
+    [[nodiscard]] double typical_ms() { return upper_median_in_place(intervals_ms_); }
     int index_ = 0;
     bool container_has_times_ = true;
     double first_ms_ = 0.0;

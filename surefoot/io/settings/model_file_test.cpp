@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/io_testing.hpp"
 
@@ -13,8 +13,6 @@ namespace surefoot::io {
 namespace {
 
 using testing::contains;
-
-constexpr double kRad = std::numbers::pi / 180.0;
 
 /// Two links, the upper one fixed to the root, the lower one on a knee that is turned by 90 deg.
 constexpr const char* kSmall = R"(name: small
@@ -49,18 +47,18 @@ TEST(ModelFile, everything_that_it_says_is_read) {
     EXPECT_TRUE(model->links[2].boxes.empty());
     ASSERT_EQ(model->joints.size(), 2U);
     EXPECT_FALSE(model->joints[0].moves);
-    EXPECT_NEAR(model->joints[0].in_parent.roll_pitch_yaw_rad.z(), 90.0 * kRad, 1e-15);
+    EXPECT_NEAR(model->joints[0].in_parent.roll_pitch_yaw_rad.z(), 90.0 * kRadPerDeg, 1e-15);
     const std::vector<const ModelJoint*> moving = model->moving_joints();
     ASSERT_EQ(moving.size(), 1U);
     EXPECT_EQ(moving[0]->axis, Eigen::Vector3d::UnitY());
-    EXPECT_NEAR(moving[0]->max_rad, 90.0 * kRad, 1e-15);
-    EXPECT_NEAR(moving[0]->stand_rad, 5.0 * kRad, 1e-15);
+    EXPECT_NEAR(moving[0]->max_rad, 90.0 * kRadPerDeg, 1e-15);
+    EXPECT_NEAR(moving[0]->stand_rad, 5.0 * kRadPerDeg, 1e-15);
 }
 
 TEST(ModelFile, links_lie_where_joints_bring_them) {
     const auto model = parse_model(kSmall, "m.yaml");
     ASSERT_TRUE(model.ok()) << model.error().message;
-    const Pose T = model->T_base_link("shank", {90.0 * kRad});
+    const Pose T = model->T_base_link("shank", {90.0 * kRadPerDeg});
     EXPECT_LT((T.translation_m - Eigen::Vector3d(0.5, 0.0, -0.4)).norm(), 1e-12);
     // Bent by a right angle the shank's -z looks back, and the thigh's "back" is -y of the root.
     const Eigen::Vector3d down = T.rotation * -Eigen::Vector3d::UnitZ();

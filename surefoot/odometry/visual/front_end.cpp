@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::odometry {
 namespace {
@@ -14,7 +15,6 @@ constexpr double kTrackShift_px = 3.0;  ///< search radius around a followed poi
 constexpr double kAgainShift_px = 5.0;  ///< search radius around a prediction
 /// A point that was followed but does not look like its patch any more is trusted less.
 constexpr double kFollowedNoise = 2.5;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is forgotten
 constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
 
@@ -99,8 +99,8 @@ void FrontEnd::follow(const LandmarkMap& map, const Pose& T_odom_camera, Executo
         const auto px = rectifier_.rectified_from_raw(camera::Side::left, track.raw_px);
         if (!px) continue;
         const Eigen::Vector3d& p_odom_m = map.at(track.slot).p_odom_m;
-        track.pixel_px = at_stamp(
-            {px->x(), px->y(), kUnknown}, track.raw_px, T_odom_camera.inverse() * p_odom_m);
+        track.pixel_px =
+            at_stamp({px->x(), px->y(), kNan}, track.raw_px, T_odom_camera.inverse() * p_odom_m);
         tracks_.push_back(track);
     }
 }
@@ -178,7 +178,7 @@ Track FrontEnd::align_one(const LandmarkMap& map, const Pose& T, const Job& job)
     if (!px) return track;
     track.slot = job.slot;
     track.id = landmark.id;
-    track.pixel_px = {px->x(), px->y(), kUnknown};
+    track.pixel_px = {px->x(), px->y(), kNan};
     track.noise_factor = good ? 1.0 : kFollowedNoise;
     track.correlation = good ? found->correlation : 0.0;
     if (rgbd()) {

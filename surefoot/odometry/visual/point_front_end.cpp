@@ -2,14 +2,14 @@
 #include "surefoot/odometry/visual/point_front_end.hpp"
 
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::odometry {
 
 PointFrontEnd::PointFrontEnd(const camera::Rectifier& rectifier) : Tracks(rectifier) {}
 
 void PointFrontEnd::load(std::span<const SeenPoint> points) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     loaded_ = true;
     right_shows_something_ = false;
     tracks_.clear();
@@ -24,7 +24,7 @@ void PointFrontEnd::load(std::span<const SeenPoint> points) {
             pixel = stereo_pixel(rectifier_, point.raw_left_px, *point.raw_right_px, {});
         points_.push_back({point.id,
                            point.raw_left_px,
-                           pixel.value_or(StereoPixel(left_px->x(), left_px->y(), kUnknown))});
+                           pixel.value_or(StereoPixel(left_px->x(), left_px->y(), kNan))});
     }
 }
 

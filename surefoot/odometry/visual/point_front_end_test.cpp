@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/odometry/synthetic_testing.hpp"
 
@@ -97,7 +98,6 @@ camera::StereoRig rig_of_rectified_images() {
 }
 
 TEST(PointFrontEnd, WhatCannotBeMeasuredIsLeftOut) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     for (const auto& rig : {testing::small_rig(), rig_of_rectified_images()}) {
         const auto rectifier = std::move(camera::Rectifier::make(rig)).value();
         std::vector<SeenPoint> points;
@@ -107,8 +107,8 @@ TEST(PointFrontEnd, WhatCannotBeMeasuredIsLeftOut) {
                               rectifier.raw_from_point(camera::Side::left, p).value(),
                               rectifier.raw_from_point(camera::Side::right, p)});
         }
-        points[0].raw_left_px.x() = kNaN;
-        points[1].raw_right_px->y() = kNaN;
+        points[0].raw_left_px.x() = kNan;
+        points[1].raw_right_px->y() = kNan;
         *points[2].raw_right_px += Eigen::Vector2d(0.0, 5.0);  // rows that differ
         LandmarkMap map({}, rectifier);
         map.add_keyframe(Pose{});
@@ -117,7 +117,7 @@ TEST(PointFrontEnd, WhatCannotBeMeasuredIsLeftOut) {
         front.load(points);
         EXPECT_EQ(front.seed(map, serial), 1);
         EXPECT_TRUE(map.at(0).p_odom_m.isApprox(Eigen::Vector3d(0.3, 0.1, 2.0), 0.05));
-        points[3].raw_left_px.x() = kNaN;
+        points[3].raw_left_px.x() = kNan;
         front.load(points);
         front.follow(map, Pose{}, serial);
         EXPECT_TRUE(front.tracks().empty());

@@ -6,16 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <limits>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/odometry/world_testing.hpp"
 
 namespace surefoot::odometry {
 namespace {
 
 using testing::World;
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double pose_error(const Pose& a, const Pose& b) {
     return difference(a, b).norm();
@@ -76,7 +74,7 @@ TEST(PoseSolver, FortyPercentOutliersChangeNothing) {
 
 TEST(PoseSolver, WorksWithoutAnyDisparity) {
     World world(3, 60, 0.0);
-    for (PointMatch& match : world.matches) match.pixel_px.z() = kUnknown;
+    for (PointMatch& match : world.matches) match.pixel_px.z() = kNan;
     const auto pose = solve(world, Rng(7));
     ASSERT_TRUE(pose.found);
     EXPECT_LT(pose_error(pose.T_world_camera, world.T_world_camera), 1e-8);

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kFade_s = 0.1;  ///< interval of the envelopes' samples: they change within 0.4 s
 
 TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& config) {
@@ -58,16 +58,16 @@ HandMotion::HandMotion(const std::vector<Waypoint>& waypoints,
     const double amplitudes[kAxes] = {config.surge_m,
                                       config.sway_m,
                                       config.bob_m,
-                                      config.roll_deg * kRad,
-                                      config.pitch_deg * kRad,
-                                      config.yaw_deg * kRad};
+                                      config.roll_deg * kRadPerDeg,
+                                      config.pitch_deg * kRadPerDeg,
+                                      config.yaw_deg * kRadPerDeg};
     const bool per_step[kAxes] = {true, false, true, false, true, false};
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
         steps_[axis] = {amplitudes[axis] * rng.uniform(0.9, 1.1),
                         per_step[axis] ? omega_rad_s : 0.5 * omega_rad_s,
                         rng.uniform(0.0, 2.0 * std::numbers::pi)};
         // Two slow waves of unrelated periods, 4-9 and 10-25 s, wander without repeating soon.
-        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRad;
+        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRadPerDeg;
         const double periods_s[2] = {rng.uniform(4.0, 9.0), rng.uniform(10.0, 25.0)};
         for (std::size_t i = 0; i < 2; ++i) {
             drifts_[axis][i] = {0.5 * drift * rng.uniform(0.9, 1.1),

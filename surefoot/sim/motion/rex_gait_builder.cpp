@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/sim/motion/gait_trace.hpp"
 #include "surefoot/sim/motion/rex_gait.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr int kTrace = 64;
 // The first and last shift of weight need longer than the trace has them: it holds its ends.
 constexpr int kLead = 5;
@@ -25,7 +25,7 @@ constexpr int kSamples = kLead + kTrace + kLead;
 /// The sole left behind in the trace lies 42 mm high at the ankle before it swings: 10 deg about
 /// the toes. It rises during this many samples, after
 /// the other foot has landed.
-constexpr double kHeelLift_rad = 10.0 * kRad;
+constexpr double kHeelLift_rad = 10.0 * kRadPerDeg;
 constexpr double kHeel = 6.0;
 /// A difference of height from which a step is one on stairs.
 constexpr double kStair_m = 0.02;
@@ -270,7 +270,8 @@ void RexMotionBuilder::swing(
     const double ring_m = std::min(1e-3 * drawn(rng, config_.ring_mm), limit_m);
     strike.ring_m = {ring_m * rng.uniform(-0.5, 0.5), ring_m * rng.uniform(-0.5, 0.5), ring_m};
     for (const std::size_t axis : {0U, 1U})
-        strike.ring_rad[axis] = drawn(rng, config_.ring_deg) * kRad * (rng.below(2) ? 1.0 : -1.0);
+        strike.ring_rad[axis] =
+            drawn(rng, config_.ring_deg) * kRadPerDeg * (rng.below(2) ? 1.0 : -1.0);
     strike.pulse_m_s2 = drawn(rng, config_.strike_m_s2);
     motion_.strikes_.push_back(strike);
 }
@@ -448,8 +449,8 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     constexpr double kLean_m = 0.12;
     sway.shift_m =
         std::min(drawn(rng, config_.lateral_shift_m), kLean_m - 0.5 * std::abs(movement.left_m));
-    sway.roll_rad = calm * drawn(rng, config_.roll_deg) * kRad;
-    sway.yaw_rad = calm * drawn(rng, config_.yaw_deg) * kRad;
+    sway.roll_rad = calm * drawn(rng, config_.roll_deg) * kRadPerDeg;
+    sway.yaw_rad = calm * drawn(rng, config_.yaw_deg) * kRadPerDeg;
 
     swing_feet(step, lead, rng);
     const std::vector<Row> samples = rows(step, lead, sway);

@@ -6,15 +6,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
-
-constexpr double kRad = std::numbers::pi / 180.0;
 
 Pose turned(const AngleAxisd& rotation) {
     Pose T;
@@ -87,7 +86,7 @@ std::optional<LegAngles> leg_angles(Side side, const Pose& T_body_sole) {
 }
 
 double hip_reach_m(double horizontal_m) noexcept {
-    constexpr double kLeast_rad = 3.0 * kRad;
+    constexpr double kLeast_rad = 3.0 * kRadPerDeg;
     const double a = rex::kUpperLeg_m;
     const double b = rex::kLowerLeg_m;
     const double length_sq = a * a + b * b + 2.0 * a * b * std::cos(kLeast_rad);
@@ -101,7 +100,7 @@ std::optional<std::string> joint_problem(Side side, const LegAngles& angles) {
                             {"ankle dorsiflexion", -10.0, 20.0, angles.dorsiflexion_rad()},
                             {"ankle inversion", -9.0, 9.0, angles.ankle_roll_rad}};
     for (const Range& range : ranges) {
-        const double angle_deg = range.angle_rad / kRad;
+        const double angle_deg = range.angle_rad / kRadPerDeg;
         if (angle_deg >= range.min_deg && angle_deg <= range.max_deg) continue;
         return fmt::format("{} {} would be {:.1f} deg, allowed are {:.0f} to {:.0f}",
                            kSideNames[static_cast<int>(side)],

@@ -10,19 +10,19 @@
 #include <numbers>
 #include <utility>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kHalfTurn_rad = std::numbers::pi;
 constexpr std::size_t kMaxSteps = 2000;  // 5.5 h at 10 s a step: a slip in the script
 /// A step that brings the machine less nearer than this is not worth its ten seconds.
 constexpr double kWorthwhile_m = 0.04;
 /// ASSUMPTION: the machine lands this much (1 sigma) beside the commanded place.
 constexpr double kLandingSigma_m = 0.003;
-constexpr double kLandingSigma_rad = 0.2 * kRad;
+constexpr double kLandingSigma_rad = 0.2 * kRadPerDeg;
 
 double wrapped(double angle_rad) {
     return std::remainder(angle_rad, 2.0 * kHalfTurn_rad);
@@ -62,7 +62,7 @@ class Planner {
     void walk(const Waypoint& goal, const Gait& gait);
     [[nodiscard]] Gait choose(const Waypoint& goal) const;
     [[nodiscard]] bool allowed(const RexMovement& movement, const Gait& gait) const;
-    [[nodiscard]] double turn_rad() const { return sizes_.turn_deg * kRad; }
+    [[nodiscard]] double turn_rad() const { return sizes_.turn_deg * kRadPerDeg; }
 
     RexStepSizes sizes_;
     std::vector<RexMovement> movements_;
@@ -171,10 +171,10 @@ std::vector<RexMovement> rex_movements(const RexStepSizes& sizes) {
                              -scale * sizes.sideways_m * std::sin(angle_rad),
                              0.0});
     };
-    for (int i = 0; i < 8; ++i) sector(1 + i, i * 45.0 * kRad, 0.5);
-    for (int i = 0; i < 16; ++i) sector(9 + i, i * 22.5 * kRad, 1.0);
-    movements.push_back({25, 0.0, 0.0, sizes.turn_deg * kRad});
-    movements.push_back({26, 0.0, 0.0, -sizes.turn_deg * kRad});
+    for (int i = 0; i < 8; ++i) sector(1 + i, i * 45.0 * kRadPerDeg, 0.5);
+    for (int i = 0; i < 16; ++i) sector(9 + i, i * 22.5 * kRadPerDeg, 1.0);
+    movements.push_back({25, 0.0, 0.0, sizes.turn_deg * kRadPerDeg});
+    movements.push_back({26, 0.0, 0.0, -sizes.turn_deg * kRadPerDeg});
     return movements;
 }
 

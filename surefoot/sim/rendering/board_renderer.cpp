@@ -64,7 +64,7 @@ class Sheet {
 
     static int bin_of(double value_m, double low_m, double high_m) {
         const double bin = std::floor(kBins * (value_m - low_m) / (high_m - low_m));
-        return std::clamp(saturated_integer<int>(bin), 0, kBins - 1);
+        return clamped_integer<int>(bin, 0, kBins - 1);
     }
     [[nodiscard]] int column_of(double x_m) const {
         return bin_of(x_m, sheet_.paper.left_m, sheet_.paper.right_m);

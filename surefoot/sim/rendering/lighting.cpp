@@ -2,7 +2,8 @@
 #include "surefoot/sim/rendering/lighting.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::sim {
 
@@ -18,7 +19,6 @@ void Lighting::describe(ConfigVisitor& visitor) {
 }
 
 Eigen::Vector3d Lighting::towards_lamp() const {
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     const double elevation_rad = lamp_elevation_deg * kRadPerDeg;
     const double azimuth_rad = lamp_azimuth_deg * kRadPerDeg;
     return {std::cos(elevation_rad) * std::cos(azimuth_rad),

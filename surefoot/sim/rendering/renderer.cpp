@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/sim/rendering/edge_pixels.hpp"
 
 namespace surefoot::sim {
@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// Four places in a pixel that no row and no column share: an edge of any direction is graded.
 constexpr std::array<std::array<double, 2>, 4> kPlaces_px{
     {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
@@ -69,7 +68,7 @@ void store_geometry(const RayField& rays, const CastBlock& block, CleanImage& ou
             const RayHit hit = block.hits[i];
             out.surface.row(v)[u] = static_cast<std::int16_t>(hit.face);
             out.depth_m.row(v)[u] =
-                hit.face < 0 ? kNan : static_cast<float>(hit.distance_m * rays.ray(u, v).z());
+                hit.face < 0 ? kNanF : static_cast<float>(hit.distance_m * rays.ray(u, v).z());
         }
     }
 }
@@ -394,7 +393,7 @@ Image<float> rectified_disparity_px(const Scene& scene,
     ideal.cy_px = rig.cy_px;
     const RayField rays(camera::Camera{ideal, rig.width, rig.height});
     const Pose T_world_camera = T_world_body * rig.T_body_camera;
-    Image<float> depth_m(rig.width, rig.height, kNan);
+    Image<float> depth_m(rig.width, rig.height, kNanF);
     const ImageViews views(T_world_camera);
     for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
         cast_block(scene, rays, views, block_x, block_y, block);

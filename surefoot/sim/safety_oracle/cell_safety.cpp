@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/sim/safety_oracle/foot_ground.hpp"
 #include "surefoot/sim/safety_oracle/safety_figures.hpp"
 #include "surefoot/sim/safety_oracle/swept_box.hpp"
@@ -18,7 +19,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kRounding = 1e-7;
 /// Cells are judged in blocks of this many along x and y that share their samples.
 constexpr int kBlock = 32;
@@ -33,7 +33,7 @@ class Walk {
         : lattice_(lattice),
           joined_m_(joined_m),
           surfaces_(cells()),
-          level_m_(lattice.nx, lattice.ny, kNan) {
+          level_m_(lattice.nx, lattice.ny, kNanF) {
         for (int iy = 0; iy < lattice.ny; ++iy) {
             for (int ix = 0; ix < lattice.nx; ++ix) {
                 const Vector2d p = lattice.center_m(ix, iy);

@@ -58,8 +58,8 @@ FootGround::Patch FootGround::worst_patch(const Vector2d& size_m, double side_m)
     std::vector<Sum> sums(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
     for (const SolePoint& p : points) {
         const Vector2d share = p.p_foot_m.cwiseQuotient(size_m).array() + 0.5;
-        const int ix = std::clamp(saturated_integer<int>(share.x() * nx), 0, nx - 1);
-        const int iy = std::clamp(saturated_integer<int>(share.y() * ny), 0, ny - 1);
+        const int ix = clamped_integer<int>(share.x() * nx, 0, nx - 1);
+        const int iy = clamped_integer<int>(share.y() * ny, 0, ny - 1);
         Sum& sum = sums[static_cast<std::size_t>(iy * nx + ix)];
         sum.residual_m += p.z_m - plane.at(p.p_foot_m);
         sum.p_field_m += p.p_field_m;

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/sim/safety_oracle/foot_ground.hpp"
 #include "surefoot/sim/safety_oracle/swept_box.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kDeg = 180.0 / std::numbers::pi;
 /// What reaches a limit exactly does not exceed it, whatever the rounding [m, rad].
 constexpr double kRounding = 1e-7;
 
@@ -58,9 +58,7 @@ class Collector {
 
 double median(std::vector<double>& values) {
     if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median_in_place(values);
 }
 
 /// Slopes over 20 mm along both axes of the field, inside one foot, at every second sample.
@@ -135,8 +133,8 @@ class Inspector {
         if (!(stance_.tilt_rad <= figures_.tilt_rad + kRounding)) {
             found_.add(Danger::not_level_here,
                        stance_.tilt_rad,
-                       stance_.tilt_rad * kDeg,
-                       figures_.tilt_rad * kDeg,
+                       stance_.tilt_rad * kDegPerRad,
+                       figures_.tilt_rad * kDegPerRad,
                        here);
         }
     }
@@ -177,8 +175,8 @@ class Inspector {
         if (!(tilt_rad <= figures_.tilt_rad + kRounding)) {
             found_.add(Danger::tilt,
                        tilt_rad,
-                       tilt_rad * kDeg,
-                       figures_.tilt_rad * kDeg,
+                       tilt_rad * kDegPerRad,
+                       figures_.tilt_rad * kDegPerRad,
                        {middle_m, under.mean_z_m});
         }
         const auto patch = under.worst_patch(foot.max_m - foot.min_m, figures_.patch_side_m);

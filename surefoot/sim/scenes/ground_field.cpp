@@ -102,7 +102,7 @@ std::vector<int> all_primitives(const Scene& scene) {
 /// Of a sample; those beyond a million kilometres become one there.
 int index_of(double samples) {
     constexpr int kFarthest = 1 << 28;
-    return std::clamp(saturated_integer<int>(samples), -kFarthest, kFarthest);
+    return clamped_integer<int>(samples, -kFarthest, kFarthest);
 }
 
 }  // namespace

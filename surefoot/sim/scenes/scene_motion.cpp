@@ -5,9 +5,9 @@
 
 #include <array>
 #include <cstdint>
-#include <numbers>
 #include <string_view>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/sim/motion/motion_scripts.hpp"
 #include "surefoot/sim/motion/rex_kinematics.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
@@ -15,7 +15,6 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kMaxWaypoints = 1000;
 constexpr double kReach_m = 100.0;
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/sim/scenes/solids.hpp"
 
 namespace surefoot::sim {
@@ -18,7 +18,6 @@ constexpr double kMinRise_m = 0.005;
 constexpr double kMaxRise_m = 0.5;
 /// Steps of one flight may differ by +-5 mm (NZ D1/AS1, Table 6 and its text).
 constexpr double kMaxVariation_m = 0.005;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// A ray to a point of a surface ends this much before it, so that the surface does not hide
 /// itself.
 constexpr double kSelf_m = 1e-6;
@@ -94,7 +94,7 @@ void mark_around(Image<std::uint8_t>& mask, int ix, int iy, int margin) {
 }  // namespace
 
 Image<float> dem(const Scene& scene, const Lattice& lattice, DemReduce reduce) {
-    Image<float> heights_m(lattice.nx, lattice.ny, kNan);
+    Image<float> heights_m(lattice.nx, lattice.ny, kNanF);
     for (int iy = 0; iy < lattice.ny; ++iy) {
         for (int ix = 0; ix < lattice.nx; ++ix) {
             const Eigen::Vector2d center_m = lattice.center_m(ix, iy);

@@ -4,17 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/sim/motion/planar.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::sim {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 SceneTruth truth_from(const char* scene, double x_m) {
     SceneTruth truth;
@@ -28,7 +26,6 @@ SceneTruth truth_from(const char* scene, double x_m) {
 
 /// Is this place on or below the board of the scene `table`?
 bool under_board(const ScriptedScene& table, const Eigen::Vector2d& p_m) {
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     const auto T_world_side = PlanarPose::of(
         drawn_number(table, "distance_m"), 0.0, kRadPerDeg * drawn_number(table, "angle_deg"));
     const Eigen::Vector2d p_side_m = T_world_side.inverse_times(p_m);
@@ -98,7 +95,7 @@ TEST(TruthTest, EdgesAreMaskedWithTheirMargin) {
     }
     EXPECT_EQ(edge_mask(low), Image<std::uint8_t>(9, 3));
     Image<float> hole(9, 3, 0.0F);
-    hole.at(0, 0) = kNan;
+    hole.at(0, 0) = kNanF;
     const Image<std::uint8_t> beside_hole = edge_mask(hole);
     EXPECT_EQ(beside_hole.at(0, 0), 1);
     EXPECT_EQ(beside_hole.at(3, 0), 1);

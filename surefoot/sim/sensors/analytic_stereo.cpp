@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/sim/rendering/ray_caster.hpp"
 
 namespace surefoot::sim {
@@ -17,8 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Independent numbers of one frame, and those of all frames.
 constexpr std::uint64_t kStreams = 3;
 enum Stream : std::uint64_t { white, correlated, luck };
@@ -184,7 +183,7 @@ void AnalyticStereo::cast_rows(const Pose& T_world_camera, int block_y, View& ou
             for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
                 const RayHit hit = block.hits[i];
                 out.surface.row(v)[u] = hit.face;
-                disparity_px[u] = kNan;
+                disparity_px[u] = kNanF;
                 missing_chance[u] = 1.0F;
                 if (hit.face < 0) continue;
                 // Through a float as the depth images of the renderer are.
@@ -291,7 +290,7 @@ AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, floa
     // The other end of luck decides here, apart from what is bridged.
     const bool missing = 1.0F - luck < view.missing_chance.row(v)[u];
     const bool nothing = shadow == Shadow::outside || (hidden && !bridged) || missing;
-    match.disparity_px = nothing || !(found_px <= search_px) ? kNan : found_px;
+    match.disparity_px = nothing || !(found_px <= search_px) ? kNanF : found_px;
     return match;
 }
 
@@ -316,8 +315,8 @@ void AnalyticStereo::measure_row(const View& view,
         // Also what errors have pushed behind infinity.
         const bool known = measured_px > 0.0F;
         const double suspicion = found.invented ? config_.edge_suspicion : config_.plain_suspicion;
-        out.disparity_px.row(v)[u] = known ? measured_px : kNan;
-        out.sigma_px.row(v)[u] = known ? scale.reported_px : kNan;
+        out.disparity_px.row(v)[u] = known ? measured_px : kNanF;
+        out.sigma_px.row(v)[u] = known ? scale.reported_px : kNanF;
         out.outlier_probability.row(v)[u] = known ? static_cast<float>(suspicion) : 1.0F;
     }
 }

@@ -7,10 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <variant>
 
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/sim/rendering/counter_random.hpp"
 #include "surefoot/sim/rendering/ray_caster.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// Independent numbers of one frame.
 constexpr std::uint64_t kStreams = 4;
 enum Stream : std::uint64_t { axial, lateral_u, lateral_v, loss };
@@ -175,8 +175,8 @@ void DepthCamera::measure_row(
     const Pose& T_world_camera, int frame, int v, const Image<Seen>& seen, DepthFrame& out) const {
     const std::uint64_t stream = kStreams * static_cast<std::uint64_t>(frame);
     for (int u = 0; u < rays_.width(); ++u) {
-        out.depth_m.row(v)[u] = kNan;
-        out.sigma_m.row(v)[u] = kNan;
+        out.depth_m.row(v)[u] = kNanF;
+        out.sigma_m.row(v)[u] = kNanF;
         Seen at = seen.row(v)[u];
         const bool edge = near_edge(seen, u, v);
         if (edge) at = beside_edge(T_world_camera, u, v, at, stream);
@@ -248,7 +248,6 @@ bool DepthCamera::returns(const Pose& T_world_camera,
                           double cosine,
                           double luck) const {
     if (seen.depth_m < config_.min_range_m || seen.depth_m > config_.max_range_m) return false;
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     if (smaller_angle_rad(cosine) > config_.max_incidence_deg * kRadPerDeg) return false;
     const Surface& surface = scene_->surfaces()[static_cast<std::size_t>(seen.surface)];
     const Material& material = scene_->materials()[static_cast<std::size_t>(surface.material)];

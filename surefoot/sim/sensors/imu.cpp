@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
@@ -25,7 +25,6 @@ Vector3d normal3(Rng& rng, double sigma) {
 constexpr std::uint64_t kBiasStream = ~std::uint64_t{0};
 constexpr std::uint64_t kGyroWalkStream = kBiasStream - 1;
 constexpr std::uint64_t kAccelWalkStream = kBiasStream - 2;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// What the converter makes of a value.
 Vector3d converted(Vector3d value, double range, double step) {

@@ -3,15 +3,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 #include <utility>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, and its derivatives by s.
 struct Blend {

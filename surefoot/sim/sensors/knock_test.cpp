@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/sim/motion/hand_motion.hpp"
 #include "surefoot/sim/motion/motion_checks.hpp"
 
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 const Eigen::Vector3d kCamera_m(0.075, 0.06, 0.05);
 const KnockConfig kKnock{2.0, 1.0, -3.0, 2.0};
 

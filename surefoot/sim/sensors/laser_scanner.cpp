@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Columns in memory at a time: enough for the threads of a desk, 15 MB at full resolution.
 constexpr int kBatch = 16;
 /// Mean over a disc by its centre and four places at sqrt(2/3) of the radius (exact for polynomials

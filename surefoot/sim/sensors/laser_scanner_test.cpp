@@ -5,16 +5,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/sim/sensors/sensor_scenes_testing.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 LaserScannerConfig window(double half_width_deg, double step_deg) {
     LaserScannerConfig config;

@@ -2,16 +2,12 @@
 #include "surefoot/sim/sensors/modelled_odometry.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
-namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-}  // namespace
+namespace {}  // namespace
 
 void DriftConfig::describe(ConfigVisitor& visitor) {
     visitor.number("position_m_sqrt_m", position_m_sqrt_m, 0.0, 1.0, "of each axis after 1 m");

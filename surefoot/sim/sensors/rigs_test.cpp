@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::sim {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 const camera::PinholeRadTan& lens_of(const camera::StereoRig& rig) {
     return std::get<camera::PinholeRadTan>(rig.left.model);

@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::sim {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// Columns that one piece of the vertical pass takes.
 constexpr int kStrip = 64;
 /// ASSUMPTION: steepest disparity of a surface that is no jump, px per px; a floor seen from 1 m
@@ -211,7 +211,7 @@ void find_shadows(const Image<float>& disparity_px,
             Shadow& shadow = out.shadow.row(v)[u];
             float& bridge_px = out.bridge_px.row(v)[u];
             shadow = Shadow::none;
-            bridge_px = kNan;
+            bridge_px = kNanF;
             if (at.steps == 0) continue;
             shadow = at.steps <= seam ? Shadow::fattened : Shadow::ramp;
             const float share = shadow == Shadow::fattened

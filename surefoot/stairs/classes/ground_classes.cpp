@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/edges/slice_mean.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
@@ -102,9 +101,9 @@ TreadLevel level_of(const std::vector<float>& heights_m,
                     double cell_m2) {
     constexpr double kTrim = 2.5;
     sorted_m = heights_m;
-    const float median_m = middle_of(sorted_m);
+    const float median_m = upper_median_in_place(sorted_m);
     const double scatter_m =
-        std::max({scatter_about(median_m, sorted_m), std::sqrt(var_m2), kLeastSigma_m});
+        std::max({robust_sigma_about(median_m, sorted_m), std::sqrt(var_m2), kLeastSigma_m});
     double sum_m = 0.0, count = 0.0;
     for (const float height_m : heights_m) {
         const auto off_m = static_cast<double>(height_m - median_m);
@@ -131,9 +130,9 @@ void GroundClassifier::classify(const Terrain& terrain,
     const grid::GridGeometry& grid = terrain.geometry;
     out.of_cell.resize(grid.nx, grid.ny);
     out.tread_height_m.resize(grid.nx, grid.ny);
-    out.tread_height_m.fill(kNan);
+    out.tread_height_m.fill(kNanF);
     out.tread_sigma_m.resize(grid.nx, grid.ny);
-    out.tread_sigma_m.fill(kNan);
+    out.tread_sigma_m.fill(kNanF);
     walk_.find(terrain, features, patches);
     name_patches(patches);
     name_cells(terrain, patches, out);
@@ -321,7 +320,7 @@ void GroundClassifier::name_tread(const Terrain& terrain,
         if (!terrain.known(ix, iy)) {
             // What the next tread hides lies no lower for that; a hole does.
             const float free_m =
-                terrain.free_above_m.empty() ? kNan : terrain.free_above_m.row(iy)[ix];
+                terrain.free_above_m.empty() ? kNanF : terrain.free_above_m.row(iy)[ix];
             const bool is_hole = static_cast<double>(free_m) < level.height_m - config_.drop_m;
             name = is_hole ? GroundClass::drop : GroundClass::unknown;
             return;

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
 #include "surefoot/stairs/terrain_testing.hpp"
 
@@ -19,8 +19,6 @@ using testing::TestFlight;
 using testing::TestMap;
 using enum GroundClass;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 const char* name_of(GroundClass name) {
     return kGroundClassNames[static_cast<std::size_t>(name)];
 }
@@ -31,8 +29,8 @@ class Named {
     explicit Named(TestMap map, const Eigen::Vector2d& stance_m = {-1.0, 0.0})
         : map_(std::move(map)),
           stance_m_(stance_m),
-          free_above_m(map_.geometry.nx, map_.geometry.ny, kNan),
-          clearance_m(map_.geometry.nx, map_.geometry.ny, kNan) {}
+          free_above_m(map_.geometry.nx, map_.geometry.ny, kNanF),
+          clearance_m(map_.geometry.nx, map_.geometry.ny, kNanF) {}
 
     void classify(const StairsConfig& config = {}) {
         Terrain terrain = map_.terrain(stance_m_);
@@ -241,12 +239,12 @@ TEST(GroundClasses, UnknownStaysUnknownUnlessLinesOfSightPassBelowTheGround) {
     const Eigen::Vector2d low_m(0.5, -0.8), high_m(1.0, 0.8);
     const auto hide = [&](float free_above_m) {
         named.for_cells(low_m, high_m, [&](grid::Cell cell) {
-            named.map().height_m.at(cell.ix, cell.iy) = kNan;
+            named.map().height_m.at(cell.ix, cell.iy) = kNanF;
             named.free_above_m.at(cell.ix, cell.iy) = free_above_m;
         });
         named.classify();
     };
-    hide(kNan);
+    hide(kNanF);
     EXPECT_EQ(named.share(unknown, low_m, high_m), 1.0);
     hide(0.4F);  // seen over, from above
     EXPECT_EQ(named.share(unknown, low_m, high_m), 1.0);
@@ -260,11 +258,11 @@ TEST(GroundClasses, AHoleInATreadIsADropAndAHiddenPartIsUnknown) {
     const TestFlight flight{.steps = 4, .riser_m = 0.17, .going_m = 0.30, .width_m = 1.4};
     Named named(noisy([&](double x_m, double y_m) { return flight.at(x_m, y_m); }, 0.003));
     named.for_cells({0.36, -0.4}, {0.54, 0.0}, [&](grid::Cell cell) {
-        named.map().height_m.at(cell.ix, cell.iy) = kNan;
+        named.map().height_m.at(cell.ix, cell.iy) = kNanF;
         named.free_above_m.at(cell.ix, cell.iy) = 0.1F;
     });
     named.for_cells({0.66, -0.4}, {0.84, 0.0}, [&](grid::Cell cell) {
-        named.map().height_m.at(cell.ix, cell.iy) = kNan;
+        named.map().height_m.at(cell.ix, cell.iy) = kNanF;
         named.free_above_m.at(cell.ix, cell.iy) = 0.6F;
     });
     named.classify();
@@ -302,7 +300,7 @@ TEST(GroundClasses, ADropWhoseBottomIsNotSeenIsShownBehindItsBorder) {
     TestMap map = noisy([](double, double) { return 0.0; }, 0.002, 0.0);
     Named named(map);
     named.for_cells({0.5, -3.0}, {3.0, 3.0}, [&](grid::Cell cell) {
-        named.map().height_m.at(cell.ix, cell.iy) = kNan;
+        named.map().height_m.at(cell.ix, cell.iy) = kNanF;
     });
     named.classify();
     EXPECT_EQ(named.count(drop), 0) << "nothing is said of what is not in view";
@@ -340,7 +338,7 @@ TEST(GroundClasses, WithoutGroundNearTheStanceTheNearestIsStoodOn) {
 
 TEST(GroundClasses, NothingKnownIsNothingNamed) {
     Named unknown_map(noisy([](double, double) { return 0.0; }, 0.0));
-    unknown_map.map().height_m.fill(kNan);
+    unknown_map.map().height_m.fill(kNanF);
     unknown_map.classify();
     EXPECT_EQ(unknown_map.count(unknown), 200 * 200);
     Named noise(noisy([](double, double) { return 0.0; }, 0.3));

@@ -6,12 +6,13 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/core/angles.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -60,8 +61,7 @@ TEST(Bottlenecks, StepsAreNoWalls) {
         floor.wall(0.0, 0.0, 3.0, 1.43 - 0.28 * step, top_m);
         floor.wall(0.0, 1.57 + 0.28 * step, 3.0, 3.0, top_m);
     }
-    constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-    floor.wall(0.0, 0.0, 1.3, 3.0, kUnknown).wall(1.6, 0.0, 3.0, 3.0, kUnknown);
+    floor.wall(0.0, 0.0, 1.3, 3.0, kNanF).wall(1.6, 0.0, 3.0, 3.0, kNanF);
     EXPECT_TRUE(bottlenecks(floor).empty());
 }
 

@@ -9,6 +9,8 @@
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/unknown.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::stairs {
@@ -16,7 +18,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Ground is looked at so far before and behind a door.
 constexpr double kGround_m = 0.4;
 /// Beside a wall heights are not those of the ground: a matcher rounds the corner off.
@@ -231,9 +232,7 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
         }
     }
     if (static_cast<double>(values_.size()) < 0.6 * places || values_.empty()) return std::nullopt;
-    const auto middle = values_.begin() + static_cast<std::ptrdiff_t>(values_.size() / 2);
-    std::nth_element(values_.begin(), middle, values_.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(upper_median_in_place(values_));
 }
 
 /// Line through the cells of both walls, with the least sum of distances: far cells are ghosts

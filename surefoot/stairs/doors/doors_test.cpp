@@ -6,19 +6,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 
 namespace surefoot::stairs {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCell_m = 0.025;
 constexpr double kWall_m = 2.0;
 
@@ -60,7 +59,7 @@ struct World {
         geometry = {cell_m, cells, cells, Vector2d::Constant(-0.5 * side_m)};
         height_m = Image<float>(cells, cells, 0.0F);
         var_m2 = Image<float>(cells, cells, 0.0F);
-        clearance_m = Image<float>(cells, cells, kNan);
+        clearance_m = Image<float>(cells, cells, kNanF);
     }
     template <typename F>
     World& each(const F& change) {
@@ -157,7 +156,7 @@ TEST(Doors, WidthIsExactToACellInWallsAlongTheGrid) {
         for (int shift = 0; shift < 10; ++shift) {
             for (int more = 0; more < 5; ++more) {
                 DoorPlan plan;
-                plan.yaw_rad = turn * kDegree;
+                plan.yaw_rad = turn * kRadPerDeg;
                 plan.width_m = 0.80 + 0.2 * more * kCell_m;
                 plan.middle_m = (0.03 + 0.1 * shift) * kCell_m * plan.left();
                 const Found found = find(plan);
@@ -182,7 +181,7 @@ TEST(Doors, WidthIsExactToTenMillimetresInObliqueWalls) {
             std::fmod(yaw_deg, 90.0) == 45.0 ? kCell_m / std::numbers::sqrt2 : 0.010;
         for (int shift = 0; shift < 6; ++shift) {
             DoorPlan plan;
-            plan.yaw_rad = yaw_deg * kDegree;
+            plan.yaw_rad = yaw_deg * kRadPerDeg;
             plan.width_m = 0.76 + 0.11 * shift;
             plan.middle_m = shift * Vector2d(0.0041, -0.0067);
             const Found found = find(plan);
@@ -197,7 +196,7 @@ TEST(Doors, WidthIsExactToACellAtEveryResolution) {
     for (const double cell_m : {0.005, 0.01, 0.02, 0.05}) {
         for (const double yaw_deg : {0.0, 25.0}) {
             DoorPlan plan;
-            plan.yaw_rad = yaw_deg * kDegree;
+            plan.yaw_rad = yaw_deg * kRadPerDeg;
             plan.middle_m = {0.013, 0.004};
             plan.depth_m = 0.15;
             const Found found = find(plan, cell_m);
@@ -211,7 +210,7 @@ TEST(Doors, PoseLeadsThroughTheMiddleAwayFromTheStance) {
     for (const double yaw_deg : {0.0, 18.0, -40.0}) {
         for (int shift = 0; shift < 8; ++shift) {
             DoorPlan plan;
-            plan.yaw_rad = yaw_deg * kDegree;
+            plan.yaw_rad = yaw_deg * kRadPerDeg;
             plan.middle_m = Vector2d(0.21, -0.13) + 0.00625 * shift * plan.left();
             World world;
             add_door(world, plan);
@@ -221,7 +220,7 @@ TEST(Doors, PoseLeadsThroughTheMiddleAwayFromTheStance) {
                 ASSERT_EQ(found.doors.size(), 1U) << yaw_deg;
                 const FeaturePose& pose = found.doors[0].pose;
                 const double yaw_rad = plan.yaw_rad + (turned ? std::numbers::pi : 0.0);
-                EXPECT_LT(angle_between_rad(pose.yaw_rad, yaw_rad), 1.0 * kDegree) << yaw_deg;
+                EXPECT_LT(angle_between_rad(pose.yaw_rad, yaw_rad), 1.0 * kRadPerDeg) << yaw_deg;
                 const Vector2d error_m = pose.p_m.head<2>() - plan.middle_m;
                 // Half a cell for either jamb, of which the middle has half.
                 EXPECT_LT(std::abs(error_m.dot(plan.left())), 0.5 * kCell_m + 1e-6) << yaw_deg;
@@ -235,7 +234,7 @@ TEST(Doors, PoseLeadsThroughTheMiddleAwayFromTheStance) {
 TEST(Doors, TheGridMayBeTurnedAndMirrored) {
     World world;
     DoorPlan plan;
-    plan.yaw_rad = 8.0 * kDegree;
+    plan.yaw_rad = 8.0 * kRadPerDeg;
     plan.middle_m = {0.3, 0.11};
     plan.sill_m = 0.02;
     add_door(world, plan);
@@ -288,7 +287,7 @@ TEST(Doors, SillsOf20mmAreFoundInNoiseAndFloorsHaveNone) {
     for (int seed = 1; seed <= kSeeds; ++seed) {
         Rng rng(static_cast<std::uint64_t>(seed));
         DoorPlan plan;
-        plan.yaw_rad = (seed * 17 % 90) * kDegree;
+        plan.yaw_rad = (seed * 17 % 90) * kRadPerDeg;
         plan.depth_m = 0.09 + 0.01 * (seed % 10);
         for (const double sill_m : {0.0, 0.02}) {
             plan.sill_m = sill_m;
@@ -382,7 +381,7 @@ TEST(Doors, ClearanceIsWhatWasSeenAboveTheOpening) {
 
 TEST(Doors, NothingIsFoundInEmptyMaps) {
     World unknown;
-    unknown.height_m.fill(kNan);
+    unknown.height_m.fill(kNanF);
     EXPECT_TRUE(find(unknown).doors.empty());
     EXPECT_TRUE(find(World()).doors.empty());
     for (const double side_m : {0.0, kCell_m, 2 * kCell_m})
@@ -446,7 +445,7 @@ TEST(Doors, AWrongMatchInTheOpeningHidesNoDoor) {
 
 TEST(Doors, ThingsInTheWayToADoorDoNotHideIt) {
     DoorPlan plan;
-    plan.yaw_rad = 40.0 * kDegree;
+    plan.yaw_rad = 40.0 * kRadPerDeg;
     World world;
     add_door(world, plan);
     world.add({-0.65 * plan.along(), plan.yaw_rad, 0.2, 0.5, 0.6});
@@ -468,7 +467,7 @@ TEST(Doors, GhostsBehindAJambDoNotTurnTheWall) {
     });
     const Found found = find(world);
     ASSERT_EQ(found.doors.size(), 1U);
-    EXPECT_LT(angle_between_rad(found.doors[0].pose.yaw_rad, plan.yaw_rad), 1.0 * kDegree);
+    EXPECT_LT(angle_between_rad(found.doors[0].pose.yaw_rad, plan.yaw_rad), 1.0 * kRadPerDeg);
 }
 
 TEST(Doors, ThingsBesideTheWallDoNotTurnIt) {
@@ -478,7 +477,7 @@ TEST(Doors, ThingsBesideTheWallDoNotTurnIt) {
     world.add({{-0.6, 1.1}, 0.0, 0.3, 0.8, 0.7});
     const Found found = find(world);
     ASSERT_EQ(found.doors.size(), 1U);
-    EXPECT_LT(angle_between_rad(found.doors[0].pose.yaw_rad, plan.yaw_rad), 1.0 * kDegree);
+    EXPECT_LT(angle_between_rad(found.doors[0].pose.yaw_rad, plan.yaw_rad), 1.0 * kRadPerDeg);
 }
 
 /// The wall may begin anywhere in what was not seen.
@@ -486,7 +485,7 @@ TEST(Doors, AJambBehindUnknownCellsIsNotMeasured) {
     World world;
     add_door(world, {});
     world.each([&](const Vector2d& p_m, float& z_m) {
-        if (std::abs(p_m.y() - 0.41) < 0.05) z_m = kNan;
+        if (std::abs(p_m.y() - 0.41) < 0.05) z_m = kNanF;
     });
     EXPECT_TRUE(find(world).doors.empty());
 }
@@ -529,14 +528,14 @@ TEST(Doors, TheGroundIsKnownOnBothSides) {
         World world;
         add_door(world, {});
         world.each([&](const Vector2d& p_m, float& z_m) {
-            if (side * p_m.x() > 0.15) z_m = kNan;
+            if (side * p_m.x() > 0.15) z_m = kNanF;
         });
         EXPECT_TRUE(find(world).doors.empty()) << side;
     }
     World between;
     add_door(between, {});
     between.each([&](const Vector2d& p_m, float& z_m) {
-        if (p_m.x() > -0.03 && p_m.x() < 0.2 && std::abs(p_m.y()) < 0.44) z_m = kNan;
+        if (p_m.x() > -0.03 && p_m.x() < 0.2 && std::abs(p_m.y()) < 0.44) z_m = kNanF;
     });
     EXPECT_TRUE(find(between).doors.empty());
     World high;
@@ -552,11 +551,11 @@ TEST(Doors, WallsMayScatter) {
     for (int seed = 1; seed <= 20; ++seed) {
         Rng rng(static_cast<std::uint64_t>(seed));
         DoorPlan plan;
-        plan.yaw_rad = (seed % 12) * kDegree;
+        plan.yaw_rad = (seed % 12) * kRadPerDeg;
         World world;
         add_door(world, plan);
         world.each([&](const Vector2d& p_m, float& z_m) {
-            if (z_m > 1.0F) z_m = rng.uniform() < 0.2 ? kNan : static_cast<float>(rng.uniform());
+            if (z_m > 1.0F) z_m = rng.uniform() < 0.2 ? kNanF : static_cast<float>(rng.uniform());
             const double before_m = -(p_m - plan.middle_m).dot(plan.along()) - 0.06;
             const double beside_m = std::abs((p_m - plan.middle_m).dot(plan.left()));
             const bool near_wall = beside_m > 0.5 && beside_m < 1.6 && std::abs(before_m) < 0.1;

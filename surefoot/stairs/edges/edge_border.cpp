@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/edges/slice_mean.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -192,7 +192,7 @@ void add_face_points(const Terrain& terrain,
         std::transform(found.begin(), found.end(), across_m.begin(), [](const BorderPoint& point) {
             return point.s_m;
         });
-        centred.at_m = middle_of(across_m);
+        centred.at_m = upper_median_in_place(across_m);
     }
     out.insert(out.end(), found.begin(), found.end());
 }
@@ -216,7 +216,7 @@ double fit_parallel(std::span<const BorderPoint> points,
         for (const BorderPoint& point : points)
             if (point.edge == static_cast<int>(k)) across_m.push_back(point.s_m);
         edges[k].points = static_cast<int>(across_m.size());
-        if (!across_m.empty()) edges[k].at_m = middle_of(across_m);
+        if (!across_m.empty()) edges[k].at_m = upper_median_in_place(across_m);
     }
     struct Sums {
         double w = 0.0, t = 0.0, s = 0.0, tt = 0.0, ts = 0.0, rr = 0.0;

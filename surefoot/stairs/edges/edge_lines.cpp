@@ -7,7 +7,7 @@
 
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stairs/median.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -245,8 +245,8 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
     piece.line.to_m = mean_m + most_t_m * along;
     piece.line.points = static_cast<int>(piece.members.size());
     piece.line.rms_m = std::sqrt(square_m2 / count);
-    piece.upper_m = middle_of(upper_m);
-    piece.lower_m = middle_of(lower_m);
+    piece.upper_m = upper_median_in_place(upper_m);
+    piece.lower_m = upper_median_in_place(lower_m);
     return most_t_m > least_t_m;
 }
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/edges/edge_cells.hpp"
 #include "surefoot/stairs/edges/slice_mean.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -119,9 +119,9 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
         values_.push_back(sample.height_m);
         var_m2 += static_cast<double>(sample.var_m2);
     }
-    const float middle = middle_of(values_);
+    const float middle = upper_median_in_place(values_);
     const auto middle_m = static_cast<double>(middle);
-    slice.scatter_m = scatter_about(middle, values_);
+    slice.scatter_m = robust_sigma_about(middle, values_);
     slice.sigma_m = std::sqrt(var_m2 / static_cast<double>(samples.size()));
     // The mean of what agrees is truer than the middle one.
     const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);

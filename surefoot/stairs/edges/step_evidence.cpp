@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/stairs/edges/edge_cells.hpp"
 #include "surefoot/stairs/edges/slice_mean.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -106,9 +106,10 @@ double StepEvidenceFinder::slope_along(double length_m) {
         if (std::min(z_m[0].size(), z_m[1].size()) < 3) continue;
         const double apart_m = t_m[1] / static_cast<double>(z_m[1].size()) -
                                t_m[0] / static_cast<double>(z_m[0].size());
-        slopes_.push_back((middle_of(z_m[1]) - middle_of(z_m[0])) / apart_m);
+        slopes_.push_back((upper_median_in_place(z_m[1]) - upper_median_in_place(z_m[0])) /
+                          apart_m);
     }
-    return slopes_.empty() ? 0.0 : middle_of(slopes_);
+    return slopes_.empty() ? 0.0 : upper_median_in_place(slopes_);
 }
 
 void StepEvidenceFinder::measure_slices(double length_m) {
@@ -124,8 +125,8 @@ void StepEvidenceFinder::measure_slices(double length_m) {
         const auto k = static_cast<std::size_t>(cells_[begin].slice);
         const auto known = static_cast<double>(values_.size());
         if (known >= kLeastShare * all_in_slice_[k]) {
-            const double middle_m = middle_of(values_);
-            const double most_m = kClip_sigma * scatter_about(middle_m, values_) + 1e-4;
+            const double middle_m = upper_median_in_place(values_);
+            const double most_m = kClip_sigma * robust_sigma_about(middle_m, values_) + 1e-4;
             Slice slice;
             for (std::size_t i = begin; i < end; ++i) {
                 if (std::abs(cells_[i].z_m - middle_m) > most_m) continue;
@@ -164,7 +165,7 @@ void StepEvidenceFinder::weigh_slices() {
         values_.push_back(left_m);
         count += 1.0;
     }
-    const double scatter_m = scatter_about(0.0, values_);
+    const double scatter_m = robust_sigma_about(0.0, values_);
     // Each slice has taken one mean.
     const double taken = std::max(1.0, count - static_cast<double>(slices_.size()));
     const double cell_var_m2 = std::max(square(scatter_m) * count / taken, stated_var_m2_);

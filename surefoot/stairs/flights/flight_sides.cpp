@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "surefoot/stairs/median.hpp"
+#include "surefoot/geometry/statistics.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -128,7 +128,7 @@ FlightSide FlightSides::observe_beside(const Terrain& terrain, const Flight& fli
     const auto most = std::max_element(votes.begin(), votes.end());
     if (*most > 0) side.kind = kKinds[static_cast<std::size_t>(most - votes.begin())];
     if (rails_m_.empty()) return side;
-    const double rail_m = middle_of(rails_m_);
+    const double rail_m = upper_median_in_place(rails_m_);
     const auto along = std::count_if(rails_m_.begin(), rails_m_.end(), [&](double one_m) {
         return std::abs(one_m - rail_m) <= 0.5 * kRailBand_m;
     });

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "surefoot/core/angles.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stairs/edges/edge_relations.hpp"
 #include "surefoot/stairs/edges/step_evidence.hpp"
 
@@ -15,8 +16,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Treads lean and maps are bent by less, over the depth of a tread.
 constexpr double kTread_m = 0.035;
 /// Steps of one flight differ by 5 mm by the code (NZ D1/AS1, Table 6); twice that is allowed for.
@@ -271,7 +270,7 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
 }
 
 void FlightFinder::measure_goings(const Vector2d& way, Flight& flight) {
-    flight.going_m = flight.going_sigma_m = flight.going_spread_m = kUnknown;
+    flight.going_m = flight.going_sigma_m = flight.going_spread_m = kNan;
     const bool straight = std::abs(flight.turn_rad) <= kParallel_rad;
     std::vector<double> at_m;
     std::vector<double> sigma_m;

@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "surefoot/core/angles.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -13,13 +14,12 @@ using Eigen::Vector2d;
 
 constexpr double kRiser_m = 0.17;
 constexpr double kGoing_m = 0.3;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Edge of step k of a flight that leads along +x from x = 1; it reaches from `right_m` to `left_m`
 /// across the way, turned about its middle.
 Edge step(int k, double right_m = -0.6, double left_m = 0.6, double turn_deg = 0.0) {
     const Vector2d middle_m(1.0 + k * kGoing_m, 0.5 * (right_m + left_m));
-    const double turn_rad = turn_deg * kDegree;
+    const double turn_rad = turn_deg * kRadPerDeg;
     const Vector2d half_m =
         0.5 * (left_m - right_m) * Vector2d(std::sin(turn_rad), -std::cos(turn_rad));
     Edge edge;  // the lower ground on the right hand: from +y to -y

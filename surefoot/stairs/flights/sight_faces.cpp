@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/stairs/edges/edge_border.hpp"
 #include "surefoot/stairs/flights/sight_plane.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -78,7 +78,8 @@ double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
 
 bool SightFaces::shows_level_ground(double level_m) {
     if (lower_m_.empty() || upper_m_.empty()) return false;
-    return static_cast<double>(middle_of(upper_m_) - middle_of(lower_m_)) > kOpen * level_m;
+    return static_cast<double>(upper_median_in_place(upper_m_) - upper_median_in_place(lower_m_)) >
+           kOpen * level_m;
 }
 
 std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Edge& edge) {
@@ -97,10 +98,10 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
             face.open = true;
             return face;
         }
-        at_m = static_cast<double>(middle_of(runs_m_));
+        at_m = static_cast<double>(upper_median_in_place(runs_m_));
         if (!(std::abs(at_m - distance_m) < kGate_m)) return std::nullopt;
     }
-    const double scatter_m = scatter_about(static_cast<float>(at_m), runs_m_);
+    const double scatter_m = robust_sigma_about(static_cast<float>(at_m), runs_m_);
     const double independent = std::max(
         1.0,
         static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));

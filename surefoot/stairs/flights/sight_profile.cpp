@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/geometry/statistics.hpp"
 #include "surefoot/stairs/flights/sight_plane.hpp"
-#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -86,8 +86,8 @@ void SightProfile::measure_bins() {
         if (count < kLeastSamples) continue;
         values_m_.assign(depths_m_.begin() + static_cast<std::ptrdiff_t>(first_[k]),
                          depths_m_.begin() + static_cast<std::ptrdiff_t>(first_[k + 1]));
-        const float middle_m = middle_of(values_m_);
-        const double scatter_m = scatter_about(middle_m, values_m_);
+        const float middle_m = upper_median_in_place(values_m_);
+        const double scatter_m = robust_sigma_about(middle_m, values_m_);
         const double independent =
             std::max(1.0, static_cast<double>(count) * kSightStride_px / kSightColumns_px);
         bin.depth_m = static_cast<double>(middle_m);

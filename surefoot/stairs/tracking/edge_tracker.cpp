@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
+#include "surefoot/core/angles.hpp"
 #include "surefoot/stairs/edges/edge_place.hpp"
 #include "surefoot/stairs/edges/edge_relations.hpp"
 
@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kGate_sigma = 3.4;
 /// Floors of the gates: a look from afar is off by more than its sigma. Half of the shortest going
 /// and half of the lowest riser, so that the next step of a flight is another edge.

@@ -38,10 +38,10 @@ FeatureTracker::FeatureTracker(const TrackingConfig& config)
     : edges_(config), flights_(config), doors_(config), sills_(config) {}
 
 FeatureTracker::FeatureTracker(const StairsConfig& config)
-    : edges_(config.update, config),
-      flights_(config.update),
-      doors_(config.update),
-      sills_(config.update) {}
+    : edges_(config.tracking, config),
+      flights_(config.tracking),
+      doors_(config.tracking),
+      sills_(config.tracking) {}
 
 void FeatureTracker::forget() {
     edges_.forget();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/core/unknown.hpp"
 #include "surefoot/stairs/terrain_testing.hpp"
 
 namespace surefoot::stairs {
@@ -20,7 +21,6 @@ using testing::kRadPerDeg;
 using testing::TestMap;
 
 constexpr double kSigma_m = 0.005;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// An edge across x = `at_m`, the lower ground ahead.
 Edge edge_ahead(double at_m, double upper_m = 0.0, double lower_m = -0.2, double half_m = 0.5) {
@@ -77,7 +77,7 @@ class Observations {
   public:
     explicit Observations(const testing::Ground& ground) : map_(ground, 0.0, {0.0, 0.0}) {}
     /// All of it is unknown.
-    Observations() : Observations([](double, double) { return 0.0; }) { map_.height_m.fill(kNaN); }
+    Observations() : Observations([](double, double) { return 0.0; }) { map_.height_m.fill(kNanF); }
 
     const TerrainFeatures& observation(const TerrainFeatures& found, const Drift& drift = {}) {
         time_ns_ += 100'000'000;

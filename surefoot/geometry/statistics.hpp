@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace surefoot {
+
+/// The median; of an even number of values the greater of the two in the middle. Reorders `values`,
+/// which must not be empty. O(n).
+template <typename T>
+[[nodiscard]] T upper_median_in_place(std::vector<T>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Same, for values that keep their order.
+template <typename T>
+[[nodiscard]] T upper_median(std::vector<T> values) {
+    return upper_median_in_place(values);
+}
+
+/// Standard deviation about `middle` that a few outliers do not change: 1.4826 times the median
+/// distance, which is right for normally distributed values. Replaces `values` by their distances;
+/// they must not be empty.
+template <typename T>
+[[nodiscard]] double robust_sigma_about(T middle, std::vector<T>& values) {
+    constexpr double kSigmaPerMedian = 1.4826;
+    for (T& value : values) value = std::abs(value - middle);
+    return kSigmaPerMedian * static_cast<double>(upper_median_in_place(values));
+}
+
+}  // namespace surefoot
