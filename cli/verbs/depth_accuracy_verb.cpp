@@ -106,7 +106,7 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
                               mm(value(&eval::BoardErrors::std_m), "{:.2f}"),
                               e ? fmt::format("{:+.3f}", kLength_mm * e->scale_share) : "-",
                               fmt::format("{:.1f}", row.density_percent),
-                              fmt::format("{}", row.looks),
+                              fmt::format("{}", row.observations),
                               mm(thesis(&ThesisAccuracy::axial_m)),
                               mm(thesis(&ThesisAccuracy::std_m))});
     }

@@ -32,7 +32,7 @@ void compare(const eval::KindErrors& errors,
     for (const std::size_t i : errors.extra_at) tracked[i].tracked.in_final_map = false;
     for (const std::size_t i : errors.missed_at) {
         Feature feature = final_map[i];
-        feature.tracked.looks = 0;
+        feature.tracked.observations = 0;
         feature.tracked.seen_now = false;
         feature.tracked.in_final_map = true;
         tracked.push_back(std::move(feature));

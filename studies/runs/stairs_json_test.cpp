@@ -150,7 +150,7 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
 
 TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
     const stairs::Tracked tracked{
-        .id = 7, .looks = 12, .last_seen_ns = 1'500'000'000, .seen_now = false};
+        .id = 7, .observations = 12, .last_seen_ns = 1'500'000'000, .seen_now = false};
     stairs::TerrainFeatures features;
     features.time_ns = 4'000'000'000;
     features.flights.emplace_back().tracked = tracked;
@@ -232,10 +232,10 @@ TEST(StairsJson, WhereGravityWasAssumedEachFeatureSaysSo) {
     EXPECT_TRUE(gravity_note(grid::GravitySource::imu).empty());
 }
 
-stairs::LineFeature seen(double x_m, int looks) {
+stairs::LineFeature seen(double x_m, int observations) {
     stairs::LineFeature drop = line(-0.5);
     drop.pose.p_m.x() = x_m;
-    drop.tracked = {.id = 3, .looks = looks, .last_seen_ns = 0, .seen_now = true};
+    drop.tracked = {.id = 3, .observations = observations, .last_seen_ns = 0, .seen_now = true};
     return drop;
 }
 
@@ -251,7 +251,7 @@ TEST(RunFeatures, WhatWasSeenOnceIsUnconfirmedAndTheFinalMapIsToldApart) {
     EXPECT_EQ(said.confirmed.drops[1].tracked.in_final_map, false) << "remembered, not in the map";
     ASSERT_EQ(said.unconfirmed.drops.size(), 2U) << "no drop is left out";
     EXPECT_EQ(said.unconfirmed.drops[0].tracked.in_final_map, false);
-    EXPECT_EQ(said.unconfirmed.drops[1].tracked.looks, 0) << "the final map alone has it";
+    EXPECT_EQ(said.unconfirmed.drops[1].tracked.observations, 0) << "the final map alone has it";
     EXPECT_EQ(said.unconfirmed.drops[1].tracked.in_final_map, true);
     const std::string json = packed(
         stairs_json(said.confirmed, {}, {.resolution_m = 0.025, .unconfirmed = &said.unconfirmed}));

@@ -101,15 +101,16 @@ Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry
 }
 
 /// Number of observations of each cell; 0 for unknown cells.
-Image<std::uint32_t> looks_of(const grid::Layer& count) {
+Image<std::uint32_t> observations_of(const grid::Layer& count) {
     constexpr float kMost = 1e9F;
-    Image<std::uint32_t> looks(count.width(), count.height(), 0);
-    for (std::size_t i = 0; i < looks.size(); ++i) {
+    Image<std::uint32_t> observations(count.width(), count.height(), 0);
+    for (std::size_t i = 0; i < observations.size(); ++i) {
         const float value = count.data()[i];
         // in range: above 0 and at most kMost
-        if (value > 0.0F) looks.data()[i] = static_cast<std::uint32_t>(std::min(value, kMost));
+        if (value > 0.0F)
+            observations.data()[i] = static_cast<std::uint32_t>(std::min(value, kMost));
     }
-    return looks;
+    return observations;
 }
 
 /// Reads the layers that only `run --layers` writes.
@@ -134,7 +135,7 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
         "where the camera looked is not kept: ground that only ends is no drop");
     const auto count = read("count.asc", "every cell was seen more than once");
     if (!count) return count.error();
-    if (!count->empty()) map.looks = looks_of(*count);
+    if (!count->empty()) map.observations = observations_of(*count);
     return {};
 }
 
@@ -278,7 +279,7 @@ stairs::Terrain TerrainMap::terrain() const {
     if (!free_above_m.empty()) terrain.free_above_m = free_above_m.view();
     if (!clearance_m.empty()) terrain.clearance_m = clearance_m.view();
     if (!density_ratio.empty()) terrain.density_ratio = density_ratio.view();
-    if (!looks.empty()) terrain.looks = looks.view();
+    if (!observations.empty()) terrain.observations = observations.view();
     terrain.stance_m = stance_m;
     return terrain;
 }

@@ -35,7 +35,7 @@ struct TerrainMap {
     grid::Layer free_above_m;
     grid::Layer clearance_m;
     grid::Layer density_ratio;
-    Image<std::uint32_t> looks;
+    Image<std::uint32_t> observations;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     std::optional<Pose> T_odom_body;  ///< pose of the machine, if known
     /// From the run that made the map; grids, images and clouds do not store it.
