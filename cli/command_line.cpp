@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/core/utility.hpp>
 #include <string_view>
@@ -57,7 +58,10 @@ void add_common(Verb verb, CommonOptions& common) {
 
 int check_settings(const CommonOptions& common, const std::string& verb, Reads reads) {
     if (reads == Reads::own_settings) return kExitOk;
-    if (const auto settings = load_settings(common); !settings) return report(settings.error());
+    io::Notes notes;
+    if (const auto settings = load_settings(settings_request(common), &notes); !settings)
+        return report(settings.error());
+    for (const std::string& note : notes) log_warning(note);
     const bool given =
         !common.config_file.empty() || !common.preset.empty() || !common.settings.empty();
     if (reads == Reads::no_settings && given)
@@ -114,6 +118,33 @@ int answer_failure(const CLI::App& app, bool json, int exit_code) {
     print_answer(asks_gate ? verdict_json(gate::Verdict{}, first_error(), {})
                            : failure_json(first_error(), exit_code));
     return exit_code;
+}
+
+/// Options that version 0.2 renamed. Version 0.3 will refuse the old names (docs/migration.md).
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamedOptions{{
+    {"--vouch", "--attest"},
+    {"--carriers", "--motion-models"},
+    {"--eye", "--camera"},
+    {"--thesis", "--lange2016"},
+}};
+
+/// The words of the call with today's option names. Warns about each old name.
+std::vector<std::string> words_of_call(int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    for (std::string& word : words) {
+        for (const auto& [old_name, new_name] : kRenamedOptions) {
+            const std::size_t end = std::min(word.find('='), word.size());
+            if (word.substr(0, end) != old_name) continue;
+            log_warning(
+                fmt::format("{} is now called {}. Use the new name: version 0.3 refuses "
+                            "the old one",
+                            old_name,
+                            new_name));
+            word.replace(0, end, new_name);
+            break;
+        }
+    }
+    return words;
 }
 
 bool wants_json(int argc, char** argv) {
@@ -259,7 +290,10 @@ int run_command_line(int argc, char** argv) {
     add_all_verbs(VerbGroup(&app, exit_code));
     const bool json = wants_json(argc, argv);
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> words = words_of_call(argc, argv);
+        std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+        app.name(argv[0]);
+        app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {

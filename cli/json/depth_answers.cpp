@@ -49,7 +49,7 @@ std::string depth_accuracy_json(const std::string& rig,
             return number(row.errors ? *row.errors.*figure : unknown);
         };
         Json entry = {{"distance_m", row.distance_m},
-                      {"looks", row.observations},
+                      {"observations", row.observations},
                       {"density_percent", number(row.density_percent)},
                       {"axial_m", error(&eval::BoardErrors::axial_m)},
                       {"std_m", error(&eval::BoardErrors::std_m)},

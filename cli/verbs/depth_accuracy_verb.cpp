@@ -85,7 +85,7 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
                     "std_mm",
                     "scale_mm_of_50",
                     "density_percent",
-                    "looks",
+                    "observations",
                     "thesis_axial_mm",
                     "thesis_std_mm"};
     table.hint =

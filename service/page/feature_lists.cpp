@@ -27,7 +27,7 @@ Json pose_json(const stairs::FeaturePose& pose) {
 Json tracked_json(Json json, const stairs::Tracked& tracked, std::int64_t now_ns) {
     if (tracked.id == 0) return json;
     json["id"] = tracked.id;
-    json["looks"] = tracked.observations;
+    json["observations"] = tracked.observations;
     json["last_seen_s"] = seconds_from_ns(now_ns - tracked.last_seen_ns);
     return json;
 }

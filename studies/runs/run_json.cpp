@@ -48,7 +48,7 @@ Json truth_json(const TruthFigures& t) {
                        {"median_abs_error_px", number(d.median_abs_error_px)},
                        {"sigma_at_1_m_m", number(d.sigma_at_1_m_m)},
                        {"sigma_at_2_m_m", number(d.sigma_at_2_m_m)},
-                       {"doubtful_share", number(d.outlier_share)}};
+                       {"outlier_share", number(d.outlier_share)}};
     return object;
 }
 
@@ -136,10 +136,10 @@ Json run_object(const RunRecord& record,
                    {"tilt_sigma_deg", number(alignment.tilt_sigma_rad * kDegPerRad)},
                    {"ground_height_m",
                     alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
-                   {"trim", self_calibration_json(pipeline.self_calibration())},
+                   {"self_calibration", self_calibration_json(pipeline.self_calibration())},
                    {"health", health_json(record)},
                    {"counts", counts_json(record.fusion)},
-                   {"arrivals", frame_status_json(record.frame_status)},
+                   {"frame_status", frame_status_json(record.frame_status)},
                    {"camera", camera_json(pipeline.rig())},
                    {"map",
                     {{"known_cells", pipeline.map().known_cells()},

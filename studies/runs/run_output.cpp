@@ -330,7 +330,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (record.waited_frames > 0) {
         text += fmt::format(
             "odom begins {} frames after the source: they were too bright, too dark or without "
-            "ground (mount.wait_for_light_s, mount.wait_for_ground_s, mount.wait_for_search_s)\n",
+            "ground (mount.wait_for_exposure_s, mount.wait_for_ground_s, mount.wait_for_search_s)\n",
             record.waited_frames);
     }
     if (const auto& self_calibration = pipeline.self_calibration()) {

@@ -259,7 +259,7 @@ void add_marks(const std::vector<Feature>& features, bool gravity_assumed, Json&
         add_evidence(features[i], list[i]);
         const stairs::Tracked& tracked = features[i].tracked;
         if (tracked.in_final_map) {
-            list[i]["looks"] = tracked.observations;
+            list[i]["observations"] = tracked.observations;
             list[i]["in_final_map"] = *tracked.in_final_map;
         }
         if (gravity_assumed) list[i]["gravity_assumed"] = true;

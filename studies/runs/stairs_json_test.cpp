@@ -160,7 +160,7 @@ TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
     features.doors.emplace_back().tracked = tracked;
     features.edges.emplace_back().tracked = tracked;
     const std::string json = packed(json_of(features, {}));
-    const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5)";
+    const std::string said = R"("id":7,"observations":12,"last_seen_s":2.5)";
     int times = 0;
     for (std::size_t at = json.find(said); at != std::string::npos; at = json.find(said, at + 1))
         ++times;
@@ -256,7 +256,7 @@ TEST(RunFeatures, WhatWasSeenOnceIsUnconfirmedAndTheFinalMapIsToldApart) {
     const std::string json = packed(
         stairs_json(said.confirmed, {}, {.resolution_m = 0.025, .unconfirmed = &said.unconfirmed}));
     EXPECT_NE(json.find(R"("unconfirmed":{"flights":[],"drops":[{)"), std::string::npos) << json;
-    EXPECT_NE(json.find(R"("looks":0,"in_final_map":true)"), std::string::npos) << json;
+    EXPECT_NE(json.find(R"("observations":0,"in_final_map":true)"), std::string::npos) << json;
     EXPECT_NE(json.find(R"("in_final_map":false)"), std::string::npos) << json;
 }
 

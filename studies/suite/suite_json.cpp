@@ -79,7 +79,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
                          {"seed", result.which.seed},
                          {"noise", result.which.noise},
                          {"max_frames", result.which.max_frames},
-                         {"carrier", result.which.motion_model},
+                         {"motion_model", result.which.motion_model},
                          {"rate_hz", result.which.rate_hz},
                          {"figures", suite_figures_json(result.figures)},
                          {"steps", suite_steps_json(result.steps)},
@@ -88,7 +88,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
     const auto rows_json = [](const std::vector<SuiteRow>& rows, bool by_scene) {
         Json list = Json::array();
         for (const SuiteRow& row : rows) {
-            Json object = {{"carrier", row.motion_model},
+            Json object = {{"motion_model", row.motion_model},
                            {"noise", row.noise},
                            {"cases", row.cases},
                            {"median", suite_figures_json(row.median)},
@@ -100,7 +100,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
     };
     return Json{{"cases", cases},
                 {"scenes", rows_json(summarise(results), true)},
-                {"carriers", rows_json(summarise_by_motion_model(results), false)},
+                {"motion_models", rows_json(summarise_by_motion_model(results), false)},
                 {"bins", suite_bins_json(pooled_by_noise(results))}}
         .dump(kIndent);
 }

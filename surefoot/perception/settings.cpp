@@ -28,7 +28,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     visitor.group("live", live);
 }
 
-Result<Settings> load_settings(const SettingsRequest& request) {
+Result<Settings> load_settings(const SettingsRequest& request, io::Notes* notes) {
     Settings settings;
     const auto describe = io::describe_config(settings);
     if (!request.preset.empty()) {
@@ -44,7 +44,7 @@ Result<Settings> load_settings(const SettingsRequest& request) {
         }
         settings.pipeline.traversability = *preset;
     }
-    if (auto status = apply_overrides(request, describe); !status) return status.error();
+    if (auto status = apply_overrides(request, describe, notes); !status) return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
     if (const auto problem = settings.live.problem()) return usage_error(*problem);
     const bool own_view = settings.pipeline.camera != camera::RectificationConfig{};
@@ -57,14 +57,16 @@ Result<Settings> load_settings(const SettingsRequest& request) {
     return settings;
 }
 
-Status apply_overrides(const SettingsRequest& request, const io::DescribeConfig& describe) {
+Status apply_overrides(const SettingsRequest& request,
+                       const io::DescribeConfig& describe,
+                       io::Notes* notes) {
     if (!request.config_file.empty()) {
         // A settings file that cannot be read is a wrong call, as a wrong key in it is.
-        if (auto status = io::read_config(request.config_file, describe); !status)
+        if (auto status = io::read_config(request.config_file, describe, notes); !status)
             return usage_error(status.error().message);
     }
     for (const std::string& setting : request.overrides) {
-        if (auto status = io::override_config(setting, describe); !status) return status;
+        if (auto status = io::override_config(setting, describe, notes); !status) return status;
     }
     return {};
 }

@@ -38,10 +38,13 @@ struct SettingsRequest {
 };
 
 /// The settings, checked. Every problem is a usage error that names file, line, key and limit.
-[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {});
+/// `notes`, if given, receives a sentence for each key that has a new name.
+[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {},
+                                             io::Notes* notes = nullptr);
 /// Applies the file and the overrides of `request` to a configuration object.
 [[nodiscard]] Status apply_overrides(const SettingsRequest& request,
-                                     const io::DescribeConfig& describe);
+                                     const io::DescribeConfig& describe,
+                                     io::Notes* notes = nullptr);
 /// Hash of every setting. The map snapshot and each verdict carry it.
 [[nodiscard]] std::uint64_t hash_of(const Settings& settings);
 

@@ -159,8 +159,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    0.1,
                    600.0,
                    "longest lean in all without having stood upright");
-    visitor.number("wait_for_light_s",
-                   wait_for_light_s,
+    visitor.number("wait_for_exposure_s",
+                   wait_for_exposure_s,
                    0.0,
                    600.0,
                    "frames too bright or too dark are waited out so long before odom is placed");

@@ -30,7 +30,7 @@ struct AlignmentConfig {
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_light_s = 60.0;   ///< at most; the sun warm-up of the thesis took 10-30 s
+    double wait_for_exposure_s = 60.0;   ///< at most; the sun warm-up of the thesis took 10-30 s
     double wait_for_ground_s = 10.0;  ///< likewise, for what tells gravity; see start.hpp
     double wait_for_search_s = 3.0;   ///< likewise, with a mount that nobody knows; see start.hpp
     void describe(ConfigVisitor& visitor);

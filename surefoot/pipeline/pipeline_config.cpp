@@ -12,7 +12,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("level", level);
     visitor.group("camera", camera);
     visitor.group("stereo", stereo);
-    visitor.group("trim", self_calibration);
+    visitor.group("self_calibration", self_calibration);
     visitor.group("odometry", odometry);
     visitor.group("ground", ground);
     visitor.group("elevation", elevation);

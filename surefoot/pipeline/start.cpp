@@ -42,7 +42,7 @@ Start StartUp::take() {
 /// As many frames as an alignment takes, all of them lit, or the wait for light is over.
 bool StartUp::is_full() const {
     return window().size() >= Pipeline::kAlignmentFrames &&
-           (lit_in_a_row_ >= Pipeline::kAlignmentFrames || waited_s() >= config_.wait_for_light_s);
+           (lit_in_a_row_ >= Pipeline::kAlignmentFrames || waited_s() >= config_.wait_for_exposure_s);
 }
 
 /// True when odom is placed for good; otherwise the window has moved on.

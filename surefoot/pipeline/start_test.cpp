@@ -145,7 +145,7 @@ TEST(Start, AFlickerBeginsTheWaitAnew) {
 
 TEST(Start, TheWaitForLightEnds) {
     PipelineConfig config;
-    config.mount.wait_for_light_s = 2.0;
+    config.mount.wait_for_exposure_s = 2.0;
     const auto night = [](int /*index*/) -> std::uint8_t { return 0; };
     const Outcome outcome = start_of({60, night, always}, config);
     EXPECT_EQ(outcome.start.frames.back().index, 20) << "two seconds";

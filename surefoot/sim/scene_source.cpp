@@ -134,7 +134,7 @@ std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
-    visitor.enumeration("carrier", motion_model, kCarriedByNames, "who goes the scene's way");
+    visitor.enumeration("motion_model", motion_model, kCarriedByNames, "who goes the scene's way");
     visitor.boolean("known_motion",
                     known_motion,
                     "the start, and the motion but for analytic.drift, are known");

@@ -14,7 +14,7 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
     visitor.number("mirror_score", mirror_score, 4.0, 50.0, "makes a mirror's line suspected");
     visitor.number("glass_score", glass_score, 4.0, 50.0, "makes a line of glass suspected");
     visitor.number("keep_score", keep_score, 0.0, 50.0, "least score of a line that stays");
-    visitor.integer("forget_looks", forget_looks, 1, 100, "looks below it until it is forgotten");
+    visitor.integer("forget_observations", forget_looks, 1, 100, "looks below it until it is forgotten");
     visitor.number(
         "unique_ratio", unique_ratio, 1.0, 10.0, "best line over the next best one, in score");
     visitor.integer("directions_per_frame",

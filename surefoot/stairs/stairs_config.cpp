@@ -64,7 +64,7 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.group("doors", doors);
     visitor.group("patches", patches);
     visitor.group("classes", classes);
-    visitor.group("follow", tracking);
+    visitor.group("tracking", tracking);
 }
 
 std::optional<std::string> StairsConfig::problem() const {

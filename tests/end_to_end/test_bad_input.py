@@ -221,7 +221,7 @@ class BadInput(CliTest):
             for index in range(3, FRAMES):
                 shutil.copy(self.image(recording, camera, 2), self.image(recording, camera, index))
         report = self.json_of("run", recording, "--machine", "rex", "--out", self.dir / "out")
-        self.assertEqual(report["arrivals"]["longest_freeze_frames"], FRAMES - 3)
+        self.assertEqual(report["frame_status"]["longest_freeze_frames"], FRAMES - 3)
         frames = json.loads((self.dir / "out" / "report.json").read_text())["per_frame"]
         self.assertEqual([f["camera"] for f in frames], ["OK"] * 4 + ["FROZEN"] * (FRAMES - 4))
         process = surefoot("gate", "--map", self.dir / "out", "--pose", "0,0,0", "--command", 1, "--machine", "rex",

@@ -145,7 +145,7 @@ class Suite(CliTest):
     def test_no_hazard_is_missed_and_safe_movements_are_allowed_with_the_noise_of_a_real_camera(self):
         answer = self.json_of("eval", "suite", "--quick", "--threads", 2, "--out", self.dir / "suite")
         self.assertEqual(len(answer["cases"]), 16)
-        self.assertIn("rex", {case["carrier"] for case in answer["cases"]})
+        self.assertIn("rex", {case["motion_model"] for case in answer["cases"]})
         allowed = {(case["scene"], case["noise"]): case["figures"]["allowed"] for case in answer["cases"]}
         for case, least in self.ALLOWED.items():
             self.assertGreaterEqual(allowed[case], least, case)
@@ -162,7 +162,7 @@ class Suite(CliTest):
                   f"{100 * (figures['allowed'] or 0):.0f} % of {figures['safe_questions']:.0f} safe ones allowed")
             self.assertGreater(figures["questions"], 400, case)
             self.assertEqual(figures["missed_hazards"], 0, case)
-            if case["carrier"] == "rex":
+            if case["motion_model"] == "rex":
                 self.assertGreater(figures["steps"], 1, case)
                 self.assertEqual(figures["steps_missed"], 0, case)
         self.assertLessEqual({"range", "column", "jump_column"}, {bin_["by"] for bin_ in answer["bins"]})

@@ -47,6 +47,16 @@ class Verbs(CliTest):
         self.assertIn("At most vouch_radius_m of the machine file", words)
         self.assertNotIn("[0 - 2]", words)
 
+    def test_old_option_names_work_with_a_warning(self):
+        old = surefoot("gate", "--map", "nowhere", "--pose", "0,0,0", "--command", 9, "--vouch", "0.5", cwd=self.dir)
+        new = surefoot("gate", "--map", "nowhere", "--pose", "0,0,0", "--command", 9, "--attest=0.5", cwd=self.dir)
+        self.assertEqual(old.returncode, new.returncode)
+        self.assertEqual(old.stdout, new.stdout)
+        self.assertIn("--vouch is now called --attest", old.stderr)
+        self.assertNotIn("is now called", new.stderr)
+        setting = surefoot("config", "--check", "--set", "trim.enabled=false", cwd=self.dir)
+        self.assertEqual(setting.returncode, 0, setting.stderr)
+
     def test_wrong_calls_exit_with_2_and_say_why(self):
         for words in (["walk"], ["run"], ["run", "sim:floor"], ["sim", "nowhere", "--out", "x"],
                       ["rate", "a.asc", "--out", "x", "--preset", "nothing"],
@@ -97,7 +107,7 @@ class Verbs(CliTest):
             (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
              "bad_1_percent bad_2_percent density_percent auc bad_0_5_percent error sigma sparsification"),
             (["eval", "stairs", run / "stairs.json", run], "flights drops kerbs sills doors edges"),
-            (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes carriers bins"),
+            (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes motion_models bins"),
             (["map", "info", region], "width height resolution_m origin_m known_cells version frame frame_since_ns "
              "stamp_ns T_frame_body config_hash layers skipped_layers file"),
             (["map", "merge", region, region, "--out", self.dir / "both.region"],

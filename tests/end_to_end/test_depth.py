@@ -172,7 +172,7 @@ class Accuracy(CliTest):
         pairs.write_text("# board at 2.052 m\nl.png r.png 2.052\n\n")
         answer = self.json_of("depth-accuracy", "--pairs", pairs, "--rig", "zed_vga", "--out", self.dir / "out")
         (row,) = answer["distances"]
-        self.assertEqual((row["distance_m"], row["looks"]), (2.052, 1))
+        self.assertEqual((row["distance_m"], row["observations"]), (2.052, 1))
         self.assertLess(abs(row["axial_m"]), 0.003)
         for text, words in (("l.png r.png\n", ":1: expected LEFT RIGHT DISTANCE_M"),
                             ("l.png r.png 1 x\n", ":1: expected"), ("l.png r.png nan\n", ":1: "),

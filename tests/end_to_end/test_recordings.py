@@ -278,7 +278,7 @@ class SkipBroken(CliTest):
         process = self.run_ok("run", recording, "--out", self.dir / "out", "--skip-broken")
         self.assertIn("1 broken frame was passed over (--skip-broken); the first: frame 2", process.stdout)
         report = json.loads((self.dir / "out" / "report.json").read_text())
-        self.assertEqual((report["frames"], report["source"]["broken_frames"], report["arrivals"]["damaged_frames"]),
+        self.assertEqual((report["frames"], report["source"]["broken_frames"], report["frame_status"]["damaged_frames"]),
                          (FRAMES - 1, 1, 1))
         self.assertTrue(report["complete"])
         self.assertIn("passed over", (self.dir / "out" / "report.html").read_text())

@@ -50,15 +50,15 @@ class Stairs(CliTest):
         self.assertEqual(list(answer), [*NAMES, "classes", "assumed", "gravity_source", *["unconfirmed"][:of_run]])
         self.assertEqual(list(answer["classes"]), CLASSES)
         gravity = ["gravity_assumed"] if answer["gravity_source"] == "assumed" else []
-        followed = ["id", "looks", "last_seen_s", "in_final_map"] if of_run else []
+        followed = ["id", "observations", "last_seen_s", "in_final_map"] if of_run else []
         for kind, names in NAMES.items():
             for thing in answer[kind]:
                 self.assertEqual(set(thing), {*names.split(), *followed, *gravity}, kind)
                 self.assertEqual(len(thing.get("pose", [0] * 4)), 4)
                 if of_run:
-                    self.assertGreaterEqual(thing["looks"], 2, "what one frame showed is not confirmed")
+                    self.assertGreaterEqual(thing["observations"], 2, "what one frame showed is not confirmed")
             for thing in answer["unconfirmed"][kind] if of_run else []:
-                self.assertLess(thing["looks"], 2)
+                self.assertLess(thing["observations"], 2)
                 self.assertIn("in_final_map", thing)
 
     def fails(self, code, *call):
@@ -257,7 +257,7 @@ class Stairs(CliTest):
         self.assertTrue(run["complete"])
         of_run = json.loads((out / "stairs.json").read_text())
         self.check_names(of_run, of_run=True)
-        self.assertGreater(of_run["flights"][0]["looks"], 1)
+        self.assertGreater(of_run["flights"][0]["observations"], 1)
         self.assertEqual(of_run["flights"][0]["last_seen_s"], 0.0)
         again = self.json_of("stairs", out, "--out", self.dir / "again")
         self.check_names(again)

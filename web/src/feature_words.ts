@@ -47,11 +47,11 @@ function placeWords([x_m, y_m, , yaw_rad]: Feature["pose"]): string {
 }
 
 /// `passed_s`: seconds since the message.
-function seenWords({ looks, last_seen_s }: Feature, passed_s: number): string {
-  if (looks === undefined || last_seen_s === undefined) return "-";
+function seenWords({ observations, last_seen_s }: Feature, passed_s: number): string {
+  if (observations === undefined || last_seen_s === undefined) return "-";
   const ago_s = Math.max(0, last_seen_s + passed_s);
   const when = ago_s < 1 ? "now" : `${ago_s.toFixed(0)} s ago`;
-  return `${when}, ${looks} observation${looks === 1 ? "" : "s"}`;
+  return `${when}, ${observations} observation${observations === 1 ? "" : "s"}`;
 }
 
 function sideWords(name: string, { kind, rail_m }: FlightSide): string[] {

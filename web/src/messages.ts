@@ -347,7 +347,7 @@ type Point = [number | null, number | null];
 export interface Feature {
   pose: PoseNumbers;
   id?: number;
-  looks?: number;
+  observations?: number;
   last_seen_s?: number;
 }
 /// The ground beside the steps of a flight.

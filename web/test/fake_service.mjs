@@ -225,7 +225,7 @@ function outlook(frame, state) {
 
 /// As `surefoot serve` tells it: the drop ahead, the kerb to the left, and a flight to the right.
 export function stairs(riser_m = 0.18) {
-  const seen = { id: 1, looks: 12, last_seen_s: 0 };
+  const seen = { id: 1, observations: 12, last_seen_s: 0 };
   return {
     kind: "stairs",
     time_ns: 0,

@@ -294,7 +294,7 @@ test("each thing on the ground is a row with its measures", () => {
     left: { kind: "open", rail_m: null },
     right: { kind: "level", rail_m: null },
     id: undefined,
-    looks: undefined,
+    observations: undefined,
   };
   const [row] = featureRows({ ...stairs(), flights: [once] });
   assert.deepEqual([row.what, row.going, row.seen], ["flight, one step up", "-", "-"]);

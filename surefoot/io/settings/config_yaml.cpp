@@ -11,6 +11,7 @@
 
 #include "surefoot/core/nearest_names.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/io/settings/renamed_keys.hpp"
 #include "surefoot/io/settings/yaml_tree.hpp"
 #include "surefoot/io/text.hpp"
 
@@ -166,10 +167,42 @@ Status assign(const GivenValues& given, const DescribeConfig& describe) {
     return {};
 }
 
-Status assign_one(const std::string& key, const Given& given, const DescribeConfig& describe) {
+bool is_key(const std::string& name, const std::vector<std::string>& keys) {
+    return std::find(keys.begin(), keys.end(), name) != keys.end();
+}
+
+bool is_group(const std::string& name, const std::vector<std::string>& keys) {
+    return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
+        return key.starts_with(name + ".");
+    });
+}
+
+/// Today's name of a key or group that has an older one; `name` itself if it is known, or if its
+/// newer name is not a setting of this object.
+std::string name_today(const std::string& name,
+                       const std::string& where,
+                       const std::vector<std::string>& keys,
+                       Notes* notes) {
+    if (is_key(name, keys) || is_group(name, keys)) return name;
+    std::string now = current_key(name);
+    if (!is_key(now, keys) && !is_group(now, keys)) return name;
+    if (notes != nullptr) {
+        notes->push_back(fmt::format(
+            "{}'{}' is now called '{}'. Use the new name: version 0.3 refuses the old one",
+            begin_of_sentence(where),
+            name,
+            now));
+    }
+    return now;
+}
+
+Status assign_one(const std::string& name,
+                  const Given& given,
+                  const DescribeConfig& describe,
+                  Notes* notes) {
     const std::vector<std::string> keys = keys_of(describe);
-    if (std::find(keys.begin(), keys.end(), key) == keys.end())
-        return unknown_key(given.where, key, keys);
+    const std::string key = name_today(name, given.where, keys, notes);
+    if (!is_key(key, keys)) return unknown_key(given.where, key, keys);
     return assign({{key, given}}, describe);
 }
 
@@ -178,15 +211,13 @@ Status collect(const YamlNode& node,
                const std::string& prefix,
                const std::string& file,
                const std::vector<std::string>& keys,
-               GivenValues& out) {
+               GivenValues& out,
+               Notes* notes) {
     for (const YamlNode& child : node.items) {
-        const std::string key = prefix + child.key;
         const std::string where = fmt::format("{}:{}", file, child.line);
-        const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
-        const bool group = std::any_of(keys.begin(), keys.end(), [&](const std::string& other) {
-            return other.starts_with(key + ".");
-        });
-        if (!known && !group) {
+        const std::string key = name_today(prefix + child.key, where, keys, notes);
+        const bool known = is_key(key, keys);
+        if (!known && !is_group(key, keys)) {
             // Show the reader a whole key: the first inside a misspelt group is as good as any.
             const bool inner = child.is_mapping() && !child.items.empty();
             return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);
@@ -200,7 +231,8 @@ Status collect(const YamlNode& node,
                 return usage_error(fmt::format("{}: key '{}' appears twice", where, key));
             }
         } else if (child.is_mapping()) {
-            if (Status status = collect(child, key + ".", file, keys, out); !status) return status;
+            if (Status status = collect(child, key + ".", file, keys, out, notes); !status)
+                return status;
         } else if (child.kind != YamlNode::Kind::null) {
             return usage_error(fmt::format(
                 "{}: {}: expected a group of keys, found {}", where, key, child.kind_name()));
@@ -246,7 +278,8 @@ std::string format_config(const DescribeConfig& describe) {
 
 Status parse_config(std::string_view yaml,
                     const std::string& file,
-                    const DescribeConfig& describe) {
+                    const DescribeConfig& describe,
+                    Notes* notes) {
     const Result<YamlNode> root = parse_yaml(yaml, file);
     if (!root) return usage_error(root.error().message);
     if (root->kind == YamlNode::Kind::null) return {};  // empty file: nothing to change
@@ -255,30 +288,33 @@ Status parse_config(std::string_view yaml,
             fmt::format("{}: expected 'key: value' lines, found {}", file, root->kind_name()));
     }
     GivenValues given;
-    if (Status status = collect(*root, "", file, keys_of(describe), given); !status) return status;
+    if (Status status = collect(*root, "", file, keys_of(describe), given, notes); !status)
+        return status;
     return assign(given, describe);
 }
 
-Status override_config(std::string_view key_and_value, const DescribeConfig& describe) {
+Status override_config(std::string_view key_and_value,
+                       const DescribeConfig& describe,
+                       Notes* notes) {
     const std::size_t equals = key_and_value.find('=');
     if (equals == key_and_value.npos) {
         return usage_error(fmt::format("--set {}: expected key=value", quoted(key_and_value)));
     }
     const std::string key(trimmed(key_and_value.substr(0, equals)));
     const std::string value(trimmed(key_and_value.substr(equals + 1)));
-    return assign_one(key, {value, "--set"}, describe);
+    return assign_one(key, {value, "--set"}, describe, notes);
 }
 
 Status change_config(const std::string& key,
                      const std::string& value,
                      const DescribeConfig& describe) {
-    return assign_one(key, {value, ""}, describe);
+    return assign_one(key, {value, ""}, describe, nullptr);
 }
 
-Status read_config(const std::string& path, const DescribeConfig& describe) {
+Status read_config(const std::string& path, const DescribeConfig& describe, Notes* notes) {
     const Result<std::string> text = read_file(path, limits::kSettingsBytes);
     if (!text) return usage_error(text.error().message);
-    return parse_config(*text, path, describe);
+    return parse_config(*text, path, describe, notes);
 }
 
 Status write_config(const std::string& path, const DescribeConfig& describe) {

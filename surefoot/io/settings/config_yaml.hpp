@@ -11,11 +11,15 @@
 
 /// Configuration objects <-> YAML. Works with everything that has `void describe(ConfigVisitor&)`.
 /// Strict: an unknown key, a wrong type or a value out of range is a usage error with file and
-/// line, and the object is then unchanged.
+/// line, and the object is then unchanged. Keys may have the names of the version before
+/// (renamed_keys.hpp); `notes`, if given, then receives a sentence with the new name.
 namespace surefoot::io {
 
 /// Walks a config object with a visitor.
 using DescribeConfig = std::function<void(ConfigVisitor&)>;
+
+/// Sentences for the user about a text that was read without an error, such as an old key.
+using Notes = std::vector<std::string>;
 
 /// One key with its present value, flat.
 struct ConfigEntry {
@@ -32,15 +36,19 @@ struct ConfigEntry {
 /// or written with dots ("elevation.length_m: 6").
 [[nodiscard]] Status parse_config(std::string_view yaml,
                                   const std::string& file,
-                                  const DescribeConfig& describe);
+                                  const DescribeConfig& describe,
+                                  Notes* notes = nullptr);
 /// One override "key=value" with the same checks.
 [[nodiscard]] Status override_config(std::string_view key_and_value,
-                                     const DescribeConfig& describe);
+                                     const DescribeConfig& describe,
+                                     Notes* notes = nullptr);
 /// The same for a key and a value that came from elsewhere; an error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);
-[[nodiscard]] Status read_config(const std::string& path, const DescribeConfig& describe);
+[[nodiscard]] Status read_config(const std::string& path,
+                                 const DescribeConfig& describe,
+                                 Notes* notes = nullptr);
 [[nodiscard]] Status write_config(const std::string& path, const DescribeConfig& describe);
 
 template <typename Config>

@@ -72,7 +72,7 @@ void OpticsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("smudge_x", smudge_x, 0.0, 1.0, "middle of the mark, share of the width");
     visitor.number("smudge_y", smudge_y, 0.0, 1.0, "share of the height");
     visitor.number("smudge_radius", smudge_radius, 0.01, 2.0, "share of the height");
-    visitor.enumeration("smudge_eye", smudge_camera, kCameraSideNames, "which lens has the mark");
+    visitor.enumeration("smudge_camera", smudge_camera, kCameraSideNames, "which lens has the mark");
 }
 
 std::vector<float> smear_kernel(double sigma_px) {

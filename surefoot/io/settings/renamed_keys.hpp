@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace surefoot::io {
+
+/// Today's name of a setting. Version 0.2 renamed some keys; files and --set may use the names of
+/// version 0.1 until version 0.3. Returns `key` itself if it has no newer name. docs/migration.md
+/// lists all pairs.
+[[nodiscard]] std::string current_key(std::string_view key);
+
+}  // namespace surefoot::io
