@@ -18,12 +18,14 @@
 namespace surefoot::app {
 namespace {
 
+constexpr const char* kUsualMachine = "rex";
+
 struct GateOptions {
     CommonOptions common;
     std::string map_dir;
     std::string pose;     ///< base_link in odom: "x,y,yaw" [m, rad]
     std::string command;  ///< a joystick code
-    std::string machine = "rex";
+    std::string machine;  ///< empty = rex, and the answer says so
     std::string explain_file;
     /// Attested area around base_link; < 0 = as far as the standing feet reach.
     double attestation_radius_m = -1.0;
@@ -91,7 +93,7 @@ Result<std::uint8_t> parse_command(const std::string& text, const Machine& machi
 int gate(const GateOptions& options) {
     const auto pose = parse_three_numbers("--pose", options.pose, "x,y,yaw (m, m, rad)");
     if (!pose) return report(pose.error());
-    const auto machine = load_machine(options.machine);
+    const auto machine = load_machine(options.machine.empty() ? kUsualMachine : options.machine);
     if (!machine) return report(machine.error());
     if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
     const auto command = parse_command(options.command, machine->value().machine);
@@ -104,6 +106,8 @@ int gate(const GateOptions& options) {
     std::vector<std::string> assumed = map->assumed;
     assumed.push_back("frame and pose are as fresh as when the map was written");
     assumed.push_back("perception was ready");
+    if (options.machine.empty())
+        assumed.push_back(fmt::format("the machine is {}: --machine was not given", kUsualMachine));
     for (const io::Deviation& deviation : machine->value().deviations)
         assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
     if (options.attestation_radius_m != 0.0) {

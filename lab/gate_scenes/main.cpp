@@ -608,12 +608,17 @@ int run(const std::vector<std::string>& words) {
     if (auto made = io::make_folder(folder); !made) return app::report(made.error());
     const std::uint64_t seed = std::strtoull(words[2].c_str(), nullptr, 10);
     const std::uint64_t scenes = std::strtoull(words[3].c_str(), nullptr, 10);
+    const auto names =
+        words.size() > 4 ? io::split(words[4], ",") : std::vector<std::string_view>{};
+    for (const std::string_view name : names) {
+        if (std::find(std::begin(kHazardNames), std::end(kHazardNames), name) ==
+            std::end(kHazardNames))
+            return app::report(usage_error(fmt::format("KINDS: there is no hazard '{}'", name)));
+    }
     std::vector<Hazard> kinds;
     for (int kind = 0; kind < kHazards; ++kind) {
-        const std::string name = kHazardNames[kind];
-        const auto wanted =
-            words.size() > 4 ? io::split(words[4], ",") : std::vector<std::string_view>{};
-        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+        const std::string_view name = kHazardNames[kind];
+        if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
             kinds.push_back(static_cast<Hazard>(kind));
     }
     std::vector<Variant> variants;

@@ -10,8 +10,10 @@ namespace {
 std::atomic<bool> interrupt_seen{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-void on_signal(int /*signal*/) {
-    interrupt_seen.store(true);
+void on_signal(int signal) {
+    if (!interrupt_seen.exchange(true)) return;
+    std::signal(signal, SIG_DFL);  // the second signal of either kind ends the program
+    std::raise(signal);
 }
 
 }  // namespace
@@ -19,7 +21,6 @@ void on_signal(int /*signal*/) {
 void watch_for_interrupts() {
     struct sigaction action = {};
     action.sa_handler = on_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second signal ends the program
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }

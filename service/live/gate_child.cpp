@@ -8,9 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <tuple>
 #include <utility>
@@ -29,17 +32,21 @@ Result<std::string> find_program() {
     return input_error("the program surefoot-gate is not beside " + self.string());
 }
 
-/// Longest silence while the gate starts. If it writes nothing for this time, the start has failed.
-constexpr int kStart_ms = 20'000;
+/// Longest time until the gate has written its first line. After it the start has failed.
+constexpr std::chrono::seconds kLongestStart{20};
 
 /// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait
 /// ran out.
 std::string first_line(int file) {
+    const auto end = std::chrono::steady_clock::now() + kLongestStart;
     std::string line;
     char byte = 0;
     while (line.size() < 4096) {
         pollfd wait{file, POLLIN, 0};
-        const int ready = ::poll(&wait, 1, kStart_ms);
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+            end - std::chrono::steady_clock::now());
+        const auto left_ms = static_cast<int>(std::max<std::int64_t>(0, left.count()));
+        const int ready = ::poll(&wait, 1, left_ms);
         if (ready < 0 && errno == EINTR) continue;
         if (ready <= 0) break;
         const ssize_t got = ::read(file, &byte, 1);

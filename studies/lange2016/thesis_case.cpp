@@ -237,7 +237,8 @@ class LiveRun {
         add_found(*pipeline_, run_, numbers, figures);
         if (run_.walk) {
             if (auto status = take_snapshot(); !status) return status.error();
-            steps.ask_all(record.frames.size(), *pipeline_, *snapshot_);
+            steps.ask_all(
+                static_cast<std::size_t>(record.frames.back().index), *pipeline_, *snapshot_);
             steps.add_to(column_ == ThesisColumn::ours, figures);
         }
         if (auto status = write_all(folder, record, truth, compared, ground, numbers); !status)

@@ -36,10 +36,10 @@ void PolicySteps::ask(const pipeline::Pipeline& pipeline, const grid::MapSnapsho
     answers_.push_back({step.safe, step.clear_cut, true, step.allowed(), thesis});
 }
 
-void PolicySteps::ask_all(std::size_t frames,
+void PolicySteps::ask_all(std::size_t frame,
                           const pipeline::Pipeline& pipeline,
                           const grid::MapSnapshot& map) {
-    const Pose& T_world_body = truth_.trajectory[frames - 1].T_world_body;
+    const Pose& T_world_body = truth_.trajectory[frame].T_world_body;
     for (int command = 1; command < Machine::kMovementCodes; ++command) {
         if (!machine_.movements[static_cast<std::size_t>(command)].configured) continue;
         const sim::SafetyAnswer answer = sim::judge(truth_.scene, machine_, T_world_body, command);

@@ -29,8 +29,9 @@ class PolicySteps {
     [[nodiscard]] bool due(std::int64_t frame_ns) const { return steps_.due(frame_ns); }
     /// Asks about the next step with the current map.
     void ask(const pipeline::Pipeline& pipeline, const grid::MapSnapshot& map);
-    /// Asks about every movement at the end of the path. `frames`: number of processed frames.
-    void ask_all(std::size_t frames,
+    /// Asks about every movement at the end of the path. `frame`: index of the last
+    /// processed frame in the truth.
+    void ask_all(std::size_t frame,
                  const pipeline::Pipeline& pipeline,
                  const grid::MapSnapshot& map);
     /// Sets steps, steps_allowed (share of the truly safe steps), dangers, dangers_allowed. `gate`

@@ -284,6 +284,7 @@ class Simulation(CliTest):
         verdict = self.verdict(self.demo, (end[1], end[2], 0), FORWARD)
         self.assertEqual((verdict["verdict"], verdict["reasons"]), ("OK", []), verdict)
         self.assertTrue(any("start area" in line for line in verdict["assumed"]), verdict)
+        self.assertTrue(any("the machine is rex" in line for line in verdict["assumed"]), verdict)
 
     def test_the_first_step_needs_an_operators_word(self):
         self.inhibited("UNKNOWN_CELLS", self.demo, (0, 0, 0), FORWARD)
