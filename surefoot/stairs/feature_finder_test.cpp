@@ -17,7 +17,6 @@ namespace surefoot::stairs {
 namespace {
 
 using testing::Ground;
-using testing::kRadPerDeg;
 using testing::TestFlight;
 using testing::TestMap;
 

@@ -14,7 +14,6 @@
 namespace surefoot::stairs {
 namespace {
 
-using testing::kRadPerDeg;
 using testing::TestFlight;
 using testing::TestMap;
 using enum GroundClass;

@@ -13,7 +13,6 @@
 namespace surefoot::stairs {
 namespace {
 
-using testing::kRadPerDeg;
 using testing::TestMap;
 
 constexpr double kDegPerRad = 1.0 / kRadPerDeg;

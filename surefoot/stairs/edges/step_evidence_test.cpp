@@ -15,7 +15,6 @@ namespace {
 
 using testing::Ground;
 using testing::height_errors;
-using testing::kRadPerDeg;
 using testing::SmoothGround;
 using testing::SmoothMap;
 using testing::TestFlight;

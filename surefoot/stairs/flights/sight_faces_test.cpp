@@ -12,7 +12,6 @@ namespace surefoot::stairs {
 namespace {
 
 using testing::flight;
-using testing::kRadPerDeg;
 using testing::SightScene;
 
 /// Edges of steps up along +x, each off its place by what `off_m` says, from below.

@@ -16,7 +16,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using testing::flight;
-using testing::kRadPerDeg;
 using testing::Tread;
 
 class Scene : public testing::SightScene {

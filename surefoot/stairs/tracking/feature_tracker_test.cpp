@@ -17,7 +17,6 @@
 namespace surefoot::stairs {
 namespace {
 
-using testing::kRadPerDeg;
 using testing::TestMap;
 
 constexpr double kSigma_m = 0.005;
