@@ -30,13 +30,19 @@ const std::vector<OldAndNew> kPairs{
     {"sim.optics.smudge_eye=right", "sim.optics.smudge_camera=right"},
 };
 
+SettingsRequest overridden(std::vector<std::string> overrides) {
+    SettingsRequest request;
+    request.overrides = std::move(overrides);
+    return request;
+}
+
 TEST(RenamedSettings, OldNamesOfOverridesGiveTheSameSettingsAndANote) {
     const std::uint64_t usual = hash_of(Settings{});
     for (const auto& [old_name, new_name] : kPairs) {
         io::Notes notes;
         io::Notes no_notes;
-        const auto by_old = load_settings({.overrides = {old_name}}, &notes);
-        const auto by_new = load_settings({.overrides = {new_name}}, &no_notes);
+        const auto by_old = load_settings(overridden({old_name}), &notes);
+        const auto by_new = load_settings(overridden({new_name}), &no_notes);
         ASSERT_TRUE(by_old.ok()) << by_old.error().message;
         ASSERT_TRUE(by_new.ok()) << by_new.error().message;
         EXPECT_EQ(hash_of(*by_old), hash_of(*by_new)) << old_name;
@@ -55,9 +61,9 @@ TEST(RenamedSettings, OldGroupsOfAFileAreReadWithTheirLines) {
     io::Notes notes;
     const Status read = io::parse_config(text, "old.yaml", io::describe_config(settings), &notes);
     ASSERT_TRUE(read.ok()) << read.error().message;
-    const auto wanted = load_settings({.overrides = {"self_calibration.enabled=false",
-                                                     "stairs.tracking.mean_observations=7",
-                                                     "sim.motion_model=rex"}});
+    const auto wanted = load_settings(overridden({"self_calibration.enabled=false",
+                                                  "stairs.tracking.mean_observations=7",
+                                                  "sim.motion_model=rex"}));
     ASSERT_TRUE(wanted.ok());
     EXPECT_EQ(hash_of(settings), hash_of(*wanted));
     ASSERT_EQ(notes.size(), 4U);
@@ -76,8 +82,8 @@ TEST(RenamedSettings, BothNamesOfOneSettingAreAnError) {
 }
 
 TEST(RenamedSettings, UnknownKeysStayErrors) {
-    EXPECT_FALSE(load_settings({.overrides = {"trim.nothing=1"}}).ok());
-    EXPECT_FALSE(load_settings({.overrides = {"trimmed.enabled=false"}}).ok());
+    EXPECT_FALSE(load_settings(overridden({"trim.nothing=1"})).ok());
+    EXPECT_FALSE(load_settings(overridden({"trimmed.enabled=false"})).ok());
 }
 
 }  // namespace
