@@ -25,12 +25,12 @@ const char* kind_of(mode_t mode) {
     if (S_ISSOCK(mode)) return "a socket";
     if (S_ISCHR(mode)) return "a device";
     if (S_ISBLK(mode)) return "a disk device";
-    return "no regular file";
+    return "not a regular file";
 }
 
 Error too_large(const std::string& path, std::uint64_t bytes, std::uint64_t max_bytes) {
     return input_error(fmt::format(
-        "{}: its {} bytes are more than the limit of {} bytes for such a file; check that this is "
+        "{}: its {} bytes are more than the limit of {} bytes for this format; check that this is "
         "the right file",
         path,
         bytes,
@@ -112,11 +112,11 @@ Result<std::string> InputFile::read_at(std::uint64_t offset, std::uint64_t count
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return cannot_read(path_, errno);
         if (got == 0) {
-            return input_error(
-                fmt::format("{}: cannot read {} bytes from {} on: the file became shorter",
-                            path_,
-                            bytes.size(),
-                            offset));
+            return input_error(fmt::format(
+                "{}: cannot read {} bytes from byte {} on: the file became shorter while open",
+                path_,
+                bytes.size(),
+                offset));
         }
         done += static_cast<std::size_t>(got);
     }
@@ -139,7 +139,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
         size += piece->bytes;
         if (size > max_bytes) return too_large(path, size, max_bytes);
         if (piece->would_wait)
-            return input_error(path + ": cannot read: it would wait for more; give a regular file");
+            return input_error(path + ": cannot read: it has no data now; give a regular file");
         if (piece->bytes == 0) break;
     }
     content.resize(size);

@@ -25,8 +25,8 @@ class ConvexArea {
     /// Largest distance from the grid's origin, so that counting cells has no rounding.
     static constexpr double kMaxReach_cells = 1 << 20;
 
-    /// Empty (no rows) if there is no point or more than kMaxPoints, if anything is not finite or
-    /// the radius negative, or if it lies beyond kMaxReach_cells.
+    /// The area is empty (no rows) without points, with more than kMaxPoints, with a negative
+    /// radius, with a value that is not finite, or if it lies beyond kMaxReach_cells.
     ConvexArea(std::span<const Eigen::Vector2d> points_m,
                double radius_m,
                const GridGeometry& geometry) noexcept;
@@ -39,7 +39,7 @@ class ConvexArea {
     [[nodiscard]] CellRun row(std::int64_t iy) const noexcept;
 
   private:
-    /// One straight piece of the rim, moved outward by the radius; x over y, both in cells.
+    /// A straight piece of the rim, outward by the radius: x as a function of y, in cells.
     struct Edge {
         double low = 0.0;
         double high = 0.0;

@@ -77,8 +77,8 @@ struct MapSnapshot {
     /// [1e-6 rad], rounded up. kUnknownTilt makes the gate answer ERROR.
     std::uint32_t tilt_sigma_urad = kUnknownTilt;
 
-    /// Of a measured cell the ground; of an unknown one what lines of sight over it showed: ground
-    /// there lies lower. kUnknownHeight = nothing is known.
+    /// Measured: ground height. Unknown: height of rays over the cell; its ground lies lower.
+    /// kUnknownHeight = no information.
     std::array<std::int32_t, kMaxCells> height_tenth_mm{};
     std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated
     std::array<std::uint16_t, kMaxCells>

@@ -66,10 +66,10 @@ struct SnapshotInput {
 /// This function computes two layers:
 /// - `component`: connected known cells (4 neighbours, heights within `connect_step_m`), numbered
 ///   from 1 in the order of their first cell. Surfaces beyond 65535 get no number.
-/// - `drop_evidence`: 255 on the *upper* cell of a measured drop. For each cell, the known cells
-///   behind it are compared along rows and columns, across at most `drop_reach_m` of occluded
-///   region. The cell is an upper cell if one of them lies lower by more than `drop_step_m`; rays
-///   that passed over an occluded cell count too. The evidence belongs to the upper cell, because
+/// - `drop_evidence`: 255 on the *upper* cell of a measured drop. For each measured cell, the next
+///   measured cell along its row and column is compared, across at most `drop_reach_m` of occluded
+///   region; rays that passed over occluded cells count too. The cell is an upper cell if one of
+///   them lies lower by more than `drop_step_m`. The evidence belongs to the upper cell, because
 ///   the lower ground is no drop when one stands there: for example the floor beside a table.
 [[nodiscard]] Status build_snapshot(const SnapshotInput& input, MapSnapshot& out);
 

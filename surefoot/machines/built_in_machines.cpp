@@ -43,7 +43,7 @@ Status self_test(const std::string& name, const Machine& machine) {
     if (outcome.passed) return {};
     return usage_error(
         fmt::format("{}: with this machine the gate fails its self-test, the question {} with "
-                    "movement {}: {} is expected, {} was found; check feet, body, movements and "
+                    "movement {}: expected {}, found {}; check feet, body, movements and "
                     "limits",
                     name,
                     outcome.name,
