@@ -153,7 +153,7 @@ TEST(StereoCalibration, RefusesWhatIsNoPair) {
     };
     EXPECT_NE(refusal(views.left, {}).find("6 left views for 0 right ones"), std::string::npos);
     EXPECT_NE(refusal({}, {}).find("at least 3"), std::string::npos);
-    EXPECT_NE(refusal(views.right, views.left).find("exchange the cameras"), std::string::npos);
+    EXPECT_NE(refusal(views.right, views.left).find("swap the cameras"), std::string::npos);
     const std::vector<BoardView> none(6);
     EXPECT_NE(refusal(views.left, none).find("right: the board was not found"), std::string::npos);
 }

@@ -9,11 +9,11 @@
 namespace surefoot::camera {
 namespace {
 
-/// Baselines of cameras that people carry or mount on a machine: a ZED-X Nano has 18 mm, a car 0.6
-/// m.
+/// Usual baselines of cameras that people carry or mount on a machine: 18 mm on a ZED-X Nano, 0.6 m
+/// on a car.
 constexpr double kUsualMin_m = 0.01;
 constexpr double kUsualMax_m = 1.0;
-/// A calibration with squares of side 1 gives the baseline in squares; real squares are 20-100 mm.
+/// A calibration with squares of side 1 gives the baseline in squares. Real squares are 20-100 mm.
 constexpr double kMostSquares = 50.0;
 constexpr double kMaxMount_m = 10.0;
 
@@ -21,7 +21,7 @@ bool is_usual(double length_m) {
     return length_m >= kUsualMin_m && length_m <= kUsualMax_m;
 }
 
-/// ": is it in mm (then 60.8 mm)?"; the end of the sentence where no unit makes it usual.
+/// ": is it in mm (then 60.8 mm)?", or "." if no unit gives a usual baseline.
 std::string likely_units(double number) {
     struct Unit {
         const char* name;

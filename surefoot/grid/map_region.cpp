@@ -88,8 +88,7 @@ std::optional<std::string> problem_of_head(const MapRegion& r) {
     if (!r.T_frame_body.all_finite() ||
         std::abs(r.T_frame_body.rotation.squaredNorm() - 1.0) > kNormTolerance) {
         return "the pose of base_link is invalid: a number is not finite or the quaternion does "
-               "not "
-               "have length 1";
+               "not have length 1";
     }
     return std::nullopt;
 }
