@@ -62,10 +62,11 @@ Status check_input(const std::string& path, std::uint64_t max_bytes, Accept acce
 
 Result<InputFile> InputFile::open(const std::string& path, std::uint64_t max_bytes, Accept accept) {
     struct stat status = {};
-    // Asked by name first: opening alone starts some devices (a watchdog, a tape).
+    // Checks the kind by name first: opening alone starts some devices (a watchdog, a tape).
     if (::stat(path.c_str(), &status) != 0) return cannot_read(path, errno);
     if (Status fits = check_kind(path, status, max_bytes, accept); !fits) return fits.error();
-    // A FIFO may have taken the name since: O_NONBLOCK keeps the opening from waiting for a writer.
+    // A FIFO may have replaced the file since then: with O_NONBLOCK, opening does not wait for a
+    // writer.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0) return cannot_read(path, errno);
     InputFile file(path, descriptor, 0);
@@ -129,7 +130,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
     std::string content;
     constexpr std::size_t kBlock = 1 << 18;
     std::size_t size = 0;
-    // Files of the kernel have no size, and others may grow: what counts is the end that is met.
+    // Files of the kernel have no size, and other files may grow: read until the end of the file.
     while (true) {
         const std::uint64_t announced = file->size() > size ? file->size() - size : 0;
         content.resize(size + std::max<std::size_t>(announced + 1, size == 0 ? 1 : kBlock));

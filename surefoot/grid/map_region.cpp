@@ -178,8 +178,7 @@ std::optional<std::string> MapRegion::problem() const {
 MapRegion cut(MapRegion region, const LatticeBox& box) {
     SUREFOOT_ASSERT(!box.problem());
     const LatticeBox& had = region.box;
-    const std::int64_t dx = box.first_ix - had.first_ix;  // column of `region` for column 0 of the
-    const std::int64_t dx = box.first_ix - had.first_ix;  // new box
+    const std::int64_t dx = box.first_ix - had.first_ix;  // column of `region` at new column 0
     const std::int64_t dy = box.first_iy - had.first_iy;
     const std::int64_t begin_ix = std::clamp<std::int64_t>(-dx, 0, box.nx);
     const std::int64_t end_ix = std::clamp<std::int64_t>(had.nx - dx, begin_ix, box.nx);

@@ -36,8 +36,8 @@ Result<std::string> find_resource(const std::vector<Resource>& resources,
 
 namespace {
 
-/// A gate that fails its own questions with this machine would never be ready, or would answer what
-/// it must not: no program of ours takes such a machine.
+/// Refuses a machine with which the gate fails its self-test: the gate would never be ready, or
+/// would give wrong answers. All programs use this check.
 Status self_test(const std::string& name, const Machine& machine) {
     const auto outcome = std::make_unique<gate::Canaries>(machine)->judge_all();
     if (outcome.passed) return {};
