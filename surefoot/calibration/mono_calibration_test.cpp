@@ -271,8 +271,8 @@ TEST(MonoCalibration, SaysThatTiltIsMissing) {
     Rng rng(10);
     const camera::Camera camera{
         model_of(LensKind::pinhole5, cases()[1].truth), kSize.width, kSize.height};
-    std::vector<BoardView> still;     // moved, but never rotated
-    std::vector<BoardView> parallel;  // one pose, ten times
+    std::vector<BoardView> still;     // one pose, ten times
+    std::vector<BoardView> parallel;  // moved, but never rotated
     for (int i = 0; i < 10; ++i) {
         const Pose tilted{exp_so3({0.4, 0.2, 0.0}), {-0.12, -0.08, 0.5}};
         still.push_back(view_of(kBoard, camera, tilted, 2.0 * kNoise_px, rng));

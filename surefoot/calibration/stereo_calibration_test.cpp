@@ -176,7 +176,7 @@ TEST(StereoCalibration, DepthErrorGrowsFromAKnownOne) {
     const double share = 1e-3 / rig.T_left_right.translation_m.norm();
     EXPECT_NEAR(sigmas_m[0], 0.5 * share, 1e-7);
     EXPECT_NEAR(sigmas_m[1], 2.0 * share, 1e-7);
-    EXPECT_TRUE(std::isnan(sigmas_m[2])) << "the right eye does not see a point 10 mm ahead";
+    EXPECT_TRUE(std::isnan(sigmas_m[2])) << "the right camera does not see a point 10 mm ahead";
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ TEST(FrameIntegrityCheck, WhatTheSourceSaysIsBelieved) {
     EXPECT_TRUE(watch.look(told).torn);
     EXPECT_EQ(watch.look(told).dropped, 2);
     told.frame_status.torn = false;
-    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "it was not looked at before";
+    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "no earlier frame was compared";
 }
 
 }  // namespace

@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// How many of the six directions (three of them rotations) surfaces do not fix: those fixed by
+    /// Directions of the six (three of them rotations) that surfaces do not fix: those fixed by
     /// edges, where surfaces end between points (faces of steps in a height map); those fixed only
-    /// by borders of the clouds; and free directions, where the guess stays unchanged. A bare floor
-    /// leaves three directions to borders and free ones.
+    /// by borders of the clouds; and free ones, where the guess stays unchanged. On a bare floor
+    /// the three numbers add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

@@ -58,10 +58,10 @@ struct SnapshotInput {
     double drop_reach_m = 0.5;
 };
 
-/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds to
-/// the unsafe side: sigma and drift upward, clearance downward; NaN and too large values become
-/// unknown or the largest value. After an error `out` is not intact, so that a gate that still
-/// receives it answers ERROR.
+/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds so
+/// that no cell seems safer than it is: sigma and drift upward, clearance downward. NaN and too
+/// large values become unknown or the largest value. After an error `out` is not intact: a gate
+/// that still receives it answers ERROR.
 ///
 /// This function computes two layers:
 /// - `component`: connected known cells (4 neighbours, heights within `connect_step_m`), numbered

@@ -26,8 +26,8 @@ Result<std::string> find_resource(const std::vector<Resource>& resources,
     }
     const std::string likely = did_you_mean(name, known);
     return usage_error(
-        fmt::format("no file is named '{0}', and there is no '{0}' among the {1}{2} "
-                    "There is: {3}",
+        fmt::format("there is no file '{0}', and no '{0}' among the built-in {1}{2} "
+                    "Known names: {3}",
                     name,
                     folder,
                     likely.empty() ? "." : likely,
