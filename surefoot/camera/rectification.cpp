@@ -156,18 +156,18 @@ void RectificationConfig::describe(ConfigVisitor& visitor) {
                     rectified_width_px,
                     0,
                     kMaxSide_px,
-                    "width of rectified images; 0 = as the raw ones");
+                    "width of rectified images; 0 = width of the raw images");
     visitor.integer("rectified_height_px",
                     rectified_height_px,
                     0,
                     kMaxSide_px,
-                    "height of rectified images; 0 = as the raw ones");
+                    "height of rectified images; 0 = height of the raw images");
     visitor.number("max_view_deg",
                    max_view_deg,
                    10.0,
                    kWidestPlane_deg,
-                   "widest view where the focal length is not given; wide lenses thin out the "
-                   "middle of a plane image");
+                   "widest view if rectified_focal_px is 0; a wider view reduces the resolution "
+                   "in the middle of the image");
 }
 
 std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_height) const {
@@ -191,8 +191,7 @@ std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_h
     if (!(rectified_focal_px > 0.0 && view_deg <= kWidestPlane_deg)) {
         return fmt::format(
             "camera.rectified_focal_px = {} must be at least {:.0f} for a {}x{} image: a plane "
-            "image "
-            "shows at most {} deg",
+            "image shows at most {} deg",
             rectified_focal_px,
             std::ceil(0.5 * longest / std::tan(0.5 * kWidestPlane_deg / kDegreesPerRadian)),
             width,

@@ -60,8 +60,7 @@ std::optional<std::string> baseline_warning(double length_m) {
     if (baseline_problem(length_m) || is_usual(length_m)) return std::nullopt;
     return fmt::format(
         "baseline {:.3f} m is {} than {} m{} Every depth has the same error as the baseline: "
-        "measure "
-        "the distance of the lenses with a ruler",
+        "measure the distance of the lenses with a ruler",
         length_m,
         length_m < kUsualMin_m ? "shorter" : "longer",
         length_m < kUsualMin_m ? kUsualMin_m : kUsualMax_m,
@@ -79,8 +78,7 @@ std::optional<std::string> focal_warning(double focal_px, int width_px) {
     if (!(focal_px < kLeastOfWidth * width_px)) return std::nullopt;
     return fmt::format(
         "focal length {:.2f} px is too short for an image of {} px: is it in mm? In pixels it is "
-        "the "
-        "focal length divided by the side of a pixel, both in mm",
+        "the focal length divided by the side of a pixel, both in mm",
         focal_px,
         width_px);
 }

@@ -53,7 +53,7 @@ Problem pair_pose_problem(const Pose& T_left_right) {
             "swap the cameras or invert T_left_right",
             -t.x());
     }
-    // More than 45 deg from the x axis: the cameras are neither side by side nor above each other.
+    // Above 45 deg from the x axis the cameras lie above each other rather than side by side.
     if (t.x() * t.x() < 0.5 * length_m * length_m) {
         return fmt::format(
             "baseline ({:.3f}, {:.3f}, {:.3f}) m must point along x of the left camera; "

@@ -9,8 +9,8 @@
 namespace surefoot::calibration {
 
 /// Measures a board of known size with a stereo rig. Triangulates the points that both images
-/// show, as `run` does, from columns of the rectified images. Not meaningful for a pair from
-/// the rig's own calibration: a wrong square size changes rig and board alike, and does not
+/// show, as `run` does, from columns of the rectified images. Not meaningful for a pair from the
+/// rig's own calibration. A wrong square size there changes rig and board alike and does not
 /// show.
 struct BoardMeasures {
     int points = 0;           ///< points that both cameras see
