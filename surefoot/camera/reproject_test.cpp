@@ -63,7 +63,7 @@ TEST(Reproject, EveryTargetGivesTheExactPoint) {
 
 TEST(Reproject, WhatIsNoDistanceIsUnknown) {
     const float strange[] = {kNaN, kInfinity, -kInfinity, 0.0F, -0.0F, -3.0F, 1e-45F};
-    constexpr int kWidth = 40;  // whole vectors plus a remainder on every target
+    constexpr int kWidth = 40;  // whole vectors; with 16 lanes also a remainder
     for (const float value : strange) {
         const Image<float> disparity_px(kWidth, 1, value);
         test::on_every_target([&](const char* target) {
