@@ -16,9 +16,8 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr const char* kUnexplained =
-    "calibration: no camera explains the views; are the board, the order of its points and the "
-    "lens "
-    "model right?";
+    "calibration: no camera fits the views; check the board, the order of its points and the lens "
+    "model";
 
 std::vector<std::size_t> usable_views(const Board& board,
                                       std::span<const BoardView> views,
@@ -36,10 +35,10 @@ std::vector<std::size_t> usable_views(const Board& board,
     return select_views(usable, motion, options.selection, rejected);
 }
 
-/// How much the boards of a bundle differ.
+/// Variation of the boards in a bundle.
 struct Variety {
-    double tilt_deg = 0.0;        ///< between the two that differ most
-    double distance_ratio = 1.0;  ///< farthest over nearest
+    double tilt_deg = 0.0;        ///< between the two most different boards
+    double distance_ratio = 1.0;  ///< farthest divided by nearest
 };
 
 Variety variety_of(const BoardBundle& bundle) {
@@ -60,17 +59,16 @@ Variety variety_of(const BoardBundle& bundle) {
     return variety;
 }
 
-/// Why the result must not be used, or nothing.
+/// Reason why the result must not be used; empty if it is valid.
 std::string doubt(const MonoCalibration& result,
                   const CalibrationOptions& options,
                   const Variety& variety) {
-    if (variety.tilt_deg < options.least_tilt_deg) return "the views are too much alike";
+    if (variety.tilt_deg < options.least_tilt_deg) return "the views are too similar";
     if (result.covariance.size() == 0) return "the views do not determine the camera";
     const double share = std::sqrt(result.covariance(0, 0)) / result.parameters[0];
     if (!(share <= options.most_focal_sigma)) {
         return fmt::format(
-            "the views leave the focal length of {:.1f} px open by {:.1f} % (one sigma), allowed "
-            "are "
+            "the focal length of {:.1f} px is uncertain by {:.1f} % (one sigma), allowed are "
             "{:.1f} %",
             result.parameters[0],
             100.0 * share,
@@ -84,10 +82,11 @@ void reject_dropped(const RobustFit& fit,
                     std::span<const std::size_t> kept,
                     std::vector<RejectedView>& rejected) {
     for (const DroppedView& view : fit.dropped) {
-        reject(
-            rejected,
-            kept[static_cast<std::size_t>(view.view)],
-            fmt::format("rms {:.2f} px, the other views allow {:.2f}", view.rms_px, view.limit_px));
+        reject(rejected,
+               kept[static_cast<std::size_t>(view.view)],
+               fmt::format("rms {:.2f} px exceeds {:.2f} px, the limit from the other views",
+                           view.rms_px,
+                           view.limit_px));
     }
 }
 
@@ -104,8 +103,8 @@ std::vector<ViewFit> view_fits(const BoardBundle& bundle,
     return views;
 }
 
-/// The reason, or the lens that explains the views where the chosen one does not: then tilts, focal
-/// length and views that disagree follow from the wrong lens.
+/// The error to report. If another lens kind explains the views, the error names it: with a wrong
+/// lens, the reasons (tilts, focal length, views that disagree) mislead.
 Error failure(const Board& board,
               std::span<const BoardView> views,
               ImageSize size,
@@ -146,16 +145,15 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     if (!start_bundle(bundle)) return failed(kUnexplained);
     const std::vector<double> start_rms = view_rms_px(bundle);
     for (std::size_t v = 0; v < kept.size(); ++v)
-        if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose explains it");
+        if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose fits it");
     const std::optional<RobustFit> fit = solve_robustly(bundle, options.limits);
     if (!fit) return failed(kUnexplained);
     reject_dropped(*fit, kept, result.rejected);
     const auto left = static_cast<std::size_t>(views_left(bundle));
     if (fit->contradiction || left < least || 2 * left < kept.size()) {
         return failed(
-            fmt::format("calibration: only {} of {} views agree with each other; are the board's "
-                        "size, the order "
-                        "of its points and the lens model right? ({})",
+            fmt::format("calibration: only {} of {} views agree with each other; check the board's "
+                        "size, the order of its points and the lens model ({})",
                         left - (fit->contradiction ? 1 : 0),
                         kept.size(),
                         summary_of(result.rejected, views.size())));
@@ -169,9 +167,8 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     if (const std::string found = doubt(result, options, variety); !found.empty()) {
         return failed(fmt::format(
             "calibration: {}; the boards differ by {:.1f} deg in tilt (at least {:.0f} are needed) "
-            "and {:.2f} times in distance: show it tilted by 20 to 40 deg about both axes, near "
-            "and "
-            "far",
+            "and {:.2f} times in distance: show the board tilted by 20 to 40 deg about both axes, "
+            "near and far",
             found,
             variety.tilt_deg,
             options.least_tilt_deg,

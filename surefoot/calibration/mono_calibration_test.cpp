@@ -97,7 +97,7 @@ TEST(MonoCalibration, RationalLensNeverDiverges) {
     }
 }
 
-/// Boards all over the middle of the image, as somebody shows them who forgets the corners.
+/// Boards in the middle of the image only: the user forgets the corners.
 std::vector<BoardView> views_in_the_middle(const camera::Camera& camera, Rng& rng) {
     std::vector<BoardView> views;
     while (views.size() < 10) {
@@ -142,8 +142,8 @@ TEST(MonoCalibration, AFisheyeReachesItsCornersWhereNoBoardWas) {
 }
 
 TEST(MonoCalibration, FewViewsDoNotLookBetterThanTheyAre) {
-    // Four views spend an eighth of their coordinates on poses and lens: not counted, noise would
-    // look 6 % smaller.
+    // Four views use an eighth of their coordinates for poses and lens. Without this correction the
+    // noise would look 6 % smaller.
     constexpr int kSeeds = 16;
     double square = 0.0;
     double freedom = 0.0;
@@ -200,7 +200,7 @@ TEST(MonoCalibration, LeavesOutWhatDoesNotBelong) {
     EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
 }
 
-/// The sheet bows by `bow_m` between its ends and its middle, along its rows.
+/// The sheet bends along its rows, by `bow_m` between its ends and its middle.
 BoardView bowed_view(const camera::Camera& camera,
                      const Pose& T_camera_board,
                      double bow_m,
@@ -217,8 +217,7 @@ BoardView bowed_view(const camera::Camera& camera,
     return view;
 }
 
-/// Rows of the lower half as the image shows them after the board moved: a rolling shutter, or two
-/// half images.
+/// The rows of the lower half show the board after it moved: a rolling shutter, or two half images.
 BoardView torn_view(const camera::Camera& camera, const Pose& T_camera_board, Rng& rng) {
     Pose moved = T_camera_board;
     moved.translation_m += Eigen::Vector3d(0.001, 0.0, 0.0);
@@ -244,7 +243,8 @@ TEST(MonoCalibration, LeavesOutABoardThatBowsAndOneThatMoved) {
         std::vector<std::size_t> rejected;
         for (const RejectedView& view : result->rejected) {
             rejected.push_back(view.index);
-            EXPECT_NE(view.reason.find("the other views allow"), std::string::npos) << view.reason;
+            EXPECT_NE(view.reason.find("the limit from the other views"), std::string::npos)
+                << view.reason;
         }
         EXPECT_EQ(rejected, (std::vector<std::size_t>{3, 8})) << "seed " << seed;
         uncertainty.add(result->parameters - lens.truth, result->covariance);
@@ -272,7 +272,7 @@ TEST(MonoCalibration, SaysThatTiltIsMissing) {
     const camera::Camera camera{
         model_of(LensKind::pinhole5, cases()[1].truth), kSize.width, kSize.height};
     std::vector<BoardView> still;     // one pose, ten times
-    std::vector<BoardView> parallel;  // moved, never turned
+    std::vector<BoardView> parallel;  // moved, but never rotated
     for (int i = 0; i < 10; ++i) {
         const Pose tilted{exp_so3({0.4, 0.2, 0.0}), {-0.12, -0.08, 0.5}};
         still.push_back(view_of(kBoard, camera, tilted, 2.0 * kNoise_px, rng));

@@ -16,14 +16,15 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr std::array<double, 3> kDistances_m{0.5, 1.0, 2.0};
-/// Gross scatter of a relative pose, in robust standard deviations: such a pair would only disturb
-/// the joint solution that judges the others.
+/// Gross error of a relative pose, in robust standard deviations. Such a pair would only disturb
+/// the joint solution.
 constexpr double kGrossSigmas = 8.0;
 constexpr double kMadToSigma = 1.4826;
-/// Scatter that is always let through, of the baseline and in rad: noiseless views scatter less.
+/// Scatter that is always accepted, relative to the baseline and in rad: noiseless views scatter
+/// less.
 constexpr double kLeastScatter = 1e-3;
 
-/// One pair as the two cameras alone see it.
+/// One pair with the results of the two separate cameras.
 struct Pair {
     std::size_t index = 0;
     const ViewFit* left = nullptr;
@@ -32,9 +33,9 @@ struct Pair {
     double alone_rms_px = 0.0;
 };
 
-/// What the corners' noise, as each camera alone shows it, makes of a pair's rms together: over all
-/// points of both images, whatever each camera alone made of single ones. Alone two poses of the
-/// board followed the noise, together one does: of a board of eight points a seventh of it.
+/// Expected rms of a pair in the joint solution, from the corner noise of the separate cameras,
+/// over all points of both images. Separately, two board poses fit the noise; jointly, one pose
+/// does. With a board of eight points this raises the rms by a seventh.
 double alone_rms(const CameraFit& left, const CameraFit& right) {
     constexpr double kPose = 6.0;
     double square = 0.0;
@@ -61,7 +62,7 @@ std::vector<Pair> pairs_of(const MonoCalibration& left, const MonoCalibration& r
     return pairs;
 }
 
-/// Pairs that both eyes can use, repeated and superfluous ones left out.
+/// Pairs that both cameras can use, without repeated and unnecessary ones.
 std::vector<std::size_t> usable_pairs(const Board& board,
                                       std::span<const BoardView> left,
                                       std::span<const BoardView> right,
@@ -89,8 +90,8 @@ std::vector<BoardView> chosen(std::span<const BoardView> views,
     return result;
 }
 
-/// One camera from the views of the pairs; its indices become those of the pairs, and views that it
-/// leaves out take their pair along.
+/// Calibrates one camera from the views of the pairs. Converts its indices to those of the pairs; a
+/// removed view removes its pair.
 Result<MonoCalibration> calibrate_camera(const char* name,
                                          const Board& board,
                                          std::span<const BoardView> views,
@@ -100,7 +101,7 @@ Result<MonoCalibration> calibrate_camera(const char* name,
                                          const StereoOptions& options,
                                          std::vector<RejectedView>& rejected) {
     CalibrationOptions this_camera = options.camera;
-    this_camera.selection = {0.0, indices.size()};  // pairs are selected, not single views
+    this_camera.selection = {0.0, indices.size()};  // selection works on pairs, not on single views
     auto result = calibrate_mono(board, chosen(views, indices), size, kind, this_camera);
     if (!result) {
         std::string text = fmt::format("{} camera: {}", name, result.error().message);
@@ -136,7 +137,8 @@ void drop_gross(std::vector<Pair>& pairs, const Pose& middle, std::vector<Reject
         if (gross) {
             reject(rejected,
                    pair.index,
-                   scatter_text(off) + "; are its images of the same moment, and in order?");
+                   scatter_text(off) +
+                       "; check that its images are from the same moment and in order");
         }
         return gross;
     });
@@ -153,7 +155,8 @@ void add_sights(std::span<const Eigen::Vector3d> points,
     }
 }
 
-/// Both lenses and all boards as the cameras alone found them, with the median relative pose.
+/// Start of the joint bundle: lenses and boards of the separate cameras, and the median relative
+/// pose.
 BoardBundle bundle_of(const Board& board,
                       std::span<const BoardView> left_views,
                       std::span<const BoardView> right_views,
@@ -196,19 +199,18 @@ void reject_dropped(const RobustFit& fit,
                     std::vector<RejectedView>& rejected) {
     for (const DroppedView& dropped : fit.dropped) {
         const Pair& pair = pairs[static_cast<std::size_t>(dropped.view)];
-        reject(
-            rejected,
-            pair.index,
-            fmt::format("rms {:.2f} px together, {:.2f} px each image alone, allowed are {:.2f}; "
-                        "{}: are its images of the same moment?",
-                        dropped.rms_px,
-                        pair.alone_rms_px,
-                        dropped.limit_px,
-                        scatter_text(distance(T_left_right, pair.T_left_right))));
+        reject(rejected,
+               pair.index,
+               fmt::format("rms {:.2f} px for the pair, {:.2f} px for single images, allowed are "
+                           "{:.2f}; {}: check that its images are from the same moment",
+                           dropped.rms_px,
+                           pair.alone_rms_px,
+                           dropped.limit_px,
+                           scatter_text(distance(T_left_right, pair.T_left_right))));
     }
 }
 
-/// What follows from the solution: fits, rows, depth.
+/// Computes the fits, row differences and depth errors of the solution.
 void describe(const BoardBundle& bundle,
               std::span<const Sight> all,
               std::span<const Pair> pairs,
@@ -230,8 +232,8 @@ void describe(const BoardBundle& bundle,
     result.disc_radius_m = bundle.disc_radius_m;
 }
 
-/// The points of a view that the estimate used. Of discs the images of their centres: where the
-/// solution sees them, and as far beside it as their centres of gravity were found.
+/// Points of a view that the estimate used. For discs: the images of their centres, from the
+/// solution, plus the residual of the centre of gravity.
 BoardView used_points(const Board& board,
                       const BoardView& view,
                       const CameraFit& fit,
@@ -333,14 +335,16 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
     BoardBundle bundle = bundle_of(board, left_views, right_views, *left, *right, *pairs);
     const std::vector<Sight> all = bundle.sights;
     const std::optional<RobustFit> fit = solve_robustly(bundle, limits_of(*pairs, options));
-    if (!fit) return input_error("stereo calibration: the joint optimisation failed");
+    if (!fit)
+        return input_error(
+            "stereo calibration: the joint optimisation failed; add views of the board");
     reject_dropped(*fit, *pairs, bundle.T_left_right, result.rejected);
     if (fit->contradiction) {
-        return input_error(fmt::format(
-            "stereo calibration: no {} pairs agree on one relative pose; were the images taken at "
-            "the same moment, and do left and right belong together? ({})",
-            options.least_pairs,
-            summary_of(result.rejected, left_views.size())));
+        return input_error(
+            fmt::format("stereo calibration: fewer than {} pairs agree on one relative pose; check "
+                        "that left and right images are from the same moment and rig ({})",
+                        options.least_pairs,
+                        summary_of(result.rejected, left_views.size())));
     }
 
     const StereoParameters parameters{
@@ -351,7 +355,9 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
     result.stated_sigma_px = stated_sigma_px(bundle, fit->sigma_px);
     const auto uncertainty = covariance(bundle, result.stated_sigma_px);
     if (!uncertainty)
-        return input_error("stereo calibration: the pairs do not determine the cameras");
+        return input_error(
+            "stereo calibration: the pairs do not determine the cameras; add views with other "
+            "tilts and distances of the board");
     result.covariance = *uncertainty;
     describe(bundle, all, *pairs, *fit, result);
     describe_rectified(board, left_views, right_views, parameters, result);

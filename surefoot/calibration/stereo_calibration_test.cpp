@@ -20,7 +20,7 @@ using testing::view_of;
 constexpr double kNoise_px = 0.1;
 const Board kBoard{.columns = 7, .rows = 5, .spacing_m = 0.04};
 
-/// fx fy cx cy and coefficients of a lens of the rigs below.
+/// The values fx fy cx cy and coefficients of a lens of the rigs below.
 Eigen::VectorXd parameters_of(const camera::CameraModel& model) {
     Eigen::VectorXd p(8);
     if (const auto* f = std::get_if<camera::KannalaBrandt>(&model))
@@ -53,8 +53,8 @@ Eigen::VectorXd error_of(const camera::StereoRig& truth, const camera::StereoRig
     return error;
 }
 
-/// Error of depth of the point 1 m ahead of the rectified camera that a calibration believes in,
-/// when the true cameras take the pictures.
+/// Depth error of a point 1 m ahead of the rectified camera of the rig `found`, when the rig
+/// `truth` takes the images.
 double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& found) {
     camera::RectificationConfig config;
     config.max_view_deg = 105.0;
@@ -101,7 +101,7 @@ TEST(StereoCalibration, FindsPairsThatWereNotTakenTogether) {
     const camera::StereoRig rig = camera::test::euroc_rig();
     Rng rng(5);
     SyntheticViews views = synthetic_views(kBoard, rig, 14, kNoise_px, rng);
-    for (const std::size_t late : {3U, 7U, 8U}) {  // the hand moved 5 mm before the right image
+    for (const std::size_t late : {3U, 7U, 8U}) {  // the hand moves 5 mm before the right image
         Pose T = views.T_left_board[late];
         T.translation_m += Eigen::Vector3d(0.003, -0.004, 0.0);
         views.right[late] =
@@ -121,8 +121,9 @@ TEST(StereoCalibration, FindsPairsThatWereNotTakenTogether) {
 }
 
 TEST(StereoCalibration, PairsOfFewPointsAreJudgedByWhatNoiseLeavesThem) {
-    // Alone, two poses followed the noise of 9 points in two images, together one does: expected is
-    // sqrt(30 / 24) times the rms. Uncounted, a factor of 1.05 sends away more than half of them.
+    // Separately, two poses fit the noise of 9 points in two images; jointly, one pose does. The
+    // expected ratio is sqrt(30 / 24) times the rms. Without this correction a factor of 1.05
+    // removes more than half of the pairs.
     const camera::StereoRig rig = camera::test::euroc_rig();
     const Board few{.columns = 3, .rows = 3, .spacing_m = 0.08};
     StereoOptions strict;
@@ -153,13 +154,13 @@ TEST(StereoCalibration, RefusesWhatIsNoPair) {
     };
     EXPECT_NE(refusal(views.left, {}).find("6 left views for 0 right ones"), std::string::npos);
     EXPECT_NE(refusal({}, {}).find("at least 3"), std::string::npos);
-    EXPECT_NE(refusal(views.right, views.left).find("exchange the cameras"), std::string::npos);
+    EXPECT_NE(refusal(views.right, views.left).find("swap the cameras"), std::string::npos);
     const std::vector<BoardView> none(6);
     EXPECT_NE(refusal(views.left, none).find("right: the board was not found"), std::string::npos);
 }
 
 TEST(StereoCalibration, DepthErrorGrowsFromAKnownOne) {
-    // Only the baseline errs: depth errs by the same share.
+    // Only the baseline has an error: the relative depth error is the same.
     const camera::StereoRig rig = camera::test::euroc_rig();
     const StereoParameters parameters{LensKind::pinhole4,
                                       size_of(rig),
@@ -175,7 +176,7 @@ TEST(StereoCalibration, DepthErrorGrowsFromAKnownOne) {
     const double share = 1e-3 / rig.T_left_right.translation_m.norm();
     EXPECT_NEAR(sigmas_m[0], 0.5 * share, 1e-7);
     EXPECT_NEAR(sigmas_m[1], 2.0 * share, 1e-7);
-    EXPECT_TRUE(std::isnan(sigmas_m[2])) << "the right eye does not see a point 10 mm ahead";
+    EXPECT_TRUE(std::isnan(sigmas_m[2])) << "the right camera does not see a point 10 mm ahead";
 }
 
 }  // namespace

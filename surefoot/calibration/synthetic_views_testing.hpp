@@ -21,7 +21,7 @@ struct SyntheticViews {
     std::vector<Pose> T_left_board;  ///< truth
 };
 
-/// `noise_px` per coordinate; points outside an image are missing from its view.
+/// `noise_px` per coordinate; the view contains no points outside the image.
 inline BoardView view_of(const Board& board,
                          const camera::Camera& camera,
                          const Pose& T_camera_board,
@@ -44,8 +44,8 @@ inline BoardView view_of(const Board& board,
     return view;
 }
 
-/// The board's middle lies on the ray of a random pixel, 0.25 to 0.6 m away; the board faces the
-/// camera up to a turn of `tilt_rad` about a random axis.
+/// The board's middle lies on the ray of a random pixel, 0.25 to 0.6 m away. The board faces the
+/// camera, up to a rotation by `tilt_rad` about a random axis.
 inline Pose random_pose(const Board& board, const camera::Camera& left, double tilt_rad, Rng& rng) {
     std::optional<Eigen::Vector3d> ray;
     while (!ray)
@@ -63,7 +63,7 @@ inline Pose random_pose(const Board& board, const camera::Camera& left, double t
     return T;
 }
 
-/// Every view shows at least half of the board in each eye.
+/// Every view shows at least half of the board in each camera.
 inline SyntheticViews synthetic_views(const Board& board,
                                       const camera::StereoRig& rig,
                                       int count,
@@ -88,7 +88,7 @@ inline SyntheticViews synthetic_views(const Board& board,
     return views;
 }
 
-/// Errors of several calibrations against what they say about themselves.
+/// Compares the errors of several calibrations with their stated covariances.
 class Uncertainty {
   public:
     void add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
@@ -100,8 +100,8 @@ class Uncertainty {
         chi_square_ += scaled.dot(correlation.ldlt().solve(scaled));
         values_ += static_cast<double>(error.size());
     }
-    /// Squared errors over their covariance add up to chi square of as many degrees of freedom as
-    /// there are values; it may be off by 3.3 standard deviations (99.9 %).
+    /// The sum of squared errors over their covariance is chi square with one degree of freedom per
+    /// value. The limit is 3.3 standard deviations (99.9 %).
     void expect_true() const {
         EXPECT_NEAR(chi_square_, values_, 3.3 * std::sqrt(2.0 * values_));
         EXPECT_LE(beyond_three_sigma_, 1) << "of " << values_ << " values; 0.3 % are expected";

@@ -8,7 +8,7 @@
 namespace surefoot::camera {
 namespace {
 
-/// Largest image side that is believed; above it a size is a mistake in a file.
+/// Largest valid image side; a larger one is a mistake in a file.
 constexpr int kMaxSide_px = 16384;
 
 }  // namespace

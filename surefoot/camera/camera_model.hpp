@@ -19,8 +19,8 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 ///   std::optional<Eigen::Vector2d> project(p_camera, Matrix23* d_pixel_d_point = nullptr) const
 ///   std::optional<Eigen::Vector3d> unproject(pixel, Matrix32* d_ray_d_pixel = nullptr) const
 ///   std::optional<std::string> problem() const
-/// `project` fails where the model has no image of the point; `unproject` returns the unit ray (for
-/// fisheye lenses beyond 90 deg too) and fails where no ray maps to the pixel.
+/// `project` fails if the model has no image of the point. `unproject` returns the unit ray, for
+/// fisheye lenses also beyond 90 deg; it fails if no ray maps to the pixel.
 using CameraModel = std::variant<PinholeRadTan, KannalaBrandt, PinholeRational>;
 
 [[nodiscard]] std::optional<Eigen::Vector2d> project(const CameraModel& model,
@@ -35,7 +35,7 @@ struct Camera {
     CameraModel model;
     int width = 0;
     int height = 0;
-    /// First reason why it cannot be used (NaN, size, focal length), or nothing.
+    /// First problem (NaN, size, focal length), or nullopt if the camera is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

@@ -16,7 +16,7 @@
 namespace surefoot::camera {
 namespace {
 
-/// Both directions are solved to 1e-12 in normalised coordinates; times f < 1000 px.
+/// Both directions are solved to 1e-12 in normalised coordinates; multiplied by f < 1000 px.
 constexpr double kRoundTrip_px = 1e-8;
 constexpr double kRoundTrip_rad = 1e-9;
 /// Central differences with h = 1e-6: truncation h^2 and rounding 1e-16 f / h.
@@ -32,7 +32,7 @@ struct Case {
     bool whole_image;  ///< every pixel has a ray
 };
 
-/// A new model joins the property tests by one line here.
+/// One line here adds a new model to the property tests.
 std::vector<Case> cases() {
     const Camera folding{
         PinholeRadTan{
@@ -52,8 +52,8 @@ std::vector<Case> cases() {
                             480};
     const Camera equidistant{
         KannalaBrandt{.fx_px = 200, .fy_px = 205, .cx_px = 320, .cy_px = 240}, 640, 480};
-    // An 8-coefficient calibration in the manner of wide lenses: numerator and denominator nearly
-    // cancel. The second one folds back inside its image.
+    // Calibrations with 8 coefficients as for wide lenses: numerator and denominator nearly cancel.
+    // The second lens folds back inside its image.
     const Camera rational{PinholeRational{.fx_px = 365,
                                           .fy_px = 366,
                                           .cx_px = 316,
@@ -154,7 +154,7 @@ TEST_P(EveryCamera, PointsReturnToTheirDirection) {
         const auto pixel = project(camera().model, p);
         if (!pixel) continue;
         ++seen;
-        // The last degrees before the fold are flat: the inverse is ill-conditioned there.
+        // Near the fold the slope is almost zero: the inverse is ill-conditioned there.
         Matrix32 d_ray;
         const auto ray = unproject(camera().model, *pixel, &d_ray);
         ASSERT_TRUE(ray) << "point " << p.transpose() << " at " << pixel->transpose();
@@ -182,7 +182,8 @@ TEST_P(EveryCamera, ProjectionJacobianIsTheNumericOne) {
             complete = complete && plus && minus;
             if (complete) numeric.col(axis) = (*plus - *minus) / (2.0 * kStep);
         }
-        // Near the camera plane the third derivative, hence the truncation error, explodes.
+        // Near the camera plane the third derivative and with it the truncation error become very
+        // large.
         if (!complete || analytic.norm() > 1e5) continue;
         ++checked;
         EXPECT_LT((analytic - numeric).norm(), kJacobianTolerance * (1.0 + analytic.norm()))
@@ -210,7 +211,7 @@ TEST_P(EveryCamera, UnprojectionJacobianIsTheNumericOne) {
                 complete = complete && plus && minus;
                 if (complete) numeric.col(axis) = (*plus - *minus) / (2.0 * kPixelStep);
             }
-            // Where the lens folds, a pixel spans any angle.
+            // Near the fold one pixel covers a large angle.
             if (!complete || analytic.norm() * focal().maxCoeff() > 20.0) continue;
             ++checked;
             EXPECT_LT((analytic - numeric).norm(), kJacobianTolerance * analytic.norm())
@@ -262,7 +263,7 @@ TEST_P(EveryCamera, NotANumberHasNoImageAndNoRay) {
     }
 }
 
-/// Walking away from the axis the image moves outward and, once lost, stays lost.
+/// With growing distance from the axis the image moves outward; a lost point stays lost.
 TEST_P(EveryCamera, NothingBeyondTheLensAppearsInTheImage) {
     for (int j = 0; j < 16; ++j) {
         const double phi = j * std::numbers::pi / 8.0;
@@ -293,12 +294,12 @@ TEST(PinholeRadTan, PointsBehindTheCameraHaveNoImage) {
 }
 
 TEST(PinholeRadTan, FarOffAxisPointsDoNotAliasIntoTheImage) {
-    // r (1 - 0.45 r^2) turns back at r = 0.86: the same pixel would show r = 0.5 and r = 1.17.
+    // r (1 - 0.45 r^2) folds back at r = 0.86: the same pixel would show r = 0.5 and r = 1.17.
     const PinholeRadTan model{.fx_px = 300, .fy_px = 300, .cx_px = 320, .cy_px = 240, .k1 = -0.45};
     EXPECT_TRUE(model.project({0.85, 0.0, 1.0}));
     EXPECT_FALSE(model.project({0.87, 0.0, 1.0}));
     EXPECT_FALSE(model.project({1.17, 0.0, 1.0}));
-    // Largest image radius 300 * 0.86 * 2/3 = 172 px: no ray beyond it.
+    // Largest image radius 300 * 0.86 * 2/3 = 172 px: no ray exists beyond it.
     EXPECT_TRUE(model.unproject({320.0 + 171.0, 240.0}));
     EXPECT_FALSE(model.unproject({320.0 + 173.0, 240.0}));
 }
@@ -321,7 +322,7 @@ TEST(PinholeRational, WithoutDenominatorIsTheRadialTangentialModel) {
 }
 
 TEST(PinholeRadTan, TangentialTermsDoNotTurnTheImageFarOffAxis) {
-    // u / f = x + 3 p2 x^2 turns back at x = -1 / (6 p2) = -16.7; far out det J is positive again.
+    // u / f = x + 3 p2 x^2 folds back at x = -1 / (6 p2) = -16.7. Far out det J is positive again.
     const PinholeRadTan model{.fx_px = 300, .fy_px = 300, .cx_px = 320, .cy_px = 240, .p2 = 0.01};
     EXPECT_TRUE(model.project({-16.0, 0.0, 1.0}));
     EXPECT_FALSE(model.project({-17.0, 0.0, 1.0}));
@@ -329,7 +330,8 @@ TEST(PinholeRadTan, TangentialTermsDoNotTurnTheImageFarOffAxis) {
 }
 
 TEST(PinholeRational, NothingAppearsBeyondThePoleOfTheDenominator) {
-    // 1 - 0.5 r^2 = 0 at r = 1.414: beyond it points would jump to the other side of the image.
+    // The denominator 1 - 0.5 r^2 is 0 at r = 1.414: beyond it points would jump to the other image
+    // side.
     const PinholeRational model{.fx_px = 300, .fy_px = 300, .cx_px = 320, .cy_px = 240, .k4 = -0.5};
     EXPECT_TRUE(model.project({1.41, 0.0, 1.0}));
     EXPECT_FALSE(model.project({1.42, 0.0, 1.0}));

@@ -8,8 +8,8 @@
 namespace surefoot::camera {
 namespace {
 
-/// Eight bytes at a time through the multiply and rotate of xxHash's rounds (Collet, XXH64); the
-/// last bytes are filled with zeros, all rows of an image being equally long.
+/// Hashes eight bytes at a time with the multiply and rotate of xxHash's rounds (Collet, XXH64).
+/// Fills the last bytes with zeros: all rows of an image have the same length.
 std::uint64_t hash_of(const char* bytes, std::size_t size) noexcept {
     std::uint64_t hash = 0x27d4eb2f165667c5U ^ size;
     for (std::size_t at = 0; at < size; at += sizeof(std::uint64_t)) {
@@ -65,7 +65,7 @@ FrameIntegrityCheck::Likeness FrameIntegrityCheck::compare(const Rows& now, cons
     if (now.size() != before.size()) return Likeness::different;
     int same = 0;
     int structured = 0;
-    int switches = 0;  // between equal and new rows, from the top down
+    int switches = 0;  // changes between equal and new rows, top down
     bool last_same = false;
     for (std::size_t v = 0; v < now.size(); ++v) {
         if (!now[v].structured) continue;
@@ -82,7 +82,7 @@ FrameIntegrityCheck::Likeness FrameIntegrityCheck::compare(const Rows& now, cons
 }
 
 bool FrameIntegrityCheck::torn(const Summary& now, const Summary& before) {
-    // The depth image of RGB-D has holes and steps of its own: it only counts as repeated.
+    // The depth image of RGB-D has holes and steps of its own, so the tearing test ignores it.
     const Likeness left = compare(now.images[0], before.images[0]);
     const Likeness right = compare(now.images[1], before.images[1]);
     if (left == Likeness::torn || right == Likeness::torn) return true;
@@ -104,7 +104,7 @@ FrameStatus FrameIntegrityCheck::look(const StereoFrame& frame) {
         });
     repeated_ = repeated ? repeated_ + 1 : 0;
     frame_status.repeated = repeated_;
-    if (repeated) return frame_status;  // nothing to remember that is not there already
+    if (repeated) return frame_status;  // the frame is in memory already
     frame_status.torn = std::any_of(
         memory_.begin(), end, [&](const Summary& before) { return torn(now_, before); });
     std::swap(memory_[seen_ % kMemory], now_);

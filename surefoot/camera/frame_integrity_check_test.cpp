@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 
-/// A still scene: the same gradient every time, and noise of a grey level or so on top.
+/// A still scene: always the same gradient, plus noise of about one grey level.
 GreyImage exposure(Rng& rng) {
     GreyImage image(kWidth, kHeight);
     for (int v = 0; v < kHeight; ++v) {
@@ -32,7 +32,7 @@ StereoFrame exposed(Rng& rng) {
     return frame;
 }
 
-/// The first `rows` rows of `top`, the others of `bottom`.
+/// The first `rows` rows of `top`, then the other rows of `bottom`.
 GreyImage spliced(const GreyImage& top, const GreyImage& bottom, int rows) {
     GreyImage image = bottom;
     std::copy(top.data(), top.row(rows), image.data());
@@ -130,7 +130,7 @@ TEST(FrameIntegrityCheck, ATearHasOneSeam) {
     FrameIntegrityCheck watch;
     const StereoFrame before = exposed(rng);
     (void)watch.look(before);
-    StereoFrame frame = before;  // video that copies what stands still, and a band that moves
+    StereoFrame frame = before;  // video that copies still parts, with a moving band
     for (GreyImage* image : {&frame.left, &frame.right}) {
         for (int u = 0; u < kWidth; ++u) {
             for (int v = 16; v < 32; ++v) image->at(u, v) = static_cast<std::uint8_t>(5 * u + v);
@@ -195,7 +195,7 @@ TEST(FrameIntegrityCheck, WhatTheSourceSaysIsBelieved) {
     EXPECT_TRUE(watch.look(told).torn);
     EXPECT_EQ(watch.look(told).dropped, 2);
     told.frame_status.torn = false;
-    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "it was not looked at before";
+    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "no earlier frame was compared";
 }
 
 }  // namespace

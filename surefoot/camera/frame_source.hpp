@@ -12,35 +12,35 @@
 
 namespace surefoot::camera {
 
-/// Frames that a source passed over because they cannot be had.
+/// Frames that a source skipped because they are unreadable.
 struct BrokenFrames {
     int count = 0;
-    std::string first;  ///< why the first of them cannot be had
+    std::string first;  ///< why the first of them is unreadable
 };
 
 struct SourceInfo {
     std::string kind;  ///< "euroc", "kitti", "side_by_side", "tum_rgbd", "sim", ...
     std::string path;
-    std::optional<int> frames;  ///< how many there are, where that is known beforehand
+    std::optional<int> frames;  ///< number of frames, if known in advance
     bool has_imu = false;
-    bool modelled_depth = false;   ///< frames come with depth that nobody measured
-    bool modelled_motion = false;  ///< frames come with motion that nobody measured
-    /// Stamps are of this machine's steady clock (CLOCK_MONOTONIC): how old a frame is can be told.
+    bool modelled_depth = false;   ///< the depth of the frames is known, not measured
+    bool modelled_motion = false;  ///< the motion of the frames is known, not measured
+    /// True if stamps are of this computer's CLOCK_MONOTONIC: then the frame age is known.
     bool steady_stamps = false;
-    /// base_link of the first frame in odom (z up, the ground at 0), where the source knows.
+    /// base_link of the first frame in odom (z up, the ground at 0), if the source knows it.
     std::optional<Pose> T_odom_first_body = {};
-    std::vector<std::string> notes = {};  ///< what a user should know about how it was opened
-    BrokenFrames broken = {};             ///< up to now
+    std::vector<std::string> notes = {};  ///< information for the user about the way it was opened
+    BrokenFrames broken = {};             ///< skipped frames so far
 };
 
-/// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time
-/// order with strictly growing stamps; anything else is an error that names file and frame.
+/// A source of frames: a recording, a video, a camera, or a simulated scene. Frames are in time
+/// order with strictly increasing stamps; anything else is an error with file and frame number.
 class FrameSource {
   public:
     virtual ~FrameSource() = default;
     [[nodiscard]] virtual const StereoRig& rig() const = 0;
     [[nodiscard]] virtual const SourceInfo& info() const = 0;
-    /// The next frame, nothing at the end, or why the frame cannot be had.
+    /// The next frame; nullopt at the end; an error if the frame cannot be read.
     [[nodiscard]] virtual Result<std::optional<StereoFrame>> next() = 0;
 };
 

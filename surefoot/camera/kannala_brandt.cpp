@@ -12,12 +12,12 @@
 namespace surefoot::camera {
 namespace {
 
-/// Bisection alone halves pi down to the last bit in 54 steps; Newton needs about five.
+/// Bisection alone reduces pi to the last bit in 54 steps; Newton needs about five.
 constexpr int kMaxSteps = 80;
 /// Residual of the inverse in normalised coordinates (rad): 1e-12 times f = 1000 px is 1e-9 px.
 constexpr double kConverged = 1e-12;
 
-/// d(theta), distance from the principal point over the focal length.
+/// d(theta): distance from the principal point divided by the focal length.
 double radius(const KannalaBrandt& m, double theta) {
     const double s = theta * theta;
     return theta * (1.0 + s * (m.k1 + s * (m.k2 + s * (m.k3 + s * m.k4))));
@@ -29,13 +29,13 @@ double slope(const KannalaBrandt& m, double theta) {
     return 1.0 + s * (3.0 * m.k1 + s * (5.0 * m.k2 + s * (7.0 * m.k3 + s * 9.0 * m.k4)));
 }
 
-/// d grows on the whole way from the axis to theta.
+/// True if d grows everywhere between the axis and theta.
 bool inside_domain(const KannalaBrandt& m, double theta) {
     const std::array<double, 5> c{1.0, 3.0 * m.k1, 5.0 * m.k2, 7.0 * m.k3, 9.0 * m.k4};
     return positive_on(c, theta * theta);
 }
 
-/// The angle whose image has this radius: Newton, kept inside a bracket that bisection shrinks.
+/// The angle whose image has this radius: Newton, limited to a bracket that bisection shrinks.
 std::optional<double> angle_of(const KannalaBrandt& m, double target) {
     double low = 0.0;
     double high = std::numbers::pi;
@@ -44,7 +44,7 @@ std::optional<double> angle_of(const KannalaBrandt& m, double target) {
         const bool inside = inside_domain(m, theta);
         const double error = radius(m, theta) - target;
         if (inside && std::abs(error) <= kConverged * (1.0 + target)) {
-            // One more Newton step spends the quadratic convergence that is left.
+            // One more Newton step uses the remaining quadratic convergence.
             return theta - error / slope(m, theta);
         }
         (inside && error < 0.0 ? low : high) = theta;
@@ -61,14 +61,14 @@ std::optional<Eigen::Vector2d> KannalaBrandt::project(
     const double z = p_camera.z();
     const double r = std::hypot(p_camera.x(), p_camera.y());
     const double distance_sq = r * r + z * z;
-    // Straight behind, the image of a point is a whole circle; at the origin it is anything.
+    // A point straight behind has a circle as its image; a point at the origin has no image.
     if (!std::isfinite(distance_sq) || distance_sq == 0.0 || (r == 0.0 && z <= 0.0)) {
         return std::nullopt;
     }
     const double theta = std::atan2(r, z);
     if (!inside_domain(*this, theta)) return std::nullopt;
     const double d = radius(*this, theta);
-    // On the axis every direction is as good as (1, 0), and d/r tends to 1/z.
+    // On the axis all directions are equal: use (1, 0). There d/r tends to 1/z.
     const double cosine = r > 0.0 ? p_camera.x() / r : 1.0;
     const double sine = r > 0.0 ? p_camera.y() / r : 0.0;
     if (d_pixel_d_point != nullptr) {

@@ -7,10 +7,10 @@
 
 namespace surefoot::camera {
 
-/// Fisheye of Kannala and Brandt 2006 with four coefficients (OpenCV fisheye, Kalibr
-/// "equidistant"):
-///   theta = angle from the optical axis, d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4
-///   theta^8) u = fx d X/r + cx, v = fy d Y/r + cy, r = sqrt(X^2 + Y^2)
+/// Fisheye of Kannala and Brandt 2006, four coefficients (OpenCV fisheye, Kalibr "equidistant"):
+///   theta = angle from the optical axis, r = sqrt(X^2 + Y^2)
+///   d = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
+///   u = fx d X/r + cx, v = fy d Y/r + cy
 struct KannalaBrandt {
     double fx_px = 0.0;
     double fy_px = 0.0;
@@ -21,11 +21,11 @@ struct KannalaBrandt {
     double k3 = 0.0;
     double k4 = 0.0;
 
-    /// Nothing where d stops growing with theta (outside the lens) or at the origin.
+    /// nullopt where d no longer grows with theta (outside the lens), and at the origin.
     [[nodiscard]] std::optional<Eigen::Vector2d> project(
         const Eigen::Vector3d& p_camera,
         Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;
-    /// Unit ray by Newton iterations on theta; nothing where no angle maps to the pixel.
+    /// Unit ray, by Newton iterations on theta; nullopt if no angle maps to the pixel.
     [[nodiscard]] std::optional<Eigen::Vector3d> unproject(
         const Eigen::Vector2d& pixel, Eigen::Matrix<double, 3, 2>* d_ray_d_pixel = nullptr) const;
     [[nodiscard]] std::optional<std::string> problem() const;

@@ -5,13 +5,13 @@
 
 namespace surefoot::camera {
 
-/// Whether the polynomial sum c[i] s^i is positive everywhere on [0, s_max]; at most 8
-/// coefficients. Lens models ask it of the derivative of their distortion: beyond the first root
-/// the image folds back, and far-off-axis points would appear inside the picture.
+/// True if the polynomial sum c[i] s^i (at most 8 coefficients) is positive on all of [0, s_max].
+/// Lens models apply it to the derivative of their distortion: beyond the first root the image
+/// folds back, and points far off the axis would appear inside the picture.
 ///
-/// Method: a polynomial lies between the smallest and largest of its Bernstein coefficients
-/// (Farouki 2012, section 4); where these have both signs the interval is halved. False when NaN is
-/// involved or when the question stays open after 40 halvings (the polynomial touches zero).
+/// Method: a polynomial lies between its smallest and largest Bernstein coefficients (Farouki 2012,
+/// section 4). If these have both signs, the interval is halved. Returns false for NaN, and if 40
+/// halvings give no decision (the polynomial touches zero).
 [[nodiscard]] bool positive_on(std::span<const double> coefficients, double s_max) noexcept;
 
 }  // namespace surefoot::camera

@@ -25,7 +25,7 @@ TEST(PositiveOn, AConstantIsItsSign) {
 }
 
 TEST(PositiveOn, SeesADipBetweenPositiveEnds) {
-    // (s - 1)^2 - 0.01 is negative around s = 1 only.
+    // (s - 1)^2 - 0.01 is negative only around s = 1.
     const std::array dip{0.99, -2.0, 1.0};
     EXPECT_TRUE(positive_on(dip, 0.89));
     EXPECT_FALSE(positive_on(dip, 1.0));
@@ -54,7 +54,7 @@ TEST(PositiveOn, AgreesWithDenseSampling) {
         for (int i = 0; i <= kSamples; ++i) {
             lowest = std::min(lowest, value_at(c, s_max * i / kSamples));
         }
-        // Sampling cannot tell a minimum this close to zero.
+        // Sampling cannot resolve a minimum so close to zero.
         if (std::abs(lowest) < 1e-3) continue;
         EXPECT_EQ(positive_on(c, s_max), lowest > 0.0)
             << "polynomial " << n << ", s_max " << s_max << ", lowest sample " << lowest;

@@ -25,7 +25,7 @@ double slope(const Cubic& c, double s) {
     return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]);
 }
 
-/// sum of a_i b_j factor(i, j) s^(i + j): coefficients of a product, weighted.
+/// sum of a_i b_j factor(i, j) s^(i + j): the weighted coefficients of a product.
 template <typename Factor>
 std::array<double, 7> product(const Cubic& a, const Cubic& b, const Factor& factor) {
     std::array<double, 7> c{};
@@ -35,10 +35,10 @@ std::array<double, 7> product(const Cubic& a, const Cubic& b, const Factor& fact
     return c;
 }
 
-/// The Jacobian J of the distortion is positive definite on the whole disc of radius r, which is
-/// convex: so no two points of the disc meet in one pixel. Eigenvalues of the radial part of J are
-///   d(r N/D)/dr = sum N_i D_j (1 + 2 i - 2 j) s^(i + j) / D^2   and   N/D = N D / D^2,
-/// those of the tangential part lie within +-6 |(p1, p2)| r. Multiplied by D^2, with D > 0, both
+/// True if the Jacobian J of the distortion is positive definite on the whole disc of radius r. The
+/// disc is convex, so no two of its points then share a pixel. The radial part has the eigenvalues
+///   d(r N/D)/dr = sum N_i D_j (1 + 2 i - 2 j) s^(i + j) / D^2   and   N/D = N D / D^2.
+/// Those of the tangential part lie within +-6 |(p1, p2)| r. Multiplied by D^2, with D > 0, both
 /// differences are polynomials in s.
 bool inside_domain(const PinholeRational& model, const Cubic& N, const Cubic& D, double r2) {
     const double tangential = 6.0 * std::hypot(model.p1, model.p2) * std::sqrt(r2);

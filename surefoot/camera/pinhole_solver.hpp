@@ -6,15 +6,15 @@
 #include <cmath>
 #include <optional>
 
-/// What the pinhole models with distortion share; private to them. A model hands in
+/// Common code of the pinhole models with distortion; private to them. A model passes the function
 ///   std::optional<Distorted> distort(const Eigen::Vector2d& p)
-/// on the plane z = 1, which returns nothing outside the domain where its image grows outward.
+/// on the plane z = 1. It returns nullopt outside the domain in which the image grows outward.
 namespace surefoot::camera::pinhole_solver {
 
-inline constexpr int kMaxNewtonSteps = 200;  ///< five in an image, many from far outside
-/// Residual of the inverse in normalised coordinates: 1e-13 times f = 1000 px is far below any use.
+inline constexpr int kMaxNewtonSteps = 200;  ///< five inside an image, many from far outside
+/// Residual of the inverse, normalised: 1e-13 times f = 1000 px is far below any practical use.
 inline constexpr double kConverged = 1e-13;
-/// What rounding may leave when the steps stall, still 1e-7 px at f = 1000.
+/// Largest residual after the steps stall, from rounding; 1e-7 px at f = 1000 px.
 inline constexpr double kStalled = 1e-10;
 
 struct Distorted {
@@ -26,7 +26,7 @@ struct Intrinsics {
     double fx_px, fy_px, cx_px, cy_px;
 };
 
-/// Radial factor and tangential terms of Brown 1966 at p: m and J. `d_radial` is d radial / d r^2.
+/// Radial factor and tangential terms of Brown 1966 at p. `d_radial` is d radial / d r^2.
 [[nodiscard]] inline Distorted brown(
     const Eigen::Vector2d& p, double radial, double d_radial, double p1, double p2) {
     const double x = p.x();
@@ -41,14 +41,14 @@ struct Intrinsics {
     return d;
 }
 
-/// Whether the image grows outward at a point in every direction: J (symmetric) is positive
-/// definite. The determinant alone would also accept a picture that is turned by 180 deg, which
-/// tangential terms make far off axis.
+/// True if the image grows outward at a point in every direction: J (symmetric) is positive
+/// definite. The determinant alone also accepts an image rotated by 180 deg, which tangential terms
+/// cause far off the axis.
 [[nodiscard]] inline bool grows(const Eigen::Matrix2d& J) {
     return J.determinant() > 0.0 && J.trace() > 0.0;
 }
 
-/// Newton from the centre outward; steps that leave the domain or do not help are halved.
+/// Newton from the centre outward. Halves steps that leave the domain or do not improve.
 template <typename Distort>
 std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Vector2d& target) {
     Eigen::Vector2d p = target;
@@ -73,12 +73,12 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
         }
         if (!improved) break;
     }
-    // Negated: NaN has not converged. Far off axis the rounding grows with the point itself.
+    // The form with ! also rejects NaN. Far off axis the rounding grows with the point itself.
     if (!(error <= kStalled * (1.0 + target.norm()))) return std::nullopt;
     return p;
 }
 
-/// Pixel of a point in the optical frame; nothing at or behind the camera plane.
+/// Pixel of a point in the optical frame; nullopt for a point at or behind the camera plane.
 template <typename Distort>
 std::optional<Eigen::Vector2d> project(const Intrinsics& k,
                                        const Distort& distort,
@@ -98,7 +98,7 @@ std::optional<Eigen::Vector2d> project(const Intrinsics& k,
     return Eigen::Vector2d(k.fx_px * d->m.x() + k.cx_px, k.fy_px * d->m.y() + k.cy_px);
 }
 
-/// Unit ray of a pixel; `has_distortion` false skips the search.
+/// Unit ray of a pixel. `has_distortion` = false skips the iterations.
 template <typename Distort>
 std::optional<Eigen::Vector3d> unproject(const Intrinsics& k,
                                          const Distort& distort,

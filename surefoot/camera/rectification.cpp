@@ -13,21 +13,21 @@
 namespace surefoot::camera {
 namespace {
 
-constexpr int kBorderSamples = 128;  ///< per side of an image
-constexpr double kZoomStep = 1.002;  ///< how fast the view shrinks until all of it is covered
+constexpr int kBorderSamples = 128;  ///< samples per side of an image
+constexpr double kZoomStep = 1.002;  ///< zoom per step until the source covers the view
 constexpr int kMaxZoomSteps = 700;   ///< 1.002^700 = 4 times
-/// A plane image of a wider view is nearly all border: at 150 deg its outermost pixel covers 1/15
-/// of the angle of the middle one.
+/// In a plane image of a wider view most pixels are near the border: at 150 deg the outermost pixel
+/// covers 1/15 of the angle of the middle pixel.
 constexpr double kWidestPlane_deg = 150.0;
 constexpr int kMaxSide_px = 16384;
 
-/// Rectangle on the plane z = 1 of the rectified frame.
+/// A rectangle on the plane z = 1 of the rectified frame.
 struct View {
     double x_min, x_max, y_min, y_max;
 };
 
-/// Turns of Bouguet's method: each camera takes half of the relative rotation, then both turn so
-/// that x runs along the baseline and z stays as near as possible to the mean viewing direction.
+/// Bouguet's method: each camera takes half of the relative rotation. Then both rotate so that x
+/// runs along the baseline and z stays as near as possible to the mean viewing direction.
 void turn_cameras(const Pose& T_left_right, RectifiedCamera& left, RectifiedCamera& right) {
     const Eigen::Vector3d half = 0.5 * log_so3(T_left_right.rotation);
     const Eigen::Matrix3d R_middle_left = exp_so3(-half).toRotationMatrix();
@@ -40,7 +40,7 @@ void turn_cameras(const Pose& T_left_right, RectifiedCamera& left, RectifiedCame
     right.offset_x_m = T_left_right.translation_m.norm();
 }
 
-/// Direction of a raw pixel on the plane z = 1; nothing beyond 90 deg.
+/// Direction of a raw pixel on the plane z = 1; nullopt from 90 deg on.
 std::optional<Eigen::Vector2d> on_plane(const RectifiedCamera& this_camera, double u, double v) {
     const auto ray = unproject(this_camera.camera.model, Eigen::Vector2d(u, v));
     if (!ray) return std::nullopt;
@@ -49,8 +49,8 @@ std::optional<Eigen::Vector2d> on_plane(const RectifiedCamera& this_camera, doub
     return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
 }
 
-/// Shrinks `view` to the largest upright rectangle inside the border of the eye's image. Border
-/// points outside the view so far do not limit it (corners of a fisheye look sideways).
+/// Shrinks `view` to the largest upright rectangle inside the border of the camera's image. Border
+/// points outside the initial view do not limit it: corners of a fisheye point sideways.
 void shrink_to(const RectifiedCamera& this_camera, View& view) {
     const View limit = view;
     const double right = this_camera.camera.width - 1;
@@ -78,7 +78,7 @@ void shrink_to(const RectifiedCamera& this_camera, View& view) {
     }
 }
 
-/// Equal focal lengths; the image shows a part of `view` around its centre.
+/// Sets equal focal lengths; the image shows a part of `view` around its centre.
 void set_intrinsics(const View& view, RectifiedRig& rig) {
     const double focal_px = std::max((rig.width - 1) / (view.x_max - view.x_min),
                                      (rig.height - 1) / (view.y_max - view.y_min));
@@ -106,7 +106,7 @@ bool border_has_source(const RectifiedRig& rig, const RectifiedCamera& this_came
     return true;
 }
 
-/// Takes the focal length that was asked for; the middle of the image shows what it showed.
+/// Changes the focal length; the middle of the image keeps its direction.
 void zoom_to(double focal_px, RectifiedRig& rig) {
     const double factor = focal_px / rig.fx_px;
     const double middle_u = 0.5 * (rig.width - 1);
@@ -121,8 +121,8 @@ void fill_image(Rectification& plan, double max_field_of_view_deg) {
     View view{-limit, limit, -limit, limit};
     shrink_to(plan.left, view);
     if (plan.right) shrink_to(*plan.right, view);
-    // A lens whose picture does not hold the common viewing direction leaves nothing: keep the
-    // limit and let the pixels without a source be black.
+    // The rectangle is empty if a lens does not show the common viewing direction. Then use the
+    // limit; pixels without a source become black.
     if (!(view.x_max > view.x_min) || !(view.y_max > view.y_min))
         view = {-limit, limit, -limit, limit};
     set_intrinsics(view, plan.rig);
@@ -156,18 +156,18 @@ void RectificationConfig::describe(ConfigVisitor& visitor) {
                     rectified_width_px,
                     0,
                     kMaxSide_px,
-                    "width of rectified images; 0 = as the raw ones");
+                    "width of rectified images; 0 = width of the raw images");
     visitor.integer("rectified_height_px",
                     rectified_height_px,
                     0,
                     kMaxSide_px,
-                    "height of rectified images; 0 = as the raw ones");
+                    "height of rectified images; 0 = height of the raw images");
     visitor.number("max_view_deg",
                    max_view_deg,
                    10.0,
                    kWidestPlane_deg,
-                   "widest view where the focal length is not given; wide lenses thin out the "
-                   "middle of a plane image");
+                   "widest view if rectified_focal_px is 0; a wider view reduces the resolution "
+                   "in the middle of the image");
 }
 
 std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_height) const {
@@ -191,8 +191,7 @@ std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_h
     if (!(rectified_focal_px > 0.0 && view_deg <= kWidestPlane_deg)) {
         return fmt::format(
             "camera.rectified_focal_px = {} must be at least {:.0f} for a {}x{} image: a plane "
-            "image "
-            "shows at most {} deg",
+            "image shows at most {} deg",
             rectified_focal_px,
             std::ceil(0.5 * longest / std::tan(0.5 * kWidestPlane_deg / kDegPerRad)),
             width,

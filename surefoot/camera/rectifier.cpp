@@ -11,7 +11,7 @@
 namespace surefoot::camera {
 namespace {
 
-/// Direction that a rectified pixel shows, in the rectified frame.
+/// Direction of a rectified pixel, in the rectified frame.
 Eigen::Vector3d ray_of(const RectifiedRig& rig, int u, int v) {
     return {(u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0};
 }
@@ -108,7 +108,7 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
             const auto raw = raw_from_ray(impl_->plan.left, ray_of(rig, u, v));
-            // Averaging across an edge would invent a surface: the nearest pixel, or none.
+            // Averaging across an edge would create a false surface: use the nearest pixel or none.
             const auto nearest =
                 raw ? nearest_pixel(raw->x(), raw->y(), camera.width, camera.height) : std::nullopt;
             out.at(u, v) = nearest ? raw_depth_m.at(nearest->u, nearest->v)

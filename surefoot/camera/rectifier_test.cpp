@@ -20,7 +20,7 @@
 namespace surefoot::camera {
 namespace {
 
-/// Lens inverses are solved to 1e-12 rad; times f < 1000 px and a few roundings.
+/// Lens inverses are solved to 1e-12 rad; multiplied by f < 1000 px, plus some roundings.
 constexpr double kExact_px = 1e-6;
 
 Rectifier make(const StereoRig& rig) {
@@ -29,7 +29,7 @@ Rectifier make(const StereoRig& rig) {
     return std::move(made).value();
 }
 
-/// Image of the plane n . p = 1 (rig's raw left frame) with a smooth pattern, seen by one raw eye.
+/// Image of the plane n . p = 1 (rig's raw left frame) with a smooth pattern, in one raw camera.
 GreyImage render_plane(const Camera& camera, const Pose& T_left_camera, const Eigen::Vector3d& n) {
     GreyImage image(camera.width, camera.height, 0);
     for (int v = 0; v < camera.height; ++v) {
@@ -68,7 +68,7 @@ std::string rig_name(const testing::TestParamInfo<int>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Rigs, EveryRig, testing::Values(0, 1, 2), rig_name);
 
-/// Points in the raw left frame -> raw pixels through the lens models -> rectified pixels.
+/// Maps points of the raw left frame to raw pixels with the lens models, then to rectified pixels.
 TEST_P(EveryRig, PointsFallOnEqualRowsWithTheDisparityOfTheirDepth) {
     const RectifiedRig& ideal = rectifier_.rig();
     const Pose T_camera_left = ideal.T_body_camera.inverse() * rig_.body_from_left();
@@ -133,7 +133,7 @@ TEST_P(EveryRig, AWarpedPlaneMatchesItselfAtItsDisparity) {
                 (u - ideal.cx_px) / ideal.fx_px, (v - ideal.cy_px) / ideal.fy_px, 1.0);
             const double z_m = 1.0 / n_camera.dot(ray);
             const double u_right = u - ideal.depth_to_disparity_px_m() / z_m;
-            // The finest waves of the far floor are below the resolution of a raw pixel.
+            // The finest waves of the far floor are smaller than a raw pixel.
             if (!(z_m > 0.0) || z_m > 2.0 || u_right < 1 || u_right > ideal.width - 3) continue;
             const double left = pair.left.at(u, v);
             sum_right += std::abs(left - bilinear(pair.right, u_right, v));
@@ -144,8 +144,8 @@ TEST_P(EveryRig, AWarpedPlaneMatchesItselfAtItsDisparity) {
     ASSERT_GT(count, 3000);
     const double error_grey = sum_right / count;
     std::printf("mean grey error %.2f (%.2f three rows off)\n", error_grey, sum_wrong_row / count);
-    // Two bilinear interpolations of a wave of 100 grey levels and about 40 px: (2 pi/40)^2/8 *
-    // 100.
+    // Error of two bilinear interpolations of a wave of 100 grey levels and about 40 px: (2
+    // pi/40)^2/8 * 100.
     EXPECT_LT(error_grey, 2.0);
     EXPECT_GT(sum_wrong_row / count, 4.0 * error_grey);
 }
@@ -175,7 +175,7 @@ TEST(Rectifier, RectifiedRigsPassThrough) {
 
 TEST(Rectifier, EurocKeepsItsFieldOfView) {
     const RectifiedRig ideal = make(test::euroc_rig()).rig();
-    // Rectified focal lengths published for this rig by visual-odometry packages are 430-440 px.
+    // Visual-odometry packages publish rectified focal lengths of 430-440 px for this rig.
     EXPECT_GT(ideal.fx_px, 410.0);
     EXPECT_LT(ideal.fx_px, 480.0);
     EXPECT_EQ(ideal.fx_px, ideal.fy_px);
@@ -184,7 +184,7 @@ TEST(Rectifier, EurocKeepsItsFieldOfView) {
     EXPECT_NEAR(ideal.cy_px, 240.0, 40.0);
 }
 
-/// Directions of the middles of the left and right border, from side to side.
+/// View angle between the middles of the left and right border.
 double view_deg(const RectifiedRig& rig) {
     return (std::atan(rig.cx_px / rig.fx_px) + std::atan((rig.width - 1 - rig.cx_px) / rig.fx_px)) *
            180.0 / std::numbers::pi;
@@ -195,7 +195,7 @@ TEST(Rectifier, FisheyeBecomesAPinholeOfLimitedView) {
     EXPECT_NEAR(view_deg(ideal), RectificationConfig{}.max_view_deg, 0.5);
 }
 
-/// cv::fisheye::stereoRectify gives such lenses a focal length of 0 or of thousands of pixels.
+/// For such lenses cv::fisheye::stereoRectify returns a focal length of 0 or of thousands of px.
 TEST(Rectifier, WideLensesGetASensibleFocalLength) {
     const StereoRig rig = test::fisheye_rig();
     const RectifiedRig ideal = make(rig).rig();
@@ -228,7 +228,7 @@ TEST(Rectifier, TheUserChoosesFocalLengthAndSize) {
     ASSERT_EQ(pair.left.width(), 800);
     ASSERT_EQ(pair.right.height(), 450);
     EXPECT_EQ(pair.left.at(400, 225), 90);
-    // Pixels and points still belong together.
+    // Pixels and points still agree.
     const Eigen::Vector3d p_camera(0.3, -0.1, 0.9);
     const auto raw = rectifier->raw_from_point(Side::right, p_camera);
     ASSERT_TRUE(raw);
@@ -268,7 +268,7 @@ TEST(Rectifier, MixedLensesShareOneView) {
     StereoRig rig = test::fisheye_rig();
     rig.right->model = PinholeRadTan{.fx_px = 500, .fy_px = 500, .cx_px = 480, .cy_px = 300};
     const Rectifier rectifier = make(rig);
-    // The narrower pinhole decides: 960 px at f = 500 px.
+    // The narrower pinhole camera decides: 960 px at f = 500 px.
     EXPECT_GT(rectifier.rig().fx_px, 495.0);
     EXPECT_LT(rectifier.rig().fx_px, 560.0);
 }
@@ -281,7 +281,7 @@ TEST(Rectifier, RgbdLosesItsDistortionAndKeepsItsDepth) {
     EXPECT_FALSE(rectifier.is_identity());
     EXPECT_EQ(ideal.baseline_m, Rectifier::kVirtualBaseline_m);
     EXPECT_LT(difference(ideal.T_body_camera, *rig.T_body_left).norm(), 1e-12);
-    // A depth ramp that only depends on the raw column, unknown in one corner.
+    // A depth ramp that depends only on the raw column, unknown in one corner.
     Image<float> raw_m(rig.left.width, rig.left.height);
     for (int v = 0; v < raw_m.height(); ++v) {
         for (int u = 0; u < raw_m.width(); ++u)
@@ -345,8 +345,8 @@ GreyImage grey_image(const cv::Mat& m) {
     return image;
 }
 
-/// Vertical offset between the eyes at a corner, by normalised correlation of 15x15 windows over
-/// 100 disparities and +-2 rows with a parabola across the rows; nothing for weak matches.
+/// Vertical offset between the cameras at a corner: normalised correlation of 15x15 windows over
+/// `kDisparities` columns and +-2 rows, with a parabola across the rows; nullopt for weak matches.
 std::optional<double> row_offset_px(const cv::Mat& left, const cv::Mat& right, cv::Point2f corner) {
     constexpr int kHalf = 7;
     constexpr int kRows = 2;

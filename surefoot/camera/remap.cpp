@@ -9,8 +9,8 @@
 namespace surefoot::camera {
 namespace {
 
-/// Lower neighbour and fraction of a place along one axis. The last pixel is told as the whole way
-/// from the one before it, so that both neighbours always exist.
+/// Lower neighbour and fraction of a position along one axis. The last pixel counts as fraction 1
+/// from the pixel before it, so that both neighbours always exist.
 struct Place {
     int pixel;
     int fraction;

@@ -8,31 +8,31 @@
 
 namespace surefoot::camera {
 
-/// Where each pixel of an image comes from in another one, in fixed point of 1/32 px, for bilinear
+/// Source position of every pixel of an image, in fixed point of 1/32 px, for bilinear
 /// interpolation in integers:
 ///   h(row) = (32 - fx) * pixel(x, row) + fx * pixel(x + 1, row)
 ///   value  = ((32 - fy) * h(y) + fy * h(y + 1) + 512) >> 10
-/// These are cv::remap's numbers with INTER_LINEAR. All targets of the SIMD code and the reference
+/// The results equal cv::remap with INTER_LINEAR. All targets of the SIMD code and the reference
 /// give the same bytes.
 class RemapTable {
   public:
     static constexpr int kUnits = 32;  ///< per pixel
 
     RemapTable() = default;
-    /// Every pixel without a source yet. `source_*`: the image that is read, at least 2x2.
+    /// Starts with no source for any pixel. `source_*`: size of the image to read, at least 2x2.
     RemapTable(int width, int height, int source_width, int source_height);
 
-    /// Pixel (u, v) shows the place (x_px, y_px), which must lie inside of the source:
-    /// 0 <= x_px <= source_width - 1, and y_px likewise.
+    /// Sets the source position of pixel (u, v). It must lie inside the source: 0 <= x_px <=
+    /// source_width - 1, and y_px likewise.
     void set(int u, int v, float x_px, float y_px);
 
     [[nodiscard]] int width() const noexcept { return width_; }
     [[nodiscard]] int height() const noexcept { return height_; }
 
-    /// `source` must have the size that was given; `out` takes that of the table. Pixels without a
-    /// source become 0.
+    /// `source` must have the size given to the constructor. `out` gets the size of the table.
+    /// Pixels without a source become 0.
     void remap(ImageView<const std::uint8_t> source, GreyImage& out) const;
-    /// The same, pixel by pixel: the definition, and the oracle of the tests.
+    /// The same, pixel by pixel: defines the result and is the oracle of the tests.
     void remap_reference(ImageView<const std::uint8_t> source, GreyImage& out) const;
 
     /// The table as flat rows, one entry per pixel.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bilinear remap in two passes over blocks that stay in the first-level cache:
-//   1. fetch: for every pixel the two neighbours of the upper and of the lower row, as one 16-bit
-//      load each (left neighbour in the low byte). Loads one by one beat 32-bit gathers
-//      (measured on an AMD EPYC with AVX-512: 0.7 of their time).
-//   2. blend, 16-bit lanes. With h = (32 - fx) left + fx right <= 8160 the sum of both rows needs
-//      18 bits, so h = 32 a + b is split and the halves are blended apart:
+//   1. fetch: for every pixel, load the two neighbours in the upper and in the lower row with one
+//      16-bit load each (left neighbour in the low byte). Single loads are faster than 32-bit
+//      gathers (measured on an AMD EPYC with AVX-512: 0.7 of their time).
+//   2. blend, in 16-bit lanes. With h = (32 - fx) left + fx right <= 8160 the sum of both rows
+//      needs 18 bits. So h = 32 a + b is split, and both parts are blended separately:
 //        ((32 - fy) h0 + fy h1 + 512) >> 10
-//          = (A + (((32 - fy) b0 + fy b1 + 512) >> 5)) >> 5,   A = (32 - fy) a0 + fy a1,
-//      which is exact: 32 A is a whole multiple of 32. (32 - f) p + f q is taken as 32 p + f (q -
-//      p); it may wrap on the way, the result fits.
+//          = (A + (((32 - fy) b0 + fy b1 + 512) >> 5)) >> 5,   A = (32 - fy) a0 + fy a1.
+//      This is exact: 32 A is a multiple of 32. (32 - f) p + f q is computed as
+//      32 p + f (q - p). It may wrap on the way, but the result fits.
 #include "surefoot/camera/remap_simd.hpp"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ HWY_INLINE V16 blended(V16 upper, V16 lower, V16 fraction_x, V16 fraction_y) {
     return hn::IfThenZeroElse(nowhere, value);
 }
 
-/// Whole vectors from `first` on; returns the first pixel that is left.
+/// Blends whole vectors from `first`; returns the first remaining pixel.
 HWY_INLINE std::size_t blend_vectors(const RemapTable::View& table,
                                      const Fetched& near,
                                      std::size_t count,
@@ -107,7 +107,7 @@ void remap_here(const RemapTable::View& table,
             table.offset + first, table.fraction_x + first, table.fraction_y + first};
         const std::size_t done = blend_vectors(here, near, block, out + first);
         if (done == block) continue;
-        // The rest of the last block, in vectors that are filled up with zeros.
+        // The remaining pixels of the last block, in vectors padded with zeros.
         Fetched rest{};
         std::uint8_t fraction_x[kBlock] = {};
         std::uint8_t fraction_y[kBlock] = {};

@@ -5,8 +5,8 @@
 
 namespace surefoot::camera {
 
-/// The work of RemapTable::remap on `count` pixels, by the best instructions that the processor
-/// has.
+/// Does the work of RemapTable::remap on `count` pixels, with the best instruction set of the
+/// processor.
 void remap_pixels(const RemapTable::View& table,
                   const std::uint8_t* source,
                   int stride,

@@ -21,10 +21,10 @@ GreyImage random_image(int width, int height, Rng& rng) {
     return image;
 }
 
-/// Random places, one pixel in eight without a source, and the corners of the source.
+/// Random positions, one pixel in eight without a source, and the corners of the source.
 struct Places {
     RemapTable table;
-    cv::Mat source_px;  ///< CV_32FC2, far outside where there is none
+    cv::Mat source_px;  ///< CV_32FC2, far outside for pixels without a source
 };
 
 Places random_places(int width, int height, int source_width, int source_height, Rng& rng) {
@@ -48,7 +48,7 @@ Places random_places(int width, int height, int source_width, int source_height,
 
 TEST(Remap, EveryTargetGivesTheBytesOfTheReference) {
     Rng rng(7);
-    // Around the sizes of vectors and blocks, and sources as small as they may be.
+    // Sizes around those of vectors and blocks, and the smallest valid sources.
     const struct {
         int width, height, source_width, source_height;
     } sizes[] = {{1, 1, 2, 2},
@@ -74,7 +74,7 @@ TEST(Remap, EveryTargetGivesTheBytesOfTheReference) {
 }
 
 TEST(Remap, EveryPairOfFractionsAndExtremeValues) {
-    // Sources of black and white pixels reach the ends of what 16 bits must hold.
+    // Sources of black and white pixels reach the limits of 16 bits.
     constexpr int kSteps = RemapTable::kUnits + 1;
     RemapTable table(kSteps, kSteps, 2, 2);
     for (int v = 0; v < kSteps; ++v) {

@@ -9,20 +9,20 @@
 
 namespace surefoot::camera {
 
-/// Points of a disparity image, as RectifiedRig::point defines them, in float: the same bytes on
-/// every processor, within 4 units in the last place of the exact point of the same disparity.
+/// Points of a disparity image as in RectifiedRig::point, but in float. Every processor gives the
+/// same bytes, within 4 units in the last place of the exact point.
 class Reprojector {
   public:
     explicit Reprojector(const RectifiedRig& rig);
 
-    /// Point [m] of every pixel in the rectified left optical frame; x, y and z are NaN where the
-    /// disparity is no finite number above 0. The image must have the size of the rig.
+    /// Point [m] of every pixel in the rectified left optical frame. x, y and z are NaN if the
+    /// disparity is not a finite number above 0. The image must have the size of the rig.
     void points(ImageView<const float> disparity_px, Image<Eigen::Vector3f>& out) const;
 
   private:
     float depth_to_disparity_px_m_;
-    std::vector<float> ray_x_;  ///< of each column, on the plane z = 1
-    std::vector<float> ray_y_;  ///< of each row
+    std::vector<float> ray_x_;  ///< per column, on the plane z = 1
+    std::vector<float> ray_y_;  ///< per row, on the plane z = 1
 };
 
 }  // namespace surefoot::camera

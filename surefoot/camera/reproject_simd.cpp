@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One division and two products a pixel, no sum: all targets round alike.
+// One division and two products per pixel, no sum: all targets round equally.
 #include "surefoot/camera/reproject_simd.hpp"
 
 #include <limits>
@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float), "points are written as plain floats");
 
-/// Pixels from `first` on, as many whole vectors of D as fit; returns the first that is left.
+/// Computes as many whole vectors of D as fit, from `first`; returns the first remaining pixel.
 template <class D>
 HWY_INLINE int reproject_vectors(D d, const DisparityRow& row, int first, float* HWY_RESTRICT out) {
     const int lanes = static_cast<int>(hn::Lanes(d));
@@ -27,7 +27,7 @@ HWY_INLINE int reproject_vectors(D d, const DisparityRow& row, int first, float*
     int u = first;
     for (; u + lanes <= row.width; u += lanes) {
         const auto quotient = hn::Div(depth_to_disparity, hn::LoadU(d, row.disparity_px + u));
-        // A disparity of 0 gives infinity, one of infinity 0.
+        // A disparity of 0 gives infinity; a disparity of infinity gives 0.
         const auto known = hn::And(hn::Gt(quotient, hn::Zero(d)), hn::Lt(quotient, infinite));
         const auto z = hn::IfThenElse(known, quotient, unknown);
         const auto x = hn::Mul(hn::LoadU(d, row.ray_x + u), z);

@@ -5,8 +5,8 @@
 
 namespace surefoot::camera {
 
-/// Points of one row of disparities: z = depth_to_disparity / disparity, x = ray_x * z,
-/// y = ray_y * z, all NaN unless 0 < z < infinity.
+/// Points of one disparity row: z = depth_to_disparity / disparity, x = ray_x * z, y = ray_y * z.
+/// All are NaN unless 0 < z < infinity.
 struct DisparityRow {
     const float* disparity_px;
     const float* ray_x;

@@ -28,7 +28,7 @@ RectifiedRig rig_of(int width, int height) {
     return rig;
 }
 
-/// Rounded: the ray, the focal length times the baseline, the quotient, the product.
+/// Four roundings: the ray, the focal length times the baseline, the quotient, the product.
 constexpr double kUlps = 4.0 * 0x1p-24;
 
 TEST(Reproject, EveryTargetGivesTheExactPoint) {
@@ -63,7 +63,7 @@ TEST(Reproject, EveryTargetGivesTheExactPoint) {
 
 TEST(Reproject, WhatIsNoDistanceIsUnknown) {
     const float strange[] = {kNanF, kInfinity, -kInfinity, 0.0F, -0.0F, -3.0F, 1e-45F};
-    constexpr int kWidth = 40;  // a whole vector and a rest on every target
+    constexpr int kWidth = 40;  // whole vectors; with 16 lanes also a remainder
     for (const float value : strange) {
         const Image<float> disparity_px(kWidth, 1, value);
         test::on_every_target([&](const char* target) {

@@ -6,16 +6,16 @@
 
 namespace surefoot::camera {
 
-/// The rig whose cameras deliver the same picture in width x height px. Exact: both sides must
-/// change by the same ratio s, else it is an error in words. Focal lengths become s f; a pixel is
-/// an area with its centre at whole coordinates, so principal points become (c + 0.5) s - 0.5. The
-/// distortion lives on the plane z = 1 and stays; a rolling shutter takes as long as before.
+/// The rig of the same cameras with images of width x height px. Both sides must change by exactly
+/// the same ratio s; otherwise an error. Focal lengths become s f. A pixel has its centre at whole
+/// coordinates, so principal points become (c + 0.5) s - 0.5. The distortion on the plane z = 1 and
+/// the rolling-shutter read-out time do not change.
 ///
-/// The numbers cannot tell a picture that was resized from one that was cropped to the same shape
-/// (a ZED's 1080p is cut out of its 2K): the caller answers for that.
+/// Sizes alone cannot distinguish a resized image from a crop of the same shape (a ZED's 1080p is a
+/// crop of its 2K). The caller must make sure that the image is resized.
 [[nodiscard]] Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height);
 
-/// Whether one size is the other times a whole number, the same for both sides: what binning does.
+/// True if one size is an integer multiple of the other, equal for both sides, as with binning.
 [[nodiscard]] bool is_binning(const Camera& camera, int width, int height) noexcept;
 
 }  // namespace surefoot::camera

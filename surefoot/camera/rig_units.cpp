@@ -9,11 +9,11 @@
 namespace surefoot::camera {
 namespace {
 
-/// Baselines of cameras that people carry or mount on a machine: a ZED-X Nano has 18 mm, a car 0.6
-/// m.
+/// Usual baselines of cameras that people carry or mount on a machine: 18 mm on a ZED-X Nano, 0.6 m
+/// on a car.
 constexpr double kUsualMin_m = 0.01;
 constexpr double kUsualMax_m = 1.0;
-/// A calibration with squares of side 1 gives the baseline in squares; real squares are 20-100 mm.
+/// A calibration with squares of side 1 gives the baseline in squares. Real squares are 20-100 mm.
 constexpr double kMostSquares = 50.0;
 constexpr double kMaxMount_m = 10.0;
 
@@ -21,7 +21,7 @@ bool is_usual(double length_m) {
     return length_m >= kUsualMin_m && length_m <= kUsualMax_m;
 }
 
-/// ": is it in mm (then 60.8 mm)?"; the end of the sentence where no unit makes it usual.
+/// ": is it in mm (then 60.8 mm)?", or "." if no unit gives a usual baseline.
 std::string likely_units(double number) {
     struct Unit {
         const char* name;
@@ -60,8 +60,7 @@ std::optional<std::string> baseline_warning(double length_m) {
     if (baseline_problem(length_m) || is_usual(length_m)) return std::nullopt;
     return fmt::format(
         "baseline {:.3f} m is {} than {} m{} Every depth has the same error as the baseline: "
-        "measure "
-        "the distance of the lenses with a ruler",
+        "measure the distance of the lenses with a ruler",
         length_m,
         length_m < kUsualMin_m ? "shorter" : "longer",
         length_m < kUsualMin_m ? kUsualMin_m : kUsualMax_m,
@@ -79,8 +78,7 @@ std::optional<std::string> focal_warning(double focal_px, int width_px) {
     if (!(focal_px < kLeastOfWidth * width_px)) return std::nullopt;
     return fmt::format(
         "focal length {:.2f} px is too short for an image of {} px: is it in mm? In pixels it is "
-        "the "
-        "focal length divided by the side of a pixel, both in mm",
+        "the focal length divided by the side of a pixel, both in mm",
         focal_px,
         width_px);
 }

@@ -44,7 +44,7 @@ inline StereoRig euroc_rig() {
     return rig;
 }
 
-/// A pair of 170 deg fisheye lenses that point 1.5 deg apart, like home-made rigs do.
+/// A pair of 170 deg fisheye lenses with axes 1.5 deg apart, as in home-made rigs.
 inline StereoRig fisheye_rig() {
     StereoRig rig;
     rig.name = "fisheye";
@@ -83,7 +83,7 @@ inline StereoRig zed_rig() {
     return rig;
 }
 
-/// Lenses without distortion that look straight ahead, 0.12 m apart.
+/// Lenses without distortion that point straight ahead, 0.12 m apart.
 inline StereoRig ideal_rig(int width, int height, double focal_px) {
     StereoRig rig;
     rig.left = {PinholeRadTan{.fx_px = focal_px,

@@ -5,10 +5,10 @@
 
 #include <functional>
 
-/// SIMD code under every instruction set that this processor has.
+/// Runs SIMD code under every instruction set of this processor.
 namespace surefoot::camera::test {
 
-/// Calls `check(name)` with the dispatch of Highway held on each target in turn, the slowest last.
+/// Calls `check(name)` with Highway's dispatch fixed to each target in turn, the slowest last.
 inline void on_every_target(const std::function<void(const char*)>& check) {
     const std::int64_t all = hwy::SupportedTargets();
     for (std::int64_t left = all; left != 0; left &= left - 1) {

@@ -12,10 +12,11 @@ namespace {
 
 using Problem = std::optional<std::string>;
 
-/// A rotation read from seven decimals is this close to a unit quaternion.
+/// Largest norm error of a quaternion that was read with seven decimals.
 constexpr double kUnitTolerance = 1e-6;
 constexpr double kMaxRelativeRotation_deg = 45.0;
-/// Claims of a rectified rig: at 2000 px from the centre they bend a row by less than 0.01 px.
+/// Limits for rigs marked rectified: at 2000 px from the centre they bend a row by less than 0.01
+/// px.
 constexpr double kRectifiedRotation_rad = 5e-6;
 constexpr double kRectifiedPixel_px = 1e-3;
 constexpr double kDegreesPerRadian = 57.29577951308232;
@@ -49,10 +50,10 @@ Problem pair_pose_problem(const Pose& T_left_right) {
     if (t.x() < -0.5 * length_m) {
         return fmt::format(
             "the right camera lies {:.3f} m to the left of the left one; "
-            "exchange the cameras or invert T_left_right",
+            "swap the cameras or invert T_left_right",
             -t.x());
     }
-    // 45 deg from the x axis: neither beside nor clearly on top of each other.
+    // Above 45 deg from the x axis the cameras lie above each other rather than side by side.
     if (t.x() * t.x() < 0.5 * length_m * length_m) {
         return fmt::format(
             "baseline ({:.3f}, {:.3f}, {:.3f}) m must point along x of the left camera; "

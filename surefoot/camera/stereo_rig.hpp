@@ -21,19 +21,19 @@ struct StereoRig {
     Camera left;
     std::optional<Camera> right;  ///< empty for RGB-D
     Pose T_left_right;            ///< right optical frame in the left one; baseline along +x
-    /// Left optical frame in base_link, where the rig knows it (EuRoC T_BS) or a machine file set
+    /// Left optical frame in base_link, if the rig knows it (EuRoC T_BS) or a machine file sets
     /// it.
     std::optional<Pose> T_body_left;
     std::optional<ImuMount> imu;
     double rate_hz = 0.0;  ///< nominal frame rate, 0 = unknown
-    /// Rolling-shutter read-out time of an image, first to last row; 0 = global. The stamp of a
-    /// frame is the middle of the exposure of its middle row.
+    /// Rolling-shutter read-out time from the first to the last row; 0 = global shutter. The stamp
+    /// of a frame is the middle of the exposure of its middle row.
     double readout_s = 0.0;
-    bool rectified = false;  ///< images are rectified already: rows match, no distortion
+    bool rectified = false;  ///< images are already rectified: rows match, no distortion
 
-    /// First reason why the rig cannot be used, with the value; or nothing.
+    /// First problem of the rig, with the value; nullopt if it is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
-    /// base_link of this rig: `T_body_left`, else the optical frame turned to body axes.
+    /// base_link of this rig: `T_body_left`, otherwise the optical frame in body axes.
     [[nodiscard]] Pose body_from_left() const;
 };
 
@@ -46,11 +46,11 @@ struct RectifiedRig {
     double fy_px = 0.0;
     double cx_px = 0.0;
     double cy_px = 0.0;
-    double baseline_m = 0.0;  ///< for RGB-D a virtual one
+    double baseline_m = 0.0;  ///< a virtual baseline for RGB-D
     Pose T_body_camera;       ///< rectified left optical frame in base_link
 
     [[nodiscard]] double depth_to_disparity_px_m() const noexcept { return fx_px * baseline_m; }
-    /// Point in the rectified left optical frame of a pixel with its disparity (> 0).
+    /// Point of a pixel in the rectified left optical frame, from its disparity (> 0).
     [[nodiscard]] Eigen::Vector3d point(double u_px, double v_px, double disparity_px) const {
         const double z_m = depth_to_disparity_px_m() / disparity_px;
         return {(u_px - cx_px) / fx_px * z_m, (v_px - cy_px) / fy_px * z_m, z_m};

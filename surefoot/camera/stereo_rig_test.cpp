@@ -56,7 +56,7 @@ TEST(StereoRig, RefusesImpossibleGeometry) {
               "T_left_right is not rigid: its rotation quaternion has norm 1.100000, not 1");
     EXPECT_EQ(
         problem_after(test::zed_rig(), [](StereoRig& r) { r.T_left_right.translation_m *= -1.0; }),
-        "the right camera lies 0.120 m to the left of the left one; exchange the cameras or "
+        "the right camera lies 0.120 m to the left of the left one; swap the cameras or "
         "invert T_left_right");
     EXPECT_EQ(problem_after(test::zed_rig(),
                             [](StereoRig& r) {
@@ -105,7 +105,7 @@ TEST(StereoRig, ChecksMountsAndTimes) {
 
 TEST(StereoRig, BodyIsTheOpticalFrameTurnedUnlessTheRigKnowsBetter) {
     const Pose T_body_camera = test::zed_rig().body_from_left();
-    // Optical forward is body forward, optical right is body right (-y), optical down is -z.
+    // Optical z (forward) is body x, optical x (right) is body -y, optical y (down) is body -z.
     EXPECT_LT((T_body_camera * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
     EXPECT_LT((T_body_camera * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-15);
     EXPECT_LT((T_body_camera * Eigen::Vector3d(0, 1, 0) - Eigen::Vector3d(0, 0, -1)).norm(), 1e-15);

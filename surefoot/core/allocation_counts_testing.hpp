@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cstdint>
 
-/// What a test program allocates, where one of its files includes allocations_testing.hpp.
+/// Memory counters of a test program. One of its files must include allocations_testing.hpp.
 namespace surefoot::heap {
 
 inline std::atomic<std::int64_t> allocations{0};
-inline std::atomic<std::int64_t> held_bytes{0};         ///< with what the allocator rounds up to
-inline thread_local std::int64_t allocations_here = 0;  ///< of this thread
+inline std::atomic<std::int64_t> held_bytes{0};         ///< includes the allocator's round-up
+inline thread_local std::int64_t allocations_here = 0;  ///< by the current thread
 
 }  // namespace surefoot::heap

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts what a whole test program allocates: replaces the global operators new and delete, so one
-// file of a program may include this; the others have allocation_counts_testing.hpp. All forms are
-// replaced: the sanitizers do not forgive memory that one of theirs gave and one of ours frees.
+// Counts the allocations of a test program by replacing the global operators new and delete. At
+// most one file of a program includes this; others include allocation_counts_testing.hpp. All forms
+// are replaced: sanitizers reject a free by an operator that did not allocate.
 #pragma once
 
 #include <malloc.h>
@@ -42,7 +42,7 @@ inline void* bytes(std::size_t size, std::align_val_t alignment) noexcept {
 
 }  // namespace surefoot::heap
 
-// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
+// Not inlined: otherwise the compiler reports malloc and delete as a mismatched pair.
 // NOLINTBEGIN(misc-definitions-in-headers): one file of a program has them.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     return surefoot::heap::counted_or_throw(surefoot::heap::bytes(size));

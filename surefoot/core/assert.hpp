@@ -3,12 +3,12 @@
 
 namespace surefoot::detail {
 
-/// Prints the broken invariant to stderr and aborts: a bug of ours, never a property of the input.
+/// Prints the broken invariant to stderr and aborts: a bug in our code, never an input error.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
 }  // namespace surefoot::detail
 
-/// Invariant of the code itself. Active unless NDEBUG is set without SUREFOOT_ASSERTS.
+/// Checks an invariant of the code. Active unless NDEBUG is set without SUREFOOT_ASSERTS.
 #if !defined(NDEBUG) || defined(SUREFOOT_ASSERTS)
 #define SUREFOOT_ASSERT(condition)                                                              \
     do {                                                                                        \

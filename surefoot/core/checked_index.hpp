@@ -9,25 +9,25 @@
 
 namespace surefoot {
 
-/// Whether a number has an integer part that `Int` can hold: not NaN, not infinite, in its range.
-/// A conversion of any other number is undefined behaviour, and on most processors gives the
-/// smallest integer without a word.
+/// True if `Int` can hold the integer part of the value: not NaN, not infinite, and in range.
+/// Converting any other value is undefined behaviour. Most processors then silently return the
+/// smallest integer.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr bool fits_integer(Real value) noexcept {
-    // 2^digits is a floating-point number where the largest integer, one less, need not be one.
+    // The limit is 2^digits: exact as a floating-point number, while the largest Int may not be.
     constexpr Real kEnd = static_cast<Real>(std::numeric_limits<Int>::max() / 2 + 1) * Real{2};
     constexpr Real kLow = std::is_signed_v<Int> ? -kEnd : Real{0};
     return value < kEnd && (value >= kLow || value > kLow - Real{1});
 }
 
-/// The integer part of a number, towards zero; nothing where `Int` cannot hold it.
+/// The integer part, rounded towards zero; nullopt if `Int` cannot hold it.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr std::optional<Int> checked_integer(Real value) noexcept {
     if (!fits_integer<Int>(value)) return std::nullopt;
     return static_cast<Int>(value);  // in range, as checked
 }
 
-/// The integer part of a number, the nearest that `Int` has; `of_nan` where it is none.
+/// The integer part, limited to the range of `Int`; `of_nan` if the value is NaN.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr Int saturated_integer(Real value, Int of_nan = 0) noexcept {
     if (fits_integer<Int>(value)) return static_cast<Int>(value);  // in range, as checked

@@ -60,7 +60,7 @@ TEST(CheckedIndex, FractionsBeyondTheLastIntegerStillBelongToIt) {
 #ifdef SUREFOOT_CHECKS_FLOAT_CASTS
 TEST(CheckedIndexDeathTest, TheSanitizerStopsAnUncheckedConversion) {
     const auto convert = [](double value) {
-        const volatile double seen = value;                  // the compiler must not know it
+        const volatile double seen = value;                  // hides the value from the compiler
         const volatile int number = static_cast<int>(seen);  // in range: NO, that is the test
         return number;
     };

@@ -6,21 +6,21 @@
 
 namespace surefoot {
 
-/// Walks over the fields of a configuration. Every config struct describes itself once
-/// (`void describe(ConfigVisitor&)`: key, range, comment; the default is the member's initialiser);
-/// readers, writers, `surefoot config` and the range checks are visitors.
+/// Visits the fields of a configuration. Every config struct describes itself once, in
+/// `describe(ConfigVisitor&)`: key, range, comment. The default is the member's initialiser.
+/// Readers, writers, `surefoot config` and the range checks are visitors.
 class ConfigVisitor {
   public:
     virtual ~ConfigVisitor() = default;
 
     virtual void begin_group(const char* name) = 0;
     virtual void end_group() = 0;
-    /// `key` ends in its unit; a value outside [min, max] or not finite is an error.
+    /// `key` ends in its unit. A value that is not finite or outside [min, max] is an error.
     virtual void number(
         const char* key, double& value, double min, double max, const char* comment) = 0;
     virtual void integer(const char* key, int& value, int min, int max, const char* comment) = 0;
     virtual void boolean(const char* key, bool& value, const char* comment) = 0;
-    /// One of `names`; `value` is the position in it.
+    /// `value` is an index into `names`.
     virtual void choice(const char* key,
                         int& value,
                         std::span<const char* const> names,
@@ -37,7 +37,7 @@ class ConfigVisitor {
         choice(key, position, names, comment);
         value = static_cast<Enum>(position);
     }
-    /// A nested config as a group of its own.
+    /// Visits a nested config as a group with its own name.
     template <typename Config>
     void group(const char* name, Config& config) {
         begin_group(name);

@@ -5,10 +5,10 @@
 
 namespace surefoot {
 
-/// What a matcher says about every pixel of the rectified left image.
+/// Result of a stereo matcher for every pixel of the rectified left image.
 struct DepthImage {
     Image<float> disparity_px;  ///< > 0; NaN = no match
-    Image<float> sigma_px;      ///< one sigma of the disparity where it is right; NaN = no match
+    Image<float> sigma_px;      ///< one sigma of the disparity of a right match; NaN = no match
     Image<float> outlier_probability;  ///< probability that the match is wrong, [0, 1]
 
     void resize(int width, int height) {

@@ -6,10 +6,10 @@
 
 #include "surefoot/core/executor.hpp"
 
-/// Other orders of work than Serial's: results must not depend on them.
+/// Executors with other orders of work than Serial: results must not depend on the order.
 namespace surefoot {
 
-/// Last index first; says that it has more threads than most work has pieces.
+/// Runs the last index first; reports more threads than most work has pieces.
 class Backwards final : public Executor {
   public:
     [[nodiscard]] int threads() const noexcept override { return 5; }
@@ -18,7 +18,7 @@ class Backwards final : public Executor {
     }
 };
 
-/// Indices dealt out to a number of threads.
+/// Distributes the indices over several threads.
 class Threads final : public Executor {
   public:
     explicit Threads(int threads) : threads_(threads) {}

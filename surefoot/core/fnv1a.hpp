@@ -8,8 +8,8 @@ namespace surefoot {
 
 inline constexpr std::uint64_t kFnv1aStart = 0xcbf29ce484222325ULL;
 
-/// FNV-1a, 64 bit (Fowler, Noll, Vo): finds damage and tells texts apart, the same on every
-/// platform; no protection against whoever means harm. `before` is the hash of what comes before.
+/// FNV-1a hash, 64 bit (Fowler, Noll, Vo). Detects damage and distinguishes texts; the same on
+/// every platform. No protection against an attacker. `before`: hash of the preceding bytes.
 [[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes,
                                             std::uint64_t before = kFnv1aStart) noexcept {
     std::uint64_t hash = before;

@@ -3,9 +3,9 @@
 
 namespace surefoot {
 
-/// A height of larger magnitude is no height but a mark for "no data" (-3.4e38, 1e20, -2147483648)
-/// or a wrong unit. Mount Everest in a national grid, the deepest trench and heights in millimetres
-/// up to 100 m are smaller. Readers of heights take such a value as unknown, never as ground.
+/// Largest magnitude of a height. Beyond it lie wrong units and "no data" marks (-3.4e38, 1e20,
+/// -2147483648); below it Mount Everest, the deepest trench and millimetres up to 100 m. Readers of
+/// heights treat a larger value as unknown, never as ground.
 inline constexpr double kMaxHeight_m = 1e5;
 
 }  // namespace surefoot

@@ -9,7 +9,7 @@
 namespace surefoot {
 
 /// A rectangle on the ground, parallel to the axes of base_link. Lengths are integers in units of
-/// 0.1 mm ("tenth_mm") as in the map snapshot, so that a decision is the same on every machine.
+/// 0.1 mm ("tenth_mm") as in the map snapshot, so that every computer decides the same.
 struct GroundBox {
     std::int32_t center_x_tenth_mm = 0;  ///< forward of base_link
     std::int32_t center_y_tenth_mm = 0;  ///< left of base_link
@@ -17,27 +17,27 @@ struct GroundBox {
     std::int32_t width_tenth_mm = 0;     ///< along y
 };
 
-/// The space that some links of the machine, or its user, fill during a movement, seen from
-/// base_link on its straight way to the target: the box holds wherever the joint trace takes them,
-/// the shift of the body's weight included. Heights count from the soles.
+/// The space that some links of the machine or its user fill during a movement, relative to
+/// base_link on its straight path to the target. The box covers the whole joint trace, including
+/// the weight shift of the body. Heights count from the soles.
 struct BodyPart {
     GroundBox box;
-    std::int32_t low_tenth_mm = 0;   ///< lower things pass below it
-    std::int32_t high_tenth_mm = 0;  ///< higher things pass above it
+    std::int32_t low_tenth_mm = 0;   ///< lower obstacles pass below the part
+    std::int32_t high_tenth_mm = 0;  ///< higher obstacles pass above the part
 };
 
-/// Everything of the machine and its user but the feet.
+/// The machine and its user without the feet.
 struct Body {
     static constexpr int kMaxParts = 8;
     std::array<BodyPart, kMaxParts> parts{};
     std::int32_t count = 0;
-    std::int32_t sway_tenth_mm = 0;  ///< added on all four sides: what no trace knows
+    std::int32_t sway_tenth_mm = 0;  ///< for motion that no trace covers
 
     [[nodiscard]] constexpr std::span<const BodyPart> all() const noexcept {
         const bool sound = count >= 0 && count <= kMaxParts;
         return {parts.data(), sound ? static_cast<std::size_t>(count) : 0};
     }
-    /// Below it only the feet need room.
+    /// Below this height only the feet need room. 0 if there are no parts.
     [[nodiscard]] constexpr std::int32_t lower_edge_tenth_mm() const noexcept {
         std::int32_t lowest = 0;
         for (const BodyPart& part : all()) {
@@ -47,18 +47,18 @@ struct Body {
     }
 };
 
-/// How high a movement may step; flat walking and stairs have limits of their own.
+/// Selects the step limits of a movement: flat walking and stairs have separate limits.
 enum class MovementClass : std::uint8_t { walk = 0, stair = 1 };
 inline constexpr int kMovementClassCount = 2;
 
-/// Where one joystick code takes base_link, seen from where it is now.
+/// Motion of base_link for one joystick code, relative to its current pose.
 struct Movement {
     bool configured = false;
     MovementClass movement_class = MovementClass::walk;
     std::array<char, 8> name{};  ///< for people and logs, zero-terminated
     std::int32_t forward_tenth_mm = 0;
     std::int32_t left_tenth_mm = 0;
-    double cos_turn = 1.0;  ///< of the change of yaw, left positive
+    double cos_turn = 1.0;  ///< cosine of the change of yaw; left turns are positive
     double sin_turn = 0.0;
 };
 
@@ -68,60 +68,60 @@ struct StepLimits {
     std::int32_t down_tenth_mm = 0;
 };
 
-/// Limits of the step gate. None has a default that allows anything: a machine file states all.
+/// Limits of the step gate. No default allows any step: a machine file must state all limits.
 struct GateLimits {
     std::array<StepLimits, kMovementClassCount> step{};
     double min_normal_z = 1.0;                  ///< cosine of the largest tilt of a foot plane
-    std::int32_t patch_side_tenth_mm = 500;     ///< a foot is judged by the means of such patches
+    std::int32_t patch_side_tenth_mm = 500;     ///< a foot is judged by such patches
     std::int32_t patch_residual_tenth_mm = 0;   ///< |residual| + sigma_factor * sigma of a patch
-    std::int32_t patch_sigma_tenth_mm = 0;      ///< above it a patch is not resolvable
+    std::int32_t patch_sigma_tenth_mm = 0;      ///< a patch with a larger sigma is not resolvable
     double sigma_factor = 3.4;                  ///< one-sided 3e-4 for a normal error
-    std::int32_t patch_independent_cells = 1;   ///< most cells of a patch whose errors may average
-    std::int32_t cell_sigma_tenth_mm = 0;       ///< a cell less sure than this proves nothing
-    std::int32_t swing_clearance_tenth_mm = 0;  ///< highest thing in the way of a swinging foot
+    std::int32_t patch_independent_cells = 1;   ///< most cell errors that average out
+    std::int32_t cell_sigma_tenth_mm = 0;       ///< cells with a larger sigma prove nothing
+    std::int32_t swing_clearance_tenth_mm = 0;  ///< highest obstacle below a swinging foot
     std::int32_t foot_margin_tenth_mm = 0;      ///< added around the path of a foot
-    std::int32_t drop_tenth_mm = 0;             ///< ground this much lower is a drop
-    std::int32_t drop_band_tenth_mm = 0;        ///< solid ground wanted beyond a landing foot
-    std::uint8_t drop_evidence = 0;             ///< evidence from here on is a drop
+    std::int32_t drop_tenth_mm = 0;             ///< ground lower by this much is a drop
+    std::int32_t drop_band_tenth_mm = 0;        ///< solid ground required beyond a landing foot
+    std::uint8_t drop_evidence = 0;             ///< smallest evidence of a drop
     std::int32_t drift_tenth_mm = 0;            ///< 1-sigma horizontal drift since a cell was seen
-    /// Class stair: share of a foot's length that its tread must carry, in thousandths, and how far
-    /// the foot may reach over the nosing.
+    /// Class stair: the share of a foot's length that its tread must carry, in thousandths, and the
+    /// largest overhang of the foot beyond the nosing.
     std::int32_t tread_share_permille = 1'000;
     std::int32_t tread_overhang_tenth_mm = 0;
     std::int64_t frame_age_ns = 0;
     std::int64_t pose_age_ns = 0;
     std::int64_t future_tolerance_ns = 0;          ///< stamps later than now by more are refused
-    std::int64_t verdict_ttl_ns = 0;               ///< life of an OK
-    std::int32_t attestation_radius_tenth_mm = 0;  ///< largest area that an operator may vouch for
+    std::int64_t verdict_ttl_ns = 0;               ///< validity time of an OK
+    std::int32_t attestation_radius_tenth_mm = 0;  ///< largest radius of an operator attestation
 };
 
-/// A walking machine as the step gate sees it: an immutable value, read from a machine file.
+/// A walking machine for the step gate: an immutable value that is read from a machine file.
 struct Machine {
     static constexpr int kMovementCodes = 27;  ///< 0 = joystick at rest, never a movement
 
     std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
-    GroundBox left_foot;                   ///< where the feet stand, before and after a movement
+    GroundBox left_foot;                   ///< the feet before and after a movement
     GroundBox right_foot;
-    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< of both feet: what a tread carries first
+    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< of both feet: this part must stand on the tread
     Body body;
     std::array<Movement, kMovementCodes> movements{};
     GateLimits limits;
 
-    /// First reason why the machine cannot be used, in words; nullptr when it can. Calls no libm
-    /// and allocates nothing: the gate asks before every decision.
+    /// First reason why the machine cannot be used, or nullptr. The gate calls it before every
+    /// decision: it calls no libm function and allocates no memory.
     [[nodiscard]] constexpr const char* problem() const noexcept;
 };
 
 namespace detail {
 
-/// False for NaN too.
+/// False if `value` is NaN.
 template <typename T>
 constexpr bool within(T value, T min, T max) noexcept {
     return value >= min && value <= max;
 }
 
 constexpr const char* problem_of(const GroundBox& box) noexcept {
-    // 10 m bounds keep every product of the exact geometry far inside 64 bits.
+    // With bounds of 10 m every product of the exact geometry stays far inside 64 bits.
     if (!within(box.center_x_tenth_mm, -100'000, 100'000) ||
         !within(box.center_y_tenth_mm, -100'000, 100'000))
         return "a box lies farther than 10 m from base_link";
@@ -150,8 +150,8 @@ constexpr const char* problem_of(const Movement& movement) noexcept {
     const double norm_sq =
         movement.cos_turn * movement.cos_turn + movement.sin_turn * movement.sin_turn;
     if (!within(norm_sq, 0.999'999, 1.000'001)) return "a turn has no valid cosine and sine";
-    // The swept hull joins start and target by straight lines; up to 30 deg an arc leaves it by
-    // less than 16 mm for a corner 0.46 m from base_link, which margin and sway cover.
+    // The swept hull joins start and target by straight lines. Up to 30 deg an arc leaves it by
+    // less than 16 mm for a corner 0.46 m from base_link. Margin and sway cover this.
     if (!(movement.cos_turn >= 0.866)) return "a turn is larger than 30 deg";
     if (static_cast<int>(movement.movement_class) >= kMovementClassCount)
         return "a movement has an unknown class";
@@ -182,7 +182,7 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
     if (!within(limits.tread_share_permille, 500, 1'000) ||
         !within(limits.tread_overhang_tenth_mm, 0, 1'000))
         return "a limit of treads is outside its range";
-    // Time limits have no value that switches them off.
+    // No value switches a time limit off.
     constexpr std::int64_t kSecondNs = 1'000'000'000;
     if (!within(limits.frame_age_ns, std::int64_t{1}, kSecondNs) ||
         !within(limits.pose_age_ns, std::int64_t{1}, kSecondNs) ||

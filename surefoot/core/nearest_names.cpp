@@ -36,7 +36,7 @@ std::vector<std::string> nearest_names(std::string_view name,
         const std::string* name;
     };
     std::vector<Candidate> candidates;
-    // A foreign key may have any length; a distance beyond its own length says nothing.
+    // A key may have any length. A distance above the length of the name carries no information.
     const std::string_view key = name.substr(0, 128);
     for (const std::string& other : names) {
         const std::size_t distance = edit_distance(key, other);
@@ -49,7 +49,7 @@ std::vector<std::string> nearest_names(std::string_view name,
     });
     std::vector<std::string> nearest;
     for (const Candidate& candidate : candidates) {
-        // What is clearly worse than the best would only distract.
+        // Names that are clearly less similar than the best one are left out.
         if (candidate.distance > candidates.front().distance + 1) break;
         if (nearest.size() < count) nearest.push_back(*candidate.name);
     }

@@ -7,15 +7,15 @@
 #include <string_view>
 #include <vector>
 
-/// What a mistyped name may have meant: the one place for keys, verbs, scenes, rigs and machines.
+/// Suggestions for misspelled names: keys, verbs, scenes, rigs and machines all use them.
 namespace surefoot {
 
-/// Names in order of their likeness to `name` (edit distance), at most `count`, only plausible
-/// ones.
+/// At most `count` plausible names, most similar to `name` first (edit distance). Implausible names
+/// are left out.
 [[nodiscard]] std::vector<std::string> nearest_names(std::string_view name,
                                                      std::span<const std::string> names,
                                                      std::size_t count = 3);
-/// "; did you mean 'a' or 'b'?" from nearest_names, or an empty string.
+/// Suggestion text from nearest_names: "; did you mean 'a' or 'b'?", or an empty string.
 [[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string> names);
 
 }  // namespace surefoot

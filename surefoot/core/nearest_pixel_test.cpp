@@ -31,7 +31,7 @@ TEST(NearestPixel, RoundsAsLroundWithinTheImageAndIsNothingOutsideOfIt) {
 
 TEST(NearestPixel, PlacesBeyondAllIntegersAreOutside) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    // 2^32 + 3 is pixel 3 to a conversion that drops the upper bits.
+    // A conversion that drops the upper bits turns 2^32 + 3 into pixel 3.
     for (const double far :
          {std::nan(""), kInfinity, -kInfinity, 1e300, -1e300, 4294967299.0, -4294967293.0}) {
         EXPECT_FALSE(nearest_pixel(far, 2.0, 7, 5)) << far;

@@ -11,11 +11,11 @@ namespace surefoot {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Rigid motion. A variable `T_a_b` maps coordinates of b into a: `p_a = T_a_b * p_b`; inner names
+/// Rigid motion. `T_a_b` maps coordinates from b into a: `p_a = T_a_b * p_b`. The inner names
 /// cancel: `T_a_c = T_a_b * T_b_c`.
 ///
-/// Errors and covariances of a pose are ordered (translation, rotation), perturb on the right and
-/// live in the body frame b: R = R0 Exp(theta), t = t0 + R0 dp, with the 6-vector (dp, theta).
+/// Errors and covariances are ordered (translation, rotation). They perturb on the right, in the
+/// body frame b: R = R0 Exp(theta), t = t0 + R0 dp, with the 6-vector (dp, theta).
 struct Pose {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
     Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
@@ -23,12 +23,12 @@ struct Pose {
     [[nodiscard]] Pose inverse() const;
     [[nodiscard]] Eigen::Matrix3d R() const { return rotation.toRotationMatrix(); }
     [[nodiscard]] Eigen::Matrix4d matrix() const;
-    /// Nearest pose of a 4x4 rigid matrix (rotation re-normalised).
+    /// Nearest pose of a 4x4 rigid matrix; normalises the rotation.
     [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& T_a_b);
     [[nodiscard]] bool all_finite() const;
 };
 
-/// Where a body was at one instant; the world frame is that of the recording or file it came from.
+/// Pose of a body at one instant. The world frame is that of the recording or of the file.
 struct StampedPose {
     std::int64_t time_ns = 0;
     Pose T_world_body;
@@ -53,7 +53,7 @@ using Trajectory = std::vector<StampedPose>;
 /// Pose between `a` (s = 0) and `b` (s = 1): linear in translation, slerp in rotation.
 [[nodiscard]] Pose interpolate(const Pose& a, const Pose& b, double s);
 
-/// Covariance of T_a_c = T_a_b * T_b_c when the two motions err independently.
+/// Covariance of T_a_c = T_a_b * T_b_c if the errors of the two motions are independent.
 [[nodiscard]] Matrix6 compose_covariance(const Matrix6& covariance_ab,
                                          const Pose& T_b_c,
                                          const Matrix6& covariance_bc);

@@ -55,7 +55,7 @@ TEST(Pose, rotation_vector_of_a_half_turn_is_finite) {
 TEST(Pose, optical_axes_turn_into_body_axes) {
     const Pose T = T_body_optical();
     EXPECT_LT((T * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(1, 0, 0)).norm(),
-              kRounding);  // ahead
+              kRounding);  // forward
     EXPECT_LT((T * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, -1, 0)).norm(),
               kRounding);  // right
     EXPECT_LT((T * Eigen::Vector3d(0, 1, 0) - Eigen::Vector3d(0, 0, -1)).norm(),

@@ -5,9 +5,9 @@
 
 namespace surefoot {
 
-/// What is printed on a flat sheet, to draw it or to render it: black shapes on white paper, all in
-/// the plane z = 0 of the sheet's own frame, x to the right and y down as the camera sees it, z
-/// away from the viewer.
+/// Print on a flat sheet, for drawing and rendering: black shapes on white paper. All shapes lie in
+/// the plane z = 0 of the sheet's own frame. Seen by the camera, x points to the right, y down and
+/// z away from the viewer.
 struct PrintedSheet {
     struct Rectangle {
         double left_m = 0.0;
@@ -20,7 +20,7 @@ struct PrintedSheet {
         double y_m = 0.0;
         double radius_m = 0.0;
     };
-    Rectangle paper;  ///< with its white margin
+    Rectangle paper;  ///< including its white margin
     std::vector<Rectangle> rectangles;
     std::vector<Disc> discs;
 };

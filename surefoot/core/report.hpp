@@ -9,34 +9,34 @@
 
 namespace surefoot {
 
-/// How much of the chain to run for a frame: odometry alone, or depth and map too.
+/// How much of the pipeline runs for a frame: odometry alone, or also depth and map.
 enum class Work : std::uint8_t { odometry, full };
 
 enum class Stage : std::uint8_t { rectify, odometry, stereo, ground, fuse, traversability, stairs };
 inline constexpr int kStageCount = 7;
 [[nodiscard]] const char* to_string(Stage stage) noexcept;
 
-/// What happened to the points of one frame on their way into the map.
+/// Number of points and cells at each stage from the depth image of one frame to the map.
 struct FusionCounts {
-    std::int64_t points = 0;            ///< valid depth values offered
-    std::int64_t gated_range = 0;       ///< too near or too far
-    std::int64_t gated_height = 0;      ///< above or below the height cut
+    std::int64_t points = 0;            ///< valid depth values of the frame
+    std::int64_t gated_range = 0;       ///< points rejected: too near or too far
+    std::int64_t gated_height = 0;      ///< points rejected: above or below the height limits
     std::int64_t gated_confidence = 0;  ///< disparity jump, grazing incidence or likely outlier
-    std::int64_t gated_density = 0;     ///< radius outlier removal
-    std::int64_t gated_border = 0;      ///< in cells that reach beyond the image
-    std::int64_t outside = 0;           ///< beyond the map
+    std::int64_t gated_density = 0;     ///< points rejected by radius outlier removal
+    std::int64_t gated_border = 0;      ///< points in cells that extend beyond the image
+    std::int64_t outside = 0;           ///< points outside the map
     std::int64_t cells_measured = 0;    ///< cells that received a measurement
-    std::int64_t cells_new = 0;         ///< of these, unknown before
-    std::int64_t cells_fused = 0;       ///< of these, agreed with the cell (Mahalanobis gate)
-    std::int64_t cells_inflated = 0;    ///< of these, disagreed: variance grew instead
-    std::int64_t cells_cleared = 0;     ///< remembered, but lines of sight pass through: forgotten
+    std::int64_t cells_new = 0;         ///< measured cells that were unknown before
+    std::int64_t cells_fused = 0;       ///< measured cells that passed the Mahalanobis gate
+    std::int64_t cells_inflated = 0;    ///< measured cells that disagreed: their variance increased
+    std::int64_t cells_cleared = 0;     ///< cells cleared: rays pass through their old height
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };
 
-/// How the frames of a run came in; see FrameStatus.
+/// Delivery of the frames of a run, summed up; see FrameStatus.
 struct FrameStatusCounts {
-    std::int64_t repeated_frames = 0;        ///< their image had been there before
-    std::int64_t longest_freeze_frames = 0;  ///< most of these in a row
+    std::int64_t repeated_frames = 0;        ///< frames whose image is not new
+    std::int64_t longest_freeze_frames = 0;  ///< longest sequence of such frames
     std::int64_t torn_frames = 0;
     std::int64_t dropped_frames = 0;
     std::int64_t skipped_frames = 0;
@@ -45,23 +45,23 @@ struct FrameStatusCounts {
     FrameStatusCounts& operator+=(const FrameStatus& frame) noexcept;
 };
 
-/// The ground plane as seen in one frame, in the frame named by its producer.
+/// Ground plane of one frame. The producer names the coordinate frame.
 struct GroundObservation {
     bool accepted = false;
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, toward the sensor
-    double height_m = 0.0;                              ///< distance of the sensor from the plane
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, points to the sensor
+    double height_m = 0.0;                              ///< distance from the sensor to the plane
     double inlier_ratio = 0.0;
     double rms_m = 0.0;  ///< of the inliers
 };
 
-/// Everything that a dashboard, a log or a benchmark shows about one frame.
+/// All values of one frame that a dashboard, a log or a benchmark shows.
 struct FrameReport {
     std::int64_t time_ns = 0;
     int index = 0;
     Work work = Work::odometry;
     FrameStatus frame_status;
-    CameraState camera = CameraState::unknown;  ///< what the arrivals up to this one say
-    /// Of a repeated or torn frame: the last pose again, lost, with the covariance of unseen
+    CameraState camera = CameraState::unknown;  ///< from all frames up to this one
+    /// For a repeated or torn frame: the last pose, health lost, and the covariance of unobserved
     /// motion.
     MotionEstimate motion;
     std::int64_t depth_pixels = 0;  ///< pixels with a disparity
@@ -69,7 +69,7 @@ struct FrameReport {
     GroundObservation ground;  ///< in the body frame
     FusionCounts fusion;
     std::int64_t known_cells = 0;  ///< after this frame
-    /// Wall time per stage [ms]; exempt from determinism.
+    /// Wall time per stage [ms]. The only values that differ between equal runs.
     std::array<double, kStageCount> stage_ms{};
 };
 

@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-/// What went wrong, coarse enough to become an exit code.
+/// Class of a failure. It determines the exit code.
 enum class ErrorCode {
     usage,        ///< wrong call or configuration: exit 2
     input,        ///< a file, recording or device cannot be used: exit 1
@@ -18,15 +18,15 @@ enum class ErrorCode {
     interrupted,  ///< the user stopped the run: exit 1
 };
 
-/// A failure in words: what, where, value, limit, and what to do.
+/// A failure with its message: what, where, value, limit, and what to do.
 struct Error {
     ErrorCode code = ErrorCode::input;
     std::string message;
 };
 
-/// A value or the reason why there is none. Failures of the user's world (files, configuration,
-/// messages) travel in it; broken invariants of ours are SUREFOOT_ASSERT; what happens in the
-/// scene (blur, gaps) is an enum in a report.
+/// A value, or the reason for its absence. It carries failures of the user's files, configuration
+/// and messages. A broken invariant of the code is SUREFOOT_ASSERT instead. Events in the scene
+/// (blur, gaps) are enum values in a report.
 template <typename T>
 class [[nodiscard]] Result {
   public:

@@ -5,8 +5,8 @@
 
 namespace surefoot {
 
-/// Seeded generator with the same numbers on every platform: xoshiro256** (Blackman and Vigna
-/// 2018), state filled by splitmix64. Always passed in, never global.
+/// Seeded generator, the same numbers on every platform: xoshiro256** (Blackman and Vigna 2018),
+/// state filled by splitmix64. Callers pass it in; there is no global generator.
 class Rng {
   public:
     explicit Rng(std::uint64_t seed) noexcept;
@@ -26,7 +26,7 @@ class Rng {
     bool has_spare_normal_ = false;
 };
 
-/// Mixes a seed with a stream number, so that parallel parts draw independent numbers.
+/// Combines a seed with a stream number: parallel parts then draw independent numbers.
 [[nodiscard]] std::uint64_t mix_seed(std::uint64_t seed, std::uint64_t stream) noexcept;
 
 }  // namespace surefoot

@@ -22,7 +22,7 @@ TEST(Time, ASumWithSecondsBeyondAllClocksDoesNotOverflow) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     constexpr std::int64_t kHalfWay_ns = std::numeric_limits<std::int64_t>::max() / 2;
     for (const double far_s : {1e10, 1e300, kInfinity}) {
-        // The conversion gave the smallest integer: a time long ago.
+        // A plain conversion would give the smallest integer, a time in the distant past.
         EXPECT_GT(ns_from_seconds(far_s), 4'000'000'000 * kNanosecondsPerSecond) << far_s;
         EXPECT_GT(kHalfWay_ns + ns_from_seconds(far_s), kHalfWay_ns) << far_s;
         EXPECT_EQ(ns_from_seconds(-far_s), -ns_from_seconds(far_s));

@@ -10,13 +10,13 @@
 
 namespace surefoot {
 
-/// Rows of pixels that somebody else owns; valid only during the call it is passed to.
+/// Rows of pixels in memory owned by the caller; valid only during the call that receives it.
 template <typename T>
 struct ImageView {
     T* data = nullptr;
     int width = 0;
     int height = 0;
-    int stride = 0;  ///< elements from one row to the next
+    int stride = 0;  ///< elements between the starts of two rows
 
     [[nodiscard]] T* row(int v) const noexcept {
         return data + static_cast<std::ptrdiff_t>(v) * stride;
@@ -32,7 +32,7 @@ struct ImageView {
     }
 };
 
-/// Dense image, row-major without padding; `u` counts columns to the right, `v` rows downward.
+/// Dense image, row-major, without padding. `u` counts columns to the right, `v` rows down.
 template <typename T>
 class Image {
   public:
@@ -67,7 +67,7 @@ class Image {
         return u >= 0 && v >= 0 && u < width_ && v < height_;
     }
 
-    /// Keeps the allocation when the new size fits into it.
+    /// Reuses the memory if the new size fits. Pixel values are unspecified afterwards.
     void resize(int width, int height) {
         width_ = width;
         height_ = height;

@@ -25,12 +25,12 @@ const char* kind_of(mode_t mode) {
     if (S_ISSOCK(mode)) return "a socket";
     if (S_ISCHR(mode)) return "a device";
     if (S_ISBLK(mode)) return "a disk device";
-    return "no regular file";
+    return "not a regular file";
 }
 
 Error too_large(const std::string& path, std::uint64_t bytes, std::uint64_t max_bytes) {
     return input_error(fmt::format(
-        "{}: its {} bytes are more than the limit of {} bytes for such a file; check that this is "
+        "{}: its {} bytes are more than the limit of {} bytes for this format; check that this is "
         "the right file",
         path,
         bytes,
@@ -62,10 +62,11 @@ Status check_input(const std::string& path, std::uint64_t max_bytes, Accept acce
 
 Result<InputFile> InputFile::open(const std::string& path, std::uint64_t max_bytes, Accept accept) {
     struct stat status = {};
-    // Asked by name first: opening alone starts some devices (a watchdog, a tape).
+    // Checks the kind by name first: opening alone starts some devices (a watchdog, a tape).
     if (::stat(path.c_str(), &status) != 0) return cannot_read(path, errno);
     if (Status fits = check_kind(path, status, max_bytes, accept); !fits) return fits.error();
-    // A FIFO may have taken the name since: O_NONBLOCK keeps the opening from waiting for a writer.
+    // A FIFO may have replaced the file since then: with O_NONBLOCK, opening does not wait for a
+    // writer.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0) return cannot_read(path, errno);
     InputFile file(path, descriptor, 0);
@@ -112,11 +113,11 @@ Result<std::string> InputFile::read_at(std::uint64_t offset, std::uint64_t count
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return cannot_read(path_, errno);
         if (got == 0) {
-            return input_error(
-                fmt::format("{}: cannot read {} bytes from {} on: the file became shorter",
-                            path_,
-                            bytes.size(),
-                            offset));
+            return input_error(fmt::format(
+                "{}: cannot read {} bytes from byte {} on: the file became shorter while open",
+                path_,
+                bytes.size(),
+                offset));
         }
         done += static_cast<std::size_t>(got);
     }
@@ -129,7 +130,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
     std::string content;
     constexpr std::size_t kBlock = 1 << 18;
     std::size_t size = 0;
-    // Files of the kernel have no size, and others may grow: what counts is the end that is met.
+    // Files of the kernel have no size, and other files may grow: read until the end of the file.
     while (true) {
         const std::uint64_t announced = file->size() > size ? file->size() - size : 0;
         content.resize(size + std::max<std::size_t>(announced + 1, size == 0 ? 1 : kBlock));
@@ -139,7 +140,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
         size += piece->bytes;
         if (size > max_bytes) return too_large(path, size, max_bytes);
         if (piece->would_wait)
-            return input_error(path + ": cannot read: it would wait for more; give a regular file");
+            return input_error(path + ": cannot read: it has no data now; give a regular file");
         if (piece->bytes == 0) break;
     }
     content.resize(size);

@@ -7,10 +7,10 @@
 
 #include "surefoot/core/result.hpp"
 
-/// The one place where a user's file is opened for reading.
+/// The only module that opens a user's file for reading.
 namespace surefoot::files {
 
-/// The largest file of each format. A larger one is refused before anything of it is read.
+/// Largest size per format [bytes]. A larger file is refused before it is read.
 namespace limits {
 inline constexpr std::uint64_t kKeyBytes = 4096;              ///< tokens
 inline constexpr std::uint64_t kSettingsBytes = 4ULL << 20U;  ///< settings, rigs, machines, scenes
@@ -21,23 +21,23 @@ inline constexpr std::uint64_t kCloudBytes = 4ULL << 30U;     ///< clouds that a
 inline constexpr std::uint64_t kStreamBytes = 1ULL << 42U;    ///< videos and clouds read in pieces
 }  // namespace limits
 
-/// What a path may be.
+/// Kinds of file that a path may name.
 enum class Accept : std::uint8_t {
     regular,          ///< a regular file, also through links
-    regular_or_fifo,  ///< also a FIFO; `read` then says `would_wait` instead of waiting
+    regular_or_fifo,  ///< also a FIFO; `read` then reports `would_wait` and does not block
 };
 
-/// Error unless `path` can be opened for reading, is what `accept` allows, and holds at most
-/// `max_bytes`. For readers that open the file by its name themselves (videos).
+/// Error unless `path` can be opened for reading, is of an accepted kind, and has at most
+/// `max_bytes`. For readers that open the file themselves by its name (videos).
 [[nodiscard]] Status check_input(const std::string& path,
                                  std::uint64_t max_bytes,
                                  Accept accept = Accept::regular);
 
-/// A file that is open for reading. Opening never waits. One thread at a time.
+/// A file that is open for reading. Opening never blocks. Use by one thread at a time.
 class InputFile {
   public:
-    /// Errors (ErrorCode::input) name the path, what it is instead of a regular file, or its size
-    /// and the limit.
+    /// Errors (ErrorCode::input) name the path, and either its kind if it is not accepted, or its
+    /// size and the limit.
     [[nodiscard]] static Result<InputFile> open(const std::string& path,
                                                 std::uint64_t max_bytes,
                                                 Accept accept = Accept::regular);
@@ -45,18 +45,18 @@ class InputFile {
     InputFile(InputFile&& other) noexcept;
     InputFile& operator=(InputFile&& other) noexcept;
 
-    /// When it was opened; 0 for a FIFO and for files of the kernel.
+    /// Size when opened [bytes]; 0 for a FIFO and for files of the kernel.
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
     struct Piece {
-        std::size_t bytes = 0;    ///< read into the buffer
-        bool would_wait = false;  ///< a FIFO that holds nothing now
+        std::size_t bytes = 0;    ///< bytes read into the buffer
+        bool would_wait = false;  ///< a FIFO without data at the moment
     };
-    /// The next bytes; none at the end.
+    /// Reads the next bytes; 0 bytes at the end of the file.
     [[nodiscard]] Result<Piece> read(std::span<char> buffer);
-    /// `count` bytes from `offset` on, fewer where the file as it was opened ends. An error when
-    /// the file became shorter.
+    /// `count` bytes from `offset`; fewer if the file, as opened, ends before. An error if the file
+    /// became shorter.
     [[nodiscard]] Result<std::string> read_at(std::uint64_t offset, std::uint64_t count);
 
   private:
@@ -67,7 +67,7 @@ class InputFile {
     std::uint64_t size_ = 0;
 };
 
-/// Content of a regular file.
+/// Reads a whole regular file.
 [[nodiscard]] Result<std::string> read_file(const std::string& path,
                                             std::uint64_t max_bytes = limits::kTextBytes);
 

@@ -15,7 +15,7 @@
 namespace surefoot::files {
 namespace {
 
-/// A folder of its own with something of every kind that a path may be.
+/// A temporary folder with every kind of file that a path may name.
 class InputFileTest : public ::testing::Test {
   protected:
     void SetUp() override {

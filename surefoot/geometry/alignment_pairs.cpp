@@ -15,13 +15,14 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t kBorderNeighbours = 31;
-/// The middle of half a disc lies 0.42 of its radius off; that of 30 points of a whole one by
-/// chance 0.09. What is asked of both clouds together favours neither: a limit on each by itself
-/// would draw a border towards where chance has it. From the first share on a pair begins to count,
-/// at the second it counts wholly, so that no small step changes much.
+/// The mean of half a disc of points lies 0.42 of its radius off the centre; the mean of 30 points
+/// of a whole disc lies 0.09 off by chance. The limit applies to the mean share of both clouds: a
+/// limit on each cloud alone would draw a border towards its chance offset. A pair begins to count
+/// at the first share and counts fully at the second, so that small steps change little.
 constexpr double kBegins = 0.3;
 constexpr double kWhole = 0.35;
-/// Of one cloud, to be looked at: together with half a disc of the other it just counts.
+/// Share from which a point of one cloud is a candidate: with half a disc of the other cloud its
+/// pair just counts.
 constexpr double kCandidate = 0.18;
 
 std::optional<Vector3d> to_middle(const KdTree& cloud, const Vector3f& at_m, float radius_m) {
@@ -108,7 +109,7 @@ SurfacePairs::Known SurfacePairs::surface_at(std::uint32_t index) const {
         index, surface_of_neighbours(reference_, p_m, near), std::sqrt(near.back().sq_distance_m2)};
 }
 
-/// The share of the pairs that counts; of pairs that are as far apart as the last, all do.
+/// Keeps the nearest share of the pairs. Pairs as far apart as the last kept pair stay too.
 void SurfacePairs::keep_nearest() {
     std::vector<double> sq_apart_m2;
     for (const Pair& pair : pairs_) {
@@ -123,8 +124,8 @@ void SurfacePairs::keep_nearest() {
     for (Pair& pair : pairs_) pair.counts = pair.counts && pair.sq_apart_m2 <= limit_m2;
 }
 
-/// Where the neighbours are thicker than the noise of the surfaces, by more than a share of the
-/// spacing, they are those of two surfaces.
+/// Marks edges: neighbours whose thickness exceeds the surface noise by a share of the point
+/// spacing belong to two surfaces.
 void SurfacePairs::find_edges() {
     constexpr double kNoise = 2.0;
     constexpr double kShare = 0.125;

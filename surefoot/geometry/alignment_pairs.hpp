@@ -17,32 +17,32 @@ namespace surefoot::geometry {
 
 struct AlignmentConfig;
 
-/// Points that one thread takes, and that are summed at once.
+/// Number of points of one piece of work. A thread takes a piece and sums it up at once.
 inline constexpr std::size_t kAlignmentPiece = 2048;
 
-/// Something of the moved cloud that should lie on something of the reference: a point on a
-/// surface, or where the cloud ends.
+/// A point or border of the moved cloud, paired with the place of the reference cloud on which it
+/// should lie.
 struct Pair {
-    Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< moved, as it lies now
+    Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< moved point at its current position
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double across_m = 0.0;
     double sq_apart_m2 = 0.0;
     double weight = 1.0;
-    /// Share of the pair that lies at an edge between surfaces, where the normal is that of
-    /// neither.
+    /// Share of an edge between two surfaces in [0, 1]. At an edge the normal belongs to neither
+    /// surface.
     double edge = 0.0;
-    double ball_m = 0.0;       ///< radius of the neighbours that gave the normal, or of the border
-    double thickness_m = 0.0;  ///< of those neighbours across the surface
+    double ball_m = 0.0;       ///< radius of the neighbours behind the normal or the border
+    double thickness_m = 0.0;  ///< rms of those neighbours across the surface
     std::uint32_t reference = Neighbour::kNone;
     bool counts = false;
 };
 
-/// Distance of the neighbours in a square lattice, of which so many others lie in such a ball.
+/// Point distance in a square lattice with `others` further points in a ball of that radius.
 [[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
-/// Median over the pairs that count; 0 without one.
+/// Median over the pairs that count; 0 if no pair counts.
 [[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);
 
-/// Pairs of nearest points. Asked again and again, it keeps the normals that it knows.
+/// Pairs of nearest points. Keeps the normals of known points between calls of `at`.
 class SurfacePairs {
   public:
     SurfacePairs(const KdTree& reference,
@@ -70,29 +70,29 @@ class SurfacePairs {
     const AlignmentConfig& config_;
     Executor& executor_;
     std::vector<Pair> pairs_;
-    std::vector<Known> nearest_;  ///< of each moved point: most keep theirs from step to step
+    std::vector<Known> nearest_;  ///< per moved point: mostly valid for the next step too
 };
 
-/// Where the moved cloud ends: points whose neighbours lie to one side. What is compared are the
-/// middles of what both clouds have within the same ball; a border moves them, and points in the
-/// middle of a surface do not.
+/// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the mean of
+/// the points that both clouds have within the same ball. A border shifts this mean; the interior
+/// of a surface does not.
 class BorderPairs {
   public:
-    /// `moved`: the tree of the points `moved_m`.
+    /// `moved`: the k-d tree of the points `moved_m`.
     BorderPairs(const KdTree& reference,
                 const KdTree& moved,
                 const std::vector<Eigen::Vector3f>& moved_m,
                 Executor& executor);
 
-    /// `surface`: the pairs of the points, whose normals tell what lies within the surface.
+    /// `surface`: the pairs of the same points. Their normals define the plane of the surface.
     const std::vector<Pair>& at(const Pose& T_reference_moved, const std::vector<Pair>& surface);
     [[nodiscard]] const std::vector<Pair>& last() const noexcept { return pairs_; }
 
   private:
     struct Border {
-        std::size_t index;  ///< of the point
+        std::size_t index;  ///< index of the point
         float radius_m;
-        Eigen::Vector3d to_middle_m;  ///< in the axes of the moved cloud
+        Eigen::Vector3d to_middle_m;  ///< to the mean of its neighbours, in axes of the moved cloud
     };
     [[nodiscard]] Pair pair_up(const Border& border, const Pose& T, const Pair& surface) const;
 

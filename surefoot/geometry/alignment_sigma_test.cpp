@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Points = std::vector<Vector3f>;
 
-/// Ground with steps along x and y, as height maps have it: no points on faces.
+/// Ground with steps along x and y like a height map: no points on the faces.
 class SteppedGround {
   public:
     explicit SteppedGround(Rng& rng) {
@@ -48,11 +48,11 @@ class SteppedGround {
 struct Cell {
     double spacing_m;
     double noise_m;
-    bool lattice;  ///< or points at random, as many
+    bool lattice;  ///< true: points on a lattice; false: as many random points
 };
 
-/// The ground as a sensor whose axes lie turned and moved sees it: `T_ground_sensor` maps its
-/// points onto the ground.
+/// The ground in the axes of a rotated and shifted sensor: `T_ground_sensor` maps its points onto
+/// the ground.
 Points seen(const SteppedGround& ground, const Pose& T_ground_sensor, const Cell& cell, Rng& rng) {
     constexpr double kSide_m = 2.0;
     const auto count = static_cast<int>(std::lround(kSide_m / cell.spacing_m));
@@ -112,7 +112,7 @@ TEST(AlignmentSigma, CoversTheErrorOnLatticesAndAtRandom) {
                      << 1e3 * cell.spacing_m << " mm, noise " << 1e3 * cell.noise_m << " mm, "
                      << (cell.lattice ? "lattice" : "random"));
         const Nees nees = nees_of(cell, kPairs, 100);
-        // The mean of the squares is 1 where sigma is right, and less where it is an upper bound.
+        // The mean of the squares is 1 for a right sigma, and less for an upper bound.
         EXPECT_LT(nees.place, 1.5);
         EXPECT_LT(nees.turn, 1.5);
         EXPECT_LT(nees.worst, 3.0);
@@ -121,8 +121,8 @@ TEST(AlignmentSigma, CoversTheErrorOnLatticesAndAtRandom) {
     }
 }
 
-/// A terrain of four levels, the same 1600 points in both clouds: what a search for nearest points
-/// makes of it is 0.5 deg off.
+/// A terrain of four levels with the same 1600 points in both clouds. A search for nearest points
+/// alone is 0.5 deg off.
 TEST(AlignmentSigma, CoversTheErrorOfTheSameLatticeTurned) {
     Points points_m;
     for (int iy = 0; iy < 40; ++iy) {
@@ -153,7 +153,7 @@ TEST(AlignmentSigma, FivePointsAreNoAnswer) {
     for (const Vector3f& p_m : reference_m) moved_m.push_back(p_m + Vector3f(0.7F, 0.0F, 0.0F));
     const CloudAlignment found = align_clouds(KdTree(reference_m), moved_m, Pose{}, {});
     EXPECT_EQ(found.outcome, AlignmentOutcome::too_few_points);
-    // A thousand points on the same five say no more.
+    // A thousand points on the same five reference points add no evidence.
     Points many_m;
     for (int i = 0; i < 1000; ++i) many_m.push_back(moved_m[static_cast<std::size_t>(i % 5)]);
     EXPECT_EQ(align_clouds(KdTree(reference_m), many_m, Pose{}, {}).outcome,
@@ -161,7 +161,7 @@ TEST(AlignmentSigma, FivePointsAreNoAnswer) {
 }
 
 TEST(AlignmentSigma, CloudsApartAreNoAnswer) {
-    // Two floors: nothing draws them together sideways.
+    // Two floors: no evidence fixes them sideways.
     Rng rng(3);
     const auto floor = [&](double x_m) {
         Points points_m;
@@ -179,7 +179,7 @@ TEST(AlignmentSigma, CloudsApartAreNoAnswer) {
     const CloudAlignment far = align_clouds(reference, floor(100.0), Pose{}, {});
     EXPECT_EQ(far.outcome, AlignmentOutcome::no_overlap);
     EXPECT_LT(far.overlap, 0.01);
-    // A corner of 10 % is enough, half a percent is not.
+    // An overlapping corner of 10 % is enough; half a percent is not.
     EXPECT_TRUE(align_clouds(reference, floor(1.7), Pose{}, {}).overlap > 0.05);
 }
 

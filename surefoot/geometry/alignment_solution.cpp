@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array kKinds{HeldBy::surfaces, HeldBy::edges, HeldBy::borders};
 
-/// Pairs of one neighbourhood, by the cube that they lie in.
+/// Groups pairs into cubes of space, to find errors that neighbouring pairs share.
 class Blocks {
   public:
     explicit Blocks(double edge_m) : edge_m_(edge_m) {}
@@ -39,7 +39,7 @@ class Blocks {
     std::map<std::array<double, 3>, Vector6d> sums_;
 };
 
-/// Covariance of `right` of a kind, from the scatter of its pairs.
+/// Covariance of `Normals6::right` for one kind of evidence, from the scatter of its pairs.
 Matrix6d scatter_of(HeldBy kind,
                     std::span<const Pair> pairs,
                     const Lever& lever,
@@ -57,7 +57,7 @@ Matrix6d scatter_of(HeldBy kind,
         blocks.add(pair, gradient);
         count += 1.0;
     }
-    // Six unknowns took their part of the scatter away.
+    // The fit of six unknowns has reduced the scatter.
     constexpr double kUnknowns = 6.0;
     alone *= count / std::max(count - kUnknowns, 1.0);
     const Matrix6d together =
@@ -67,10 +67,10 @@ Matrix6d scatter_of(HeldBy kind,
     return std::max(shared, 1.0) * alone;
 }
 
-/// Variance along each direction that edges or borders hold, whatever the number of their pairs.
+/// Variance of each direction that edges or borders fix. It does not fall with the number of pairs.
 double systematic_var_m2(HeldBy kind, std::span<const Pair> pairs, double cell_var_m2) {
     if (kind == HeldBy::edges) return cell_var_m2;
-    constexpr double kEnds = 0.05;  // one sigma of at most a tenth
+    constexpr double kEnds = 0.05;  // one sigma of an error of at most a tenth
     const double ends_m = kEnds * median_over(pairs, &Pair::ball_m);
     return cell_var_m2 + ends_m * ends_m;
 }
@@ -125,12 +125,13 @@ Normals6 sum_up(HeldBy kind, std::span<const Pair> pairs, const Lever& lever, Ex
 }
 
 AlignmentSolution solve(const std::array<Normals6, kHolds>& sums) {
-    // Normals of noisy points are off by some degrees: what they seem to hold of a direction along
-    // the surface is the square of that. A wall across it holds as much with one point in 200.
+    // Normals of noisy points are wrong by some degrees. They seem to fix a direction along the
+    // surface with the square of this error. A wall across that direction fixes it equally well
+    // with one point in 200.
     constexpr std::array kLeastShare{5e-3, 5e-3, 5e-2};
     constexpr std::array<std::int64_t, kHolds> kFewest{0, 0, 30};
     AlignmentSolution solution;
-    Eigen::MatrixXd rest = Matrix6d::Identity();  // directions that nothing holds yet, as columns
+    Eigen::MatrixXd rest = Matrix6d::Identity();  // columns: directions that are still free
     for (std::size_t kind = 0; kind < kHolds && rest.cols() > 0; ++kind) {
         const Normals6& sum = sums[kind];
         if (sum.pairs < kFewest[kind]) continue;
@@ -176,12 +177,12 @@ AlignmentSigma alignment_sigma(std::span<const Pair> surface,
             left += weight * row * row.transpose();
         }
         const Matrix6d rest = Matrix6d::Identity() - gain * left;
-        // Onto the directions that this kind holds: the eigenvectors of its gain.
+        // Projects onto the directions that this kind fixes: the eigenvectors of its gain.
         const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(gain);
         Matrix6d held = Matrix6d::Zero();
         double var_m2 = systematic_var_m2(kind, pairs, cell_var_m2);
         for (int i = 6 - solution.directions[number]; i < 6; ++i) {
-            // A few pairs that hold a direction against all others may lie at edges unnoticed.
+            // A few pairs that alone fix a direction may lie at undetected edges.
             const bool weak = kWeakShare * pair_weight * eigen.eigenvalues()[i] > 1.0;
             if (kind == HeldBy::surfaces) var_m2 = weak ? cell_var_m2 : 0.0;
             held += var_m2 * eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();

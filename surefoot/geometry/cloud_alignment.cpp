@@ -25,7 +25,7 @@ std::vector<Vector3f> taken_evenly(std::span<const Vector3f> points_m, int most)
     return taken_m;
 }
 
-/// Turns count as what they move at the typical distance from the middle.
+/// Scales rotations to the shift that they cause at the typical distance from the centre.
 Lever lever_of(std::span<const Vector3f> points_m) {
     const auto n = static_cast<double>(points_m.size());
     Lever lever;
@@ -39,14 +39,14 @@ Lever lever_of(std::span<const Vector3f> points_m) {
     return lever;
 }
 
-/// Turns about the pivot, and moves.
+/// Rotates about the pivot, then shifts.
 void apply(const Vector6d& x, const Lever& lever, Pose& T) {
     const Eigen::Quaterniond turn = exp_so3(x.tail<3>() / lever.length_m);
     T.translation_m = turn * (T.translation_m - lever.pivot_m) + lever.pivot_m + x.head<3>();
     T.rotation = (turn * T.rotation).normalized();
 }
 
-/// Points of the reference that pairs lie on: many points on one of them say it once.
+/// Number of different reference points in pairs: many pairs with one point count once.
 std::int64_t points_paired_with(std::span<const Pair> pairs) {
     std::vector<std::uint32_t> points;
     for (const Pair& pair : pairs) {
@@ -56,8 +56,8 @@ std::int64_t points_paired_with(std::span<const Pair> pairs) {
     return std::unique(points.begin(), points.end()) - points.begin();
 }
 
-/// Share of the moved points that lie where the reference has points: no farther from the nearest
-/// than that one's neighbours, and what the surfaces scatter.
+/// Share of the moved points that lie at points of the reference: not farther from the nearest
+/// reference point than its neighbours, plus the scatter of the surfaces.
 double overlap_of(std::span<const Pair> pairs, double rms_m) {
     std::int64_t there = 0;
     for (const Pair& pair : pairs) {
@@ -67,7 +67,7 @@ double overlap_of(std::span<const Pair> pairs, double rms_m) {
     return static_cast<double>(there) / static_cast<double>(pairs.size());
 }
 
-/// Of where something ends between two points of a cloud, from some of its points.
+/// Variance of the position of an end between two points of a cloud, from a sample of its points.
 double cell_var_m2(const KdTree& cloud) {
     constexpr std::size_t kAsked = 2000;
     constexpr int kOthers = 30;
@@ -84,8 +84,8 @@ double cell_var_m2(const KdTree& cloud) {
     return cell_m * cell_m / 12.0;
 }
 
-/// Whether what was found is an answer. The scatter of so many points tells its sigma to 13 %, and
-/// a normal has 30 neighbours of its own.
+/// Decides whether the result is valid. With 30 spare points the scatter gives its sigma to 13 %; a
+/// normal uses 30 neighbours too.
 AlignmentOutcome outcome_of(const CloudAlignment& found, bool settled, std::int64_t points) {
     constexpr std::int64_t kFewestToSpare = 30;
     constexpr double kLeastOverlap = 0.05;
@@ -148,7 +148,8 @@ CloudAlignment align_clouds(const KdTree& reference,
     if (!result.steps.empty()) {
         const AlignmentStep& last = result.steps.back();
         result.overlap = overlap_of(pairs.last(), last.rms_m);
-        // Pairs that change sides to and fro move it for ever; it is settled within its sigma.
+        // Pairs that switch back and forth would never settle. The result counts as settled if the
+        // step is small against its sigma.
         constexpr double kShare = 0.1;
         settled = settled || (last.step_m < kShare * result.sigma_m &&
                               last.step_rad < kShare * result.sigma_rad);

@@ -43,7 +43,7 @@ struct Error {
     double place_m;
     double turn_rad;
 };
-/// At the middle of the corner.
+/// Error at the middle of the corner.
 Error error_of(const Pose& T_reference_moved) {
     const Pose rest = T_reference_moved * kTruth;
     const Eigen::Vector3d middle_m(1.0, 1.0, 1.0);
@@ -57,7 +57,8 @@ TEST(CloudAlignment, FindsHowACloudWasMoved) {
     EXPECT_TRUE(found.converged());
     EXPECT_EQ(found.free_directions, 0);
     const Error error = error_of(found.T_reference_moved);
-    // Noise of both clouds over 20 000 pairs would leave 0.03 mm; normals of 30 points add to it.
+    // The noise of both clouds over 20 000 pairs allows 0.03 mm; the normals of 30 points add to
+    // it.
     EXPECT_LT(error.place_m, 5e-4);
     EXPECT_LT(error.turn_rad, 5e-4);
     EXPECT_LT(found.steps.back().rms_m, 2.0 * kNoise_m);
@@ -95,7 +96,7 @@ TEST(CloudAlignment, ABareFloorLeavesTheGuessWhereItHoldsNothing) {
     EXPECT_TRUE(found.converged());
     EXPECT_EQ(found.free_directions, 3);
     EXPECT_NEAR(found.T_reference_moved.translation_m.z(), -0.03, 3e-4);
-    // Sideways only what the tilt brings along.
+    // Sideways the cloud moves only as much as its tilt changes.
     EXPECT_NEAR(found.T_reference_moved.translation_m.x(), 0.011, 1e-4);
     EXPECT_NEAR(found.T_reference_moved.translation_m.y(), -0.007, 1e-4);
 }
@@ -110,15 +111,15 @@ TEST(CloudAlignment, WhereSurfacesHoldNothingBordersDo) {
     EXPECT_EQ(found.free_directions, 0);
     const Eigen::Vector3d middle_m(1.0, 1.0, 0.0);
     const Pose rest = found.T_reference_moved * off;
-    // The middle of 30 points 14 mm apart is off by 5 mm in each cloud, and moves by half of what
-    // the cloud moves; some 240 points on two borders tell each direction: 0.9 mm, one sigma.
+    // The mean of 30 points 14 mm apart is 5 mm off in each cloud, and moves by half of the motion
+    // of the cloud. About 240 points on two borders fix each direction: 0.9 mm, one sigma.
     constexpr double kBorderSigma_m = 9e-4;
     EXPECT_LT((rest * middle_m - middle_m).norm(), 4.0 * kBorderSigma_m);
     EXPECT_LT(Eigen::AngleAxisd(rest.rotation).angle(), 4.0 * kBorderSigma_m);
 }
 
 TEST(CloudAlignment, WhereAScanEndsIsNoBorderOfThePlace) {
-    // The moved cloud saw half of the floor: its new end lies in the middle of the reference.
+    // The moved cloud covers half of the floor: its new end lies in the middle of the reference.
     const KdTree reference(corner(20000, false, 5));
     Points half_m;
     for (const Vector3f& p_m : corner(20000, false, 6)) {
@@ -126,9 +127,9 @@ TEST(CloudAlignment, WhereAScanEndsIsNoBorderOfThePlace) {
     }
     const Pose off{Eigen::Quaterniond::Identity(), {0.01, -0.007, 0.0}};
     const CloudAlignment found = align_clouds(reference, moved_by(off, half_m), Pose{}, {});
-    // One border is left along x. A few points of the new end look as if the reference ended there,
-    // which draws by up to a tenth of the balls' radius (60 mm on a border) where nothing else
-    // holds.
+    // One border remains along x. At a few points of the new end the reference seems to end too.
+    // Where no other evidence fixes the direction, they shift the result by up to a tenth of the
+    // balls' radius (60 mm on a border).
     const Eigen::Vector3d middle_m(0.5, 1.0, 0.0);
     EXPECT_LT((found.T_reference_moved * off * middle_m - middle_m).norm(), 6e-3);
 }
@@ -137,7 +138,7 @@ TEST(CloudAlignment, TrimmingAndReachLeaveOutWhatIsNotThere) {
     const KdTree reference(corner(20000, true, 7));
     Points seen_m = corner(20000, true, 8);
     Rng rng(9);
-    for (std::size_t i = 0; i < 4000; ++i) {  // a box that was not there before
+    for (std::size_t i = 0; i < 4000; ++i) {  // a box that only the moved cloud contains
         seen_m.emplace_back(static_cast<float>(rng.uniform(0.5, 1.0)),
                             static_cast<float>(rng.uniform(0.5, 1.0)),
                             0.4F);
@@ -165,7 +166,7 @@ TEST(CloudAlignment, NoPairsMeansTheGuess) {
     EXPECT_FALSE(far.converged());
     EXPECT_EQ(far.free_directions, 6);
     EXPECT_EQ(far.T_reference_moved.translation_m, guess.translation_m);
-    // One point a thousand times has no surface.
+    // A thousand copies of one point have no surface.
     const Points same(1000, Vector3f(1.0F, 2.0F, 3.0F));
     EXPECT_FALSE(align_clouds(KdTree(same), same, Pose{}, {}).converged());
 }

@@ -12,23 +12,24 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Points of a leaf, at most. Searches of one million points took least time with 8 to 16.
+/// Largest number of points in a leaf. Searches of one million points were fastest with 8 to 16.
 constexpr std::size_t kLeaf = 12;
-/// Branches that each are a piece of work of their own.
+/// Number of branches that are separate pieces of work.
 constexpr int kParallelLevels = 5;
-/// Below this the pieces are not worth their threads.
+/// Smaller trees are built by one thread: threads would cost more than they save.
 constexpr std::size_t kSmallestPiece = 2048;
-/// Sums of three squares are off by less; regions are looked at where they touch a box within it.
+/// Rounding limit of a sum of three squares. A search enters regions that touch a box within this
+/// limit.
 constexpr float kRounding = 1.0F - 4e-7F;
 
 int level_of(std::uint32_t node) noexcept {
     return static_cast<int>(std::bit_width(node)) - 1;
 }
 
-/// Always summed in this order: roundings are monotone, so that no point of a box is nearer, in
-/// floats, than the offset to the box says. Searches need no slack for roundings, and leave out
-/// what is just as far as what they have: without that, copies of points and surfaces seen from far
-/// away would be searched from end to end.
+/// Always sums in this order. Roundings are monotone: in floats, no point of a box is nearer than
+/// the offset to the box. Searches therefore need no tolerance and can skip boxes at exactly the
+/// distance of the current result. Otherwise copies of points, and surfaces far from the query,
+/// would be searched completely.
 float sq_norm(float dx, float dy, float dz) noexcept {
     return dx * dx + dy * dy + dz * dz;
 }
@@ -41,7 +42,7 @@ float sq_distance(const Vector3f& a, const Vector3f& b) noexcept {
     return sq_norm(a.x() - b.x(), a.y() - b.y(), a.z() - b.z());
 }
 
-/// One nearest point.
+/// Keeps one nearest point.
 struct OneNearest {
     Vector3f query_m;
     Neighbour best;
@@ -57,7 +58,7 @@ struct OneNearest {
     }
 };
 
-/// Several, sorted by insertion: they are few.
+/// Keeps several nearest points, sorted by insertion: they are few.
 struct SomeNearest {
     Vector3f query_m;
     std::span<Neighbour> found;
@@ -80,7 +81,7 @@ struct SomeNearest {
     }
 };
 
-/// A search that counts what it does.
+/// Counts the work of a search.
 template <typename Search>
 struct Counted : Search {
     SearchWork work;
@@ -102,8 +103,8 @@ KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
     nodes_.resize(std::size_t{1} << levels_);
     box_ = box_of(points_m_);
     SUREFOOT_ASSERT(box_.low_m.minCoeff() >= -kFarthest_m && box_.high_m.maxCoeff() <= kFarthest_m);
-    // The first levels are cut one after the other, then each branch by itself: the same tree for
-    // any number of threads.
+    // The first levels are split one after the other, then each branch separately. The tree does
+    // not depend on the number of threads.
     const int shared = points_m_.size() >> kParallelLevels < kSmallestPiece
                            ? 0
                            : std::min(levels_, kParallelLevels);
@@ -115,7 +116,7 @@ KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
                           [&](int i) { build((1U << shared) + static_cast<std::uint32_t>(i)); });
 }
 
-/// Halves the points of a node across the longer side of their box.
+/// Splits the points of a node in two halves across the longest side of their box.
 void KdTree::cut(std::uint32_t node) {
     const int level = level_of(node);
     const std::uint64_t number = node - (1U << level);
@@ -219,7 +220,7 @@ SearchWork KdTree::work_of_nearest(const Vector3f& query_m, std::size_t neighbou
     return search.work;
 }
 
-/// By coordinates alone: squares of distances below 1e-23 m are zero for points that differ.
+/// Compares coordinates only: squared distances below 1e-23 m are zero for different points.
 std::uint32_t KdTree::find_below(std::uint32_t node,
                                  const Vector3f& point_m,
                                  SearchWork& work) const {
@@ -253,7 +254,7 @@ SearchWork KdTree::work_of_find(const Vector3f& point_m) const {
     return work;
 }
 
-/// Visits the leaves whose box the region may touch.
+/// Visits the leaves whose box may touch the region.
 template <typename Region>
 void KdTree::walk(const Region& region,
                   std::uint32_t node,
@@ -284,8 +285,9 @@ struct BallRegion {
     }
 };
 
-/// Axes that tell a box from a cylinder: those of the box, that of the cylinder and two across it
-/// (Ericson 2005, Real-Time Collision Detection, 5.2.1). Which others there are does not pay.
+/// Separating axes of a box and a cylinder: the axes of the box, the axis of the cylinder and two
+/// across it (Ericson 2005, Real-Time Collision Detection, 5.2.1). Further axes cost more than they
+/// save.
 class CylinderRegion {
   public:
     explicit CylinderRegion(const Cylinder& c) : middle_m_(c.middle_m) {
@@ -295,7 +297,7 @@ class CylinderRegion {
         reach_m_ = {c.half_length_m, c.radius_m, c.radius_m};
         const Vector3f across = (Vector3f::Ones() - c.axis.cwiseAbs2()).cwiseMax(0.0F).cwiseSqrt();
         box_m_ = c.half_length_m * c.axis.cwiseAbs() + c.radius_m * across;
-        // What roundings of coordinates of this size may add up to.
+        // Upper bound of the rounding errors of coordinates of this size.
         const Vector3f most = middle_m_.cwiseAbs() + box_m_;
         slack_m_ = 1e-6F * most.maxCoeff();
     }
@@ -312,7 +314,7 @@ class CylinderRegion {
     Vector3f middle_m_;
     Eigen::Matrix3f axes_;
     Vector3f reach_m_;  ///< along the axes
-    Vector3f box_m_;    ///< along those of the box
+    Vector3f box_m_;    ///< along the axes of the box
     float slack_m_ = 0.0F;
 };
 

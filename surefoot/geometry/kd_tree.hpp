@@ -12,7 +12,7 @@
 
 namespace surefoot::geometry {
 
-/// A point of a tree and how far it is.
+/// A point of a tree with its squared distance from the query.
 struct Neighbour {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t index = kNone;  ///< in `KdTree::points_m`
@@ -25,7 +25,7 @@ struct SearchWork {
     std::size_t points = 0;
 };
 
-/// A cylinder by the middle of its axis.
+/// A cylinder, given by the middle of its axis.
 struct Cylinder {
     Eigen::Vector3f middle_m = Eigen::Vector3f::Zero();
     Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();  ///< unit
@@ -33,55 +33,55 @@ struct Cylinder {
     float half_length_m = 0.0F;
 };
 
-/// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). It takes the
-/// points over and puts them into an order of its own, leaf by leaf, so that a leaf is a run of
-/// memory and no index is kept: 12 bytes a point and about one more for the nodes. Points are
-/// floats, relative to an origin near them; distances are those of a search through all points, to
-/// the last bit. Searches are const and may run on many threads.
+/// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). The tree
+/// owns the points and stores them leaf by leaf, without an index: 12 bytes a point and
+/// about one byte more for the nodes. Points are floats, relative to a near origin.
+/// Distances equal those of a search through all points, to the last bit. Searches are const
+/// and thread-safe.
 ///
-/// Equal points are one leaf of any size, so that a cloud of copies costs no more than any other.
+/// Equal points form one leaf of any size, so that a cloud of copies is not slower than others.
 ///
-/// Errors: none; points must be finite, no farther than `kFarthest_m` from zero along each axis,
-/// and fewer than 2^32 - 1.
+/// No errors. Points must be finite, within `kFarthest_m` of zero along each axis, and fewer than
+/// 2^32 - 1.
 class KdTree {
   public:
-    /// Squares of distances up to here are finite as floats.
+    /// Squares of distances up to this one are finite as floats.
     static constexpr float kFarthest_m = 1e18F;
 
     explicit KdTree(std::vector<Eigen::Vector3f> points_m, Executor& executor = serial());
 
     [[nodiscard]] bool empty() const noexcept { return points_m_.empty(); }
-    /// In the order of the tree.
+    /// All points, in the order of the tree.
     [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const noexcept { return points_m_; }
 
-    /// The nearest point, or `start` where none is nearer than it (also where the query is so far
-    /// away that the square of the distance is no finite float). A start that is near already (that
-    /// of the query before) makes the search short.
+    /// The nearest point; `start` if no point is nearer. Also `start` if the query is so far away
+    /// that the squared distance is not a finite float. A near start (for example the result of the
+    /// previous query) makes the search short.
     [[nodiscard]] Neighbour nearest(const Eigen::Vector3f& query_m, Neighbour start = {}) const;
-    /// What `start` should be: point `index` as a neighbour of `query_m`.
+    /// Makes a `start` for `nearest`: point `index` as a neighbour of `query_m`.
     [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
 
-    /// The nearest points, ascending; a query that is a point of the tree is one of its own.
-    /// Returns how many there are: `found.size()`, or all points where there are fewer.
+    /// The nearest points, ascending. A query that is a point of the tree finds itself too. Returns
+    /// their number: `found.size()`, or the number of all points if smaller.
     std::size_t nearest(const Eigen::Vector3f& query_m, std::span<Neighbour> found) const;
 
-    /// A point with exactly these coordinates; `Neighbour::kNone` where there is none.
+    /// Index of a point with exactly these coordinates; `Neighbour::kNone` if none exists.
     [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
 
-    /// What a search for the `neighbours` nearest points, and `find`, look at: a count that tells
-    /// a slow search from a slow machine.
+    /// Nodes and points that a search for `neighbours` points, or `find`, visits. Tests use it:
+    /// unlike a time it does not depend on the computer.
     [[nodiscard]] SearchWork work_of_nearest(const Eigen::Vector3f& query_m,
                                              std::size_t neighbours) const;
     [[nodiscard]] SearchWork work_of_find(const Eigen::Vector3f& point_m) const;
 
-    /// Calls `visit(std::span<const Eigen::Vector3f> run, std::size_t copies)` with runs of points
-    /// that hold all those of the ball, and others. Each point of a run stands for so many copies
-    /// of itself.
+    /// Calls `visit(std::span<const Eigen::Vector3f> run, std::size_t copies)` with runs of points.
+    /// The runs contain all points of the ball, and some outside it. Each point of a run stands for
+    /// `copies` equal points.
     template <typename Visit>
     void runs_near_ball(const Eigen::Vector3f& middle_m, float radius_m, Visit&& visit) const {
         walk_ball(middle_m, radius_m, OnRun(visit));
     }
-    /// The same for a cylinder.
+    /// The same for a cylinder instead of a ball.
     template <typename Visit>
     void runs_near_cylinder(const Cylinder& cylinder, Visit&& visit) const {
         walk_cylinder(cylinder, OnRun(visit));
@@ -89,7 +89,7 @@ class KdTree {
 
   private:
     using Run = std::span<const Eigen::Vector3f>;
-    /// What is to be done with a run, by reference.
+    /// Reference to the visitor of a run.
     class OnRun {
       public:
         template <typename Visit>
@@ -104,8 +104,8 @@ class KdTree {
         void (*call_)(const void*, Run, std::size_t);
     };
     static constexpr std::int32_t kAllEqual = -1;
-    /// What lies left ends at `low_m`, what lies right begins at `high_m`. Nodes below one of equal
-    /// points (`axis` is `kAllEqual`) are never entered.
+    /// Left points end at `low_m`, right points begin at `high_m`. Searches never enter nodes below
+    /// a node of equal points (`axis` is `kAllEqual`).
     struct Node {
         float low_m = 0.0F;
         float high_m = 0.0F;
@@ -124,7 +124,7 @@ class KdTree {
 
     void cut(std::uint32_t node);
     void build(std::uint32_t node);
-    /// First point of a node of a level; nodes of a level share the points as evenly as it goes.
+    /// First point of a node. The nodes of a level share the points as evenly as possible.
     [[nodiscard]] std::size_t first_of(int level, std::uint64_t number) const noexcept {
         return static_cast<std::size_t>((points_m_.size() * number) >> level);
     }
@@ -136,7 +136,7 @@ class KdTree {
 
     std::vector<Eigen::Vector3f> points_m_;
     std::vector<Node> nodes_;  ///< children of i are 2 i and 2 i + 1; the root is 1
-    int levels_ = 0;           ///< above the leaves
+    int levels_ = 0;           ///< number of levels above the leaves
     PointBox box_;
 };
 

@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3f;
 using Points = std::vector<Vector3f>;
 
-/// Squares of distances are off by less, relative to themselves.
+/// Relative rounding limit of squared distances.
 constexpr float kRounding = 1e-6F;
 
 Vector3f random_point(Rng& rng, double side_m) {
@@ -28,7 +28,7 @@ Vector3f random_point(Rng& rng, double side_m) {
     return {c(), c(), c()};
 }
 
-/// A floor, a wall, scattered points and copies of points: what scans are made of.
+/// Typical content of scans: a floor, a wall, scattered points and copies of points.
 Points scan(std::size_t count, std::uint64_t seed) {
     Rng rng(seed);
     Points points_m;
@@ -68,7 +68,7 @@ TEST(KdTree, FindsTheNearestOfEveryNumberOfPoints) {
             const Neighbour found = tree.nearest(query_m);
             expect_as_far(found.sq_distance_m2, sq.front(), "nearest");
             EXPECT_EQ(tree.neighbour(query_m, found.index).sq_distance_m2, found.sq_distance_m2);
-            // Whatever it starts from.
+            // The start must not change the result.
             if (i > 0) {
                 expect_as_far(
                     tree.nearest(query_m, tree.neighbour(query_m, last.index)).sq_distance_m2,
@@ -170,12 +170,12 @@ TEST(KdTree, RunsNearABallOrCylinderHoldAllOfItAndLittleElse) {
         });
         EXPECT_EQ(in_runs, in_ball(points_m)) << "ball " << i;
     }
-    // Leaves of twelve points, about a hundred inside: the rim costs about as much as what is in
-    // it.
+    // With leaves of twelve points and about a hundred points inside, the rim costs about as much
+    // as the inside.
     EXPECT_LT(looked_at, 4 * inside);
 }
 
-/// Clouds that are no scatter of points in space, all of so many points.
+/// Clouds of special shapes, all with the same number of points.
 struct Degenerate {
     const char* name;
     Points points_m;
@@ -195,11 +195,11 @@ std::vector<Degenerate> degenerate_clouds(std::size_t count) {
     make("one place", [](std::size_t) { return Vector3f(1.0F, 2.0F, 3.0F); });
     make("one place and another",
          [&](std::size_t i) { return Vector3f(i % 2 == 0 ? 1.0F : 2.0F, 2.0F, 3.0F); });
-    // The last bits of 1.0: 27 places.
+    // Only the last bits of 1.0 differ: 27 positions.
     make("nearly one place", [&](std::size_t) -> Vector3f {
         return Vector3f::Ones() + 1e-7F * random_point(rng, 1.0);
     });
-    // Squares of distances are zero for points that differ.
+    // Squared distances are zero for different points.
     make("around zero", [&](std::size_t) -> Vector3f { return 1e-25F * random_point(rng, 1.0); });
     make("each point a hundred times",
          [&](std::size_t i) { return Vector3f(c(i / 100 % 7), c(i / 700 % 5), c(i / 3500)); });
@@ -220,7 +220,8 @@ std::vector<Degenerate> degenerate_clouds(std::size_t count) {
 TEST(KdTree, DegenerateCloudsCostNoMoreThanOthers) {
     constexpr std::size_t kCount = 20000;
     constexpr std::size_t kQueries = 500;
-    // Seven neighbours of scattered points: measured 31 nodes and 72 points. A leaf has twelve.
+    // Seven neighbours of scattered points: measured 31 nodes and 72 points. A leaf has twelve
+    // points.
     constexpr std::size_t kMostNodes = 120;
     constexpr std::size_t kMostPoints = 300;
     for (const Degenerate& cloud : degenerate_clouds(kCount)) {
@@ -245,7 +246,8 @@ TEST(KdTree, DegenerateCloudsCostNoMoreThanOthers) {
 }
 
 TEST(KdTree, SurfacesSeenFromFarAwayAreNotSearchedFromEndToEnd) {
-    // From 5 km all points of a square metre are as far in the last bit of a float.
+    // From 5 km away all points of a square metre have the same distance to the last bit of a
+    // float.
     Rng rng(13);
     Points points_m;
     for (int i = 0; i < 20000; ++i) {
@@ -340,7 +342,7 @@ TEST(SurfaceNormal, NoneForTooFewPointsALineOrOnePlace) {
     EXPECT_FALSE(surface_normal(KdTree(Points(9, Vector3f::Ones())), Vector3f::Ones(), 1.0F));
     EXPECT_FALSE(surface_normal(
         KdTree(Points{{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}}), Vector3f::Zero(), 2.0F));
-    // A wall has no upper side; which way it points is the larger of x and y.
+    // A wall has no upper side: its normal points along the larger of x and y.
     Points wall;
     for (int i = 0; i < 100; ++i)
         wall.emplace_back(

@@ -9,9 +9,9 @@
 namespace surefoot::geometry {
 namespace {
 
-constexpr double kCollinearRatio = 1e-12;  // of variances: a millionth in length
+constexpr double kCollinearRatio = 1e-12;  // ratio of variances: a millionth in length
 
-/// `point_at(i)` for i in [0, count).
+/// `point_at(i)` returns point i, for i in [0, count).
 template <typename PointAt>
 std::optional<PlaneFit> fit(std::size_t count, const PointAt& point_at) {
     PlaneFit result;
@@ -23,7 +23,7 @@ std::optional<PlaneFit> fit(std::size_t count, const PointAt& point_at) {
     if (result.count < 3) return std::nullopt;
     result.centroid_m /= result.count;
 
-    // The second pass works about the centroid: coordinates may be large (maps, UTM).
+    // The second pass computes relative to the centroid: coordinates may be large (maps, UTM).
     Symmetric3 scatter;
     for (std::size_t i = 0; i < count; ++i) {
         if (!point_at(i).allFinite()) continue;

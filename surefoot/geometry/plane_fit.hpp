@@ -12,17 +12,17 @@ struct Plane {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
     double offset_m = 0.0;
 
-    /// Positive on the side to which the normal points.
+    /// Positive on the side that the normal points to.
     [[nodiscard]] double signed_distance_m(const Eigen::Vector3d& p) const {
         return normal.dot(p) + offset_m;
     }
-    /// The same plane with its normal on the side of `direction`.
+    /// The same plane; its normal points to the side of `direction`.
     [[nodiscard]] Plane facing(const Eigen::Vector3d& direction) const {
         return normal.dot(direction) < 0.0 ? Plane{-normal, -offset_m} : *this;
     }
 };
 
-/// Least squares plane of some points, with their scatter (one sigma, divided by n) along the three
+/// Least-squares plane of some points, with their scatter (one sigma, divided by n) along the three
 /// principal directions.
 struct PlaneFit {
     Plane plane;  ///< normal.z >= 0
@@ -33,12 +33,12 @@ struct PlaneFit {
     int count = 0;                ///< finite points used
 };
 
-/// Total least squares (smallest eigenvector of the covariance about the centroid). Points that are
-/// not finite are left out. Nothing for fewer than three points or points on one line (scatter
-/// across the line below a millionth of that along it): such points have no one plane.
+/// Total least squares (smallest eigenvector of the covariance about the centroid). Ignores points
+/// that are not finite. nullopt for fewer than three points or for points on one line (scatter
+/// across the line below a millionth of that along it).
 [[nodiscard]] std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points);
 
-/// The same for the points named by `indices`.
+/// The same for the points at `indices`.
 [[nodiscard]] std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points,
                                                 std::span<const int> indices);
 

@@ -62,7 +62,7 @@ TEST(PlaneFit, ExactPlaneIsFoundExactly) {
     const Eigen::Vector3d normal = Eigen::Vector3d(-0.3, 0.2, 1.0).normalized();
     EXPECT_LE((fit->plane.normal - normal).norm(), 1e-12);
     EXPECT_NEAR(fit->plane.offset_m, -1.5 * normal.z(), 1e-12);
-    EXPECT_LE(fit->rms_m, 1e-7);  // root of rounding 1e-16 times the scatter of the square
+    EXPECT_LE(fit->rms_m, 1e-7);  // root of the rounding 1e-16 times the scatter of the square
 }
 
 TEST(PlaneFit, NoiseShowsInTheRmsAndAveragesOutOfThePlane) {

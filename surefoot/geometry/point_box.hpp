@@ -8,13 +8,13 @@
 
 namespace surefoot::geometry {
 
-/// Along the axes.
+/// A box parallel to the axes.
 struct PointBox {
     Eigen::Vector3f low_m = Eigen::Vector3f::Zero();
     Eigen::Vector3f high_m = Eigen::Vector3f::Zero();
 };
 
-/// The box of some points, at least one.
+/// The bounding box of at least one point.
 [[nodiscard]] inline PointBox box_of(std::span<const Eigen::Vector3f> points_m) {
     SUREFOOT_ASSERT(!points_m.empty());
     PointBox box{points_m.front(), points_m.front()};

@@ -7,14 +7,14 @@
 
 namespace surefoot::geometry {
 
-/// Mean rotation after Markley, Cheng, Crassidis and Oshman 2007 ("Averaging Quaternions", eq. 12):
-/// the largest eigenvector of the weighted sum of q q^T. It minimises the weighted sum of squared
-/// attitude differences and does not care about the signs of its inputs, since q and -q are one
+/// Mean rotation after Markley, Cheng, Crassidis and Oshman 2007 ("Averaging Quaternions", eq.
+/// 12): the largest eigenvector of the weighted sum of q q^T. It minimises the weighted sum of
+/// squared attitude differences. The signs of the inputs do not matter: q and -q are the same
 /// rotation.
 ///
-/// `rotations` are unit quaternions; `weights` (>= 0) are as many, or empty for equal ones. The
-/// result has w >= 0. Nothing if there is no rotation with a positive weight, if a value is not
-/// finite or negative, or if the mean is not unique (two rotations half a turn apart).
+/// `rotations` are unit quaternions. `weights` (>= 0) are equally many, or empty for equal weights.
+/// The result has w >= 0. nullopt if no weight is positive, if a value is negative or not finite,
+/// or if the mean is not unique (two rotations half a turn apart).
 [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion_mean(
     std::span<const Eigen::Quaterniond> rotations, std::span<const double> weights = {});
 

@@ -89,7 +89,7 @@ TEST(QuaternionMean, WeightsActLikeRepetitions) {
 }
 
 TEST(QuaternionMean, MinimisesTheSquaredAttitudeDifference) {
-    // Markley eq. (5): the mean minimises the sum of |A - A_i|_F^2; no nearby rotation does better.
+    // Markley eq. (5): the mean minimises the sum of |A - A_i|_F^2; no nearby rotation is better.
     Rng rng(5);
     Rotations rotations;
     for (int i = 0; i < 8; ++i) {

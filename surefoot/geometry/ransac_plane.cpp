@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
 
-/// The cone as the smallest admissible |cosine|; without a cone every normal is admissible.
+/// The cone, stored as the smallest admissible |cosine|. Without a cone every normal is admissible.
 struct Admissible {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     double min_cosine = 0.0;
@@ -27,7 +27,7 @@ Admissible admissible(const RansacPlaneOptions& options) {
     return {options.cone->direction.normalized(), std::cos(options.cone->max_angle_rad)};
 }
 
-/// Plane through three points, or nothing if they are (nearly) on one line.
+/// Plane through three points; nullopt if they are (nearly) on one line.
 std::optional<Plane> plane_through(const Eigen::Vector3d& a,
                                    const Eigen::Vector3d& b,
                                    const Eigen::Vector3d& c) {
@@ -47,7 +47,7 @@ std::optional<Plane> draw_plane(Points points, const std::vector<int>& finite, R
     const Eigen::Vector3d& a = draw();
     const Eigen::Vector3d& b = draw();
     const Eigen::Vector3d& c = draw();
-    return plane_through(a, b, c);  // the same point twice spans no plane
+    return plane_through(a, b, c);  // a point drawn twice spans no plane
 }
 
 bool is_inlier(Points points, int index, const Plane& plane, const RansacPlaneOptions& options) {
@@ -57,9 +57,9 @@ bool is_inlier(Points points, int index, const Plane& plane, const RansacPlaneOp
     return std::abs(plane.signed_distance_m(points[i])) <= tolerance_m;
 }
 
-/// What speaks for a plane: its inliers, and where each point has its own tolerance, how near they
-/// are (MSAC, Torr and Zisserman 2000): planes across two levels have many at the rim. Stops, with
-/// less, when `to_beat` is out of reach.
+/// Support of a plane: the number of its inliers. With a tolerance per point, near inliers count
+/// more (MSAC, Torr and Zisserman 2000): a plane across two levels has many inliers near the limit.
+/// Stops early, with a smaller value, if the plane cannot beat `to_beat`.
 double support(Points points,
                const std::vector<int>& finite,
                const Plane& plane,
@@ -107,7 +107,8 @@ Search search(Points points,
               Rng& rng) {
     Search result;
     double best = 0.0;
-    // Chance that a triple is all inliers of the best plane so far, or of the least one wanted.
+    // Chance that all three points are inliers of the best plane so far, or of the smallest wanted
+    // plane.
     double hit = std::pow(std::min(options.least_inlier_ratio, 1.0), 3);
     double missed = 1.0;  // chance that all triples so far contained an outlier
     while (result.iterations < options.max_iterations && missed > 1.0 - options.confidence) {

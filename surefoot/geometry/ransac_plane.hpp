@@ -11,8 +11,8 @@
 
 namespace surefoot::geometry {
 
-/// Only planes whose normal (either sign) lies within `max_angle_rad` of `direction` are
-/// considered.
+/// Restricts the search to planes whose normal (either sign) lies within `max_angle_rad` of
+/// `direction`.
 struct NormalCone {
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< need not be a unit vector
     double max_angle_rad = 0.3;
@@ -20,26 +20,26 @@ struct NormalCone {
 
 struct RansacPlaneOptions {
     double tolerance_m = 0.05;  ///< a point within this distance of the plane is an inlier
-    /// Distance for each point instead, and near ones count more; empty = `tolerance_m` for all.
+    /// Tolerance per point, nearer inliers count more; empty = `tolerance_m` for all points.
     std::span<const double> tolerance_of_m;
-    double confidence = 0.9999;  ///< of having drawn three inliers at least once; ends the search
+    double confidence = 0.9999;  ///< probability of one all-inlier triple; ends the search
     int max_iterations = 1000;
-    /// Share of the points; the search also ends when a plane with so many would have been found.
+    /// Share of the points. The search also ends when it would have found a plane with that many.
     double least_inlier_ratio = 0.0;
-    int max_refinements = 8;  ///< refits on the inliers until these stay the same
+    int max_refinements = 8;  ///< largest number of refits on the inliers
     std::optional<NormalCone> cone;
 };
 
 struct RansacPlane {
     PlaneFit fit;  ///< of the inliers; normal on the side of the cone's direction, else z >= 0
     std::vector<int> inliers;   ///< indices into the points, ascending
-    double inlier_ratio = 0.0;  ///< of the finite points
-    int iterations = 0;         ///< triples drawn
+    double inlier_ratio = 0.0;  ///< share of the finite points
+    int iterations = 0;         ///< number of triples drawn
 };
 
-/// The plane with the most inliers (Fischler and Bolles 1981), refitted on them by least squares.
-/// Nothing if no admissible triple was drawn or the refined plane leaves the cone. The same points,
-/// options and generator state give the same plane; points that are not finite are never inliers.
+/// The plane with the most inliers (Fischler and Bolles 1981), refitted to them by least squares.
+/// nullopt if no admissible triple was drawn or the refined plane leaves the cone. Deterministic
+/// for equal points, options and generator state. Points that are not finite are never inliers.
 [[nodiscard]] std::optional<RansacPlane> ransac_plane(std::span<const Eigen::Vector3d> points,
                                                       const RansacPlaneOptions& options,
                                                       Rng& rng);

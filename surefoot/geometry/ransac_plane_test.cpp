@@ -55,7 +55,7 @@ TEST(RansacPlane, EndsWhenThePlaneThatIsWantedWouldHaveBeenFound) {
         return ransac_plane(points, options, rng)->iterations;
     };
     EXPECT_EQ(iterations(0.0), options.max_iterations);
-    // log(1 - confidence) / log(1 - ratio^3), and the first draw that does not count yet.
+    // log(1 - confidence) / log(1 - ratio^3), plus the first draw, which does not count yet.
     EXPECT_NEAR(iterations(0.5), 69, 1);
     EXPECT_NEAR(iterations(0.3), 336, 1);
     EXPECT_EQ(iterations(1.0), 1);
@@ -121,7 +121,7 @@ TEST(RansacPlane, OrderOfThePointsDoesNotChangeAClearPlane) {
     std::reverse(points.begin(), points.end());
     const auto backward = ransac_plane(points, {}, rng);
     ASSERT_TRUE(forward && backward);
-    // The refinement ends at the same inliers whatever triple started it.
+    // The refinement ends with the same inliers for every starting triple.
     EXPECT_EQ(forward->inliers.size(), backward->inliers.size());
     EXPECT_LE((forward->fit.plane.normal - backward->fit.plane.normal).norm(), 1e-12);
 }
@@ -162,8 +162,8 @@ TEST(RansacPlane, CleanDataEndEarly) {
 }
 
 TEST(RansacPlane, PointsMayHaveTolerancesOfTheirOwn) {
-    // Two levels 60 mm apart, the far one noisy. Under one tolerance for all a slope between them
-    // has the most inliers.
+    // Two levels 60 mm apart, the far one noisy. With one tolerance for all points, a slope between
+    // the levels has the most inliers.
     Rng rng(9);
     Points points;
     std::vector<double> tolerances_m;

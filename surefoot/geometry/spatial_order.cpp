@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kBits = 10;
 
-/// Puts two zeros behind each of ten bits.
+/// Inserts two zeros after each of ten bits.
 std::uint32_t spread(std::uint32_t bits) noexcept {
     bits = (bits | bits << 16U) & 0x030000FFU;
     bits = (bits | bits << 8U) & 0x0300F00FU;
@@ -27,7 +27,7 @@ struct Keyed {
     std::uint32_t index;
 };
 
-/// One pass of a radix sort (Knuth, volume 3, 5.2.5): stable, by the ten bits from `shift` on.
+/// One pass of a radix sort (Knuth, volume 3, 5.2.5): stable, sorts by the ten bits from `shift`.
 void sort_by_digit(std::span<const Keyed> from, std::span<Keyed> to, int shift) {
     std::array<std::uint32_t, 1U << kBits> next{};
     const auto digit = [&](const Keyed& k) { return k.key >> shift & ((1U << kBits) - 1U); };
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> spatial_order(std::span<const Eigen::Vector3f> points
     SUREFOOT_ASSERT(points_m.size() < 0xFFFFFFFFU);
     if (points_m.empty()) return {};
     const PointBox box = box_of(points_m);
-    // One scale for all axes: cells are cubes.
+    // All axes have one scale, so that the cells are cubes.
     const float side_m = (box.high_m - box.low_m).maxCoeff();
     constexpr float kCells = 1 << kBits;
     constexpr std::uint32_t kLast = (1U << kBits) - 1U;

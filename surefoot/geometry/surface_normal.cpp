@@ -9,7 +9,7 @@
 namespace surefoot::geometry {
 namespace {
 
-/// Sums over points, counted from the middle of the ball.
+/// Sums over points, relative to the middle of the ball.
 struct Sums {
     double count = 0.0;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -38,15 +38,16 @@ struct Sums {
     }
 };
 
-/// `sq_radius_m2`: of the farthest point.
+/// `sq_radius_m2`: squared distance of the farthest point.
 std::optional<LocalSurface> surface_of(const Sums& sums, double sq_radius_m2) {
     if (sums.count < 3.0) return std::nullopt;
     const SmallestAxis thin = smallest_axis(sums.covariance());
-    // As in plane_fit: a millionth of the ball across a line is no surface.
+    // Same limit as in plane_fit: points within a millionth of the ball from a line span no
+    // surface.
     constexpr double kLine = 1e-6;
     if (!(thin.middle > kLine * kLine * sq_radius_m2)) return std::nullopt;
     Eigen::Vector3d normal = thin.direction;
-    // What is upright within roundings has no upper side that would mean anything.
+    // A wall that is vertical within rounding has no meaningful upper side.
     constexpr double kUpright = 1e-6;
     const double side = std::abs(normal.z()) > kUpright               ? normal.z()
                         : std::abs(normal.x()) > std::abs(normal.y()) ? normal.x()

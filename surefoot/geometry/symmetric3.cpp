@@ -81,9 +81,9 @@ EigenSystem3 eigen_system(const Symmetric3& m) noexcept {
 }
 
 SmallestAxis smallest_axis(const Symmetric3& m) noexcept {
-    // The matrix is scaled to trace 1, so that its eigenvalues sum to 1 and all limits are pure
-    // numbers. The characteristic polynomial p(l) = l^3 - l^2 + c1 l - c0 grows and is concave left
-    // of its smallest root (which is <= 1/3), so Newton's steps from l = 0 never pass that root.
+    // The matrix is scaled to trace 1: its eigenvalues sum to 1 and all limits are pure numbers.
+    // Left of its smallest root (which is <= 1/3) the characteristic polynomial p(l) = l^3 - l^2 +
+    // c1 l - c0 grows and is concave. Newton's steps from l = 0 therefore never pass that root.
     const double trace = m.xx + m.yy + m.zz;
     if (!(trace > 0.0)) return {};
     const double scale = 1.0 / trace;
@@ -102,9 +102,9 @@ SmallestAxis smallest_axis(const Symmetric3& m) noexcept {
         smallest = next;
     }
 
-    // The eigenvector is perpendicular to all rows of A - l I; the longest cross product of two
-    // rows is the best conditioned. Its length is (middle - l)(largest - l): below the limit the
-    // axis is poorly separated and rounding would turn it.
+    // The eigenvector is perpendicular to all rows of A - l I. The longest cross product of two
+    // rows has the best condition. Its length is (middle - l)(largest - l): below the limit the
+    // axis is poorly separated and rounding would rotate it.
     const Vec r0{xx - smallest, xy, xz};
     const Vec r1{xy, yy - smallest, yz};
     const Vec r2{xz, yz, zz - smallest};
@@ -112,11 +112,11 @@ SmallestAxis smallest_axis(const Symmetric3& m) noexcept {
     for (const Vec& candidate : {cross(r0, r2), cross(r1, r2)}) {
         if (squared_norm(candidate) > squared_norm(best)) best = candidate;
     }
-    constexpr double kMinLength = 1e-4;  // rounding 1e-16 over 1e-4 keeps the turn below 1e-10 rad
+    constexpr double kMinLength = 1e-4;  // rounding 1e-16 over 1e-4 rotates by less than 1e-10 rad
     const double length = std::sqrt(squared_norm(best));
     if (!(length > kMinLength)) return smallest_axis_by_jacobi(m);
 
-    // A poor root would leave a residual A v - l v; it turns v by at most residual / (middle - l).
+    // A poor root leaves a residual A v - l v. It rotates v by at most residual / (middle - l).
     const double inverse = 1.0 / length;
     const Vec v{best.x * inverse, best.y * inverse, best.z * inverse};
     const double sum = 1.0 - smallest;           // of the other two eigenvalues
@@ -131,7 +131,7 @@ SmallestAxis smallest_axis(const Symmetric3& m) noexcept {
     if (!(squared_norm(residual) <= kMaxTurn * kMaxTurn * gap * gap)) {
         return smallest_axis_by_jacobi(m);
     }
-    // Rayleigh quotient: its error is the square of the vector's.
+    // Rayleigh quotient: its error is the square of the error of the vector.
     const double refined = smallest + v.x * residual.x + v.y * residual.y + v.z * residual.z;
     return {Eigen::Vector3d(v.x, v.y, v.z), refined * trace, middle * trace};
 }

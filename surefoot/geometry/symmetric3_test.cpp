@@ -13,7 +13,7 @@
 namespace surefoot::geometry {
 namespace {
 
-constexpr double kTurnLimit_rad = 1e-9;  // as promised in the header, where the axis is unique
+constexpr double kTurnLimit_rad = 1e-9;  // the header promises it for a unique axis
 
 Symmetric3 from_matrix(const Eigen::Matrix3d& M) {
     return {M(0, 0), M(0, 1), M(0, 2), M(1, 1), M(1, 2), M(2, 2)};
@@ -83,7 +83,7 @@ TEST(Symmetric3, JacobiAgreesWithTheIterativeOracle) {
     for (int trial = 0; trial < 5000; ++trial) {
         Eigen::Matrix3d M;
         for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j <= i; ++j) M(i, j) = M(j, i) = rng.normal();  // indefinite ones too
+            for (int j = 0; j <= i; ++j) M(i, j) = M(j, i) = rng.normal();  // also indefinite
         }
         const EigenSystem3 ours = eigen_system(from_matrix(M));
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> oracle(M);
@@ -101,7 +101,7 @@ TEST(Symmetric3, NearlyCollinearPointsFallBackWithoutLosingTheAxis) {
         Eigen::Matrix3d R;
         const Symmetric3 m = with_eigenvalues(Eigen::Vector3d(0.0, 1e-7, 1.0), rng, &R);
         const SmallestAxis axis = smallest_axis(m);
-        // Rounding of the entries alone (1e-16) turns the axis by 1e-16 / 1e-7.
+        // Rounding of the entries alone (1e-16) rotates the axis by 1e-16 / 1e-7.
         ASSERT_LE(angle_between_lines_rad(axis.direction, R.col(0)), 1e-8) << "trial " << trial;
     }
 }

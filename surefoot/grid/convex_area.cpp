@@ -8,10 +8,10 @@
 namespace surefoot::grid {
 namespace {
 
-/// Edges that rise less are left to their neighbours and corners.
+/// Edges that rise less are skipped: their neighbours and corners cover them.
 constexpr double kLevel_cells = 1e-9;
-/// Neighbouring pieces of the rim may miss each other by rounding (1e-10 at kMaxReach_cells) and by
-/// level edges between them; far below a sliver.
+/// Largest gap between neighbouring pieces of the rim, from rounding (1e-10 at kMaxReach_cells) and
+/// skipped level edges. Far below a sliver.
 constexpr double kSlack_cells = 1e-7;
 static_assert(kSlack_cells > ConvexArea::kMaxPoints * kLevel_cells);
 
@@ -19,7 +19,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Largest integer <= value; std::floor is a call without SSE4.
+/// Largest integer <= value. Without SSE4, std::floor would be a function call.
 std::int64_t floor_of(double value) noexcept {
     // The constructor keeps every point within kMaxReach_cells, and a row of the area meets its
     // rim. in range: so a value is at most 2^21
@@ -53,7 +53,7 @@ ConvexArea::ConvexArea(std::span<const Eigen::Vector2d> points_m,
     for (int i = 0; i < count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         points[k] = (points_m[k] - geometry.origin_m) / geometry.resolution_m;
-        // Written so that NaN fails.
+        // This form also rejects NaN.
         if (!(points[k].cwiseAbs().maxCoeff() + radius_ <= kMaxReach_cells)) return;
         if (!points[k].allFinite()) return;
     }
@@ -63,7 +63,7 @@ ConvexArea::ConvexArea(std::span<const Eigen::Vector2d> points_m,
 }
 
 void ConvexArea::take_hull(Points& points, int count) noexcept {
-    // Andrew's monotone chain (1979): the lower half from the left, the upper half back.
+    // Andrew's monotone chain (1979): the lower half from left to right, the upper half back.
     const auto end = points.begin() + count;
     std::sort(points.begin(), end, [](const auto& a, const auto& b) {
         return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
@@ -77,7 +77,7 @@ void ConvexArea::take_hull(Points& points, int count) noexcept {
     for (int i = 0; i < count; ++i) extend(points[static_cast<std::size_t>(i)], 0);
     const std::size_t lower = size - 1;  // the last point starts the upper half
     for (int i = count - 2; i >= 0; --i) extend(points[static_cast<std::size_t>(i)], lower);
-    hull_count_ = static_cast<int>(size > 1 ? size - 1 : size);  // the first point came twice
+    hull_count_ = static_cast<int>(size > 1 ? size - 1 : size);  // the first point is also the last
     std::copy_n(chain.begin(), hull_count_, hull_.begin());
 }
 
@@ -120,8 +120,8 @@ void ConvexArea::take_rows() noexcept {
     end_row_ = rows.end;
 }
 
-/// How far the area reaches at y, to the right (side = 1) or left (-1): the farthest of the points
-/// that its pieces, the edges and the circles around the corners, have at that y.
+/// Reach of the area at y, to the right (side = 1) or left (-1): the farthest point that an edge or
+/// a circle around a corner has at that y.
 double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) const noexcept {
     double farthest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) co
         const double dy = std::clamp(y, edge.low, edge.high) - edge.low;
         farthest = std::max(farthest, side * (edge.x_at_low + edge.x_per_y * dy));
     }
-    // Without a radius the corners are the ends of edges.
+    // Without a radius the corners are ends of edges, so the edges suffice.
     const int corners = radius_ > 0.0 || count == 0 ? hull_count_ : 0;
     for (int i = 0; i < corners; ++i) {
         const Eigen::Vector2d& point = hull_[static_cast<std::size_t>(i)];
@@ -143,7 +143,7 @@ double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) co
 }
 
 CellRun ConvexArea::row(std::int64_t iy) const noexcept {
-    // The rim is convex: within the row it reaches farthest where it is nearest to its extreme.
+    // The rim is convex: within the row it reaches farthest at the y nearest to the extreme point.
     const auto low = static_cast<double>(iy);
     const double left_y = std::clamp(leftmost_y_, low, low + 1.0);
     const double right_y = std::clamp(rightmost_y_, low, low + 1.0);

@@ -11,22 +11,22 @@
 
 namespace surefoot::grid {
 
-/// The convex hull of a few points, grown by a radius on all sides, laid over a grid: a point makes
-/// a circle, two make what a circle sweeps, more make a polygon. Answers which cells it overlaps,
-/// row by row; the cells of a row are one run, because the area is convex.
+/// Cells of a grid that a grown convex hull overlaps. The hull of a few points is grown by a radius
+/// on all sides: one point gives a circle, two a swept circle, more a rounded polygon. The cells of
+/// a row form one run, because the area is convex.
 ///
-/// A cell counts from `kSliver_cells` of overlap on in x and in y: less is rounding, which would
-/// let a foot that ends on a border of cells take another row or not. Works in doubles, for what
-/// describes; the gate decides with fixed_polygon.hpp.
+/// A cell counts if it overlaps by at least `kSliver_cells` in x and in y. Less is rounding: it
+/// would decide whether a foot that ends on a cell border covers one more row. Uses doubles, for
+/// reports and pictures only; the gate decides with fixed_polygon.hpp.
 class ConvexArea {
   public:
     static constexpr int kMaxPoints = 32;
     static constexpr double kSliver_cells = 1e-5;
-    /// Farthest from the grid's origin, so that cells can be counted without rounding.
+    /// Largest distance from the grid's origin, so that counting cells has no rounding.
     static constexpr double kMaxReach_cells = 1 << 20;
 
-    /// Empty (no rows) if there is no point or more than kMaxPoints, if anything is not finite or
-    /// the radius negative, or if it lies beyond kMaxReach_cells.
+    /// The area is empty (no rows) without points, with more than kMaxPoints, with a negative
+    /// radius, with a value that is not finite, or if it lies beyond kMaxReach_cells.
     ConvexArea(std::span<const Eigen::Vector2d> points_m,
                double radius_m,
                const GridGeometry& geometry) noexcept;
@@ -34,12 +34,12 @@ class ConvexArea {
     [[nodiscard]] bool empty() const noexcept { return first_row_ >= end_row_; }
     [[nodiscard]] std::int64_t first_row() const noexcept { return first_row_; }
     [[nodiscard]] std::int64_t end_row() const noexcept { return end_row_; }
-    /// The cells that it overlaps in a row of [first_row, end_row), wherever the grid ends; at
-    /// least one. Cost: proportional to the points.
+    /// Overlapped cells of a row in [first_row, end_row), at least one. The run may extend beyond
+    /// the grid. Cost: proportional to the number of points.
     [[nodiscard]] CellRun row(std::int64_t iy) const noexcept;
 
   private:
-    /// One straight piece of the rim, moved outward by the radius; x over y, both in cells.
+    /// A straight piece of the rim, outward by the radius: x as a function of y, in cells.
     struct Edge {
         double low = 0.0;
         double high = 0.0;
@@ -61,7 +61,7 @@ class ConvexArea {
     int right_count_ = 0;
     int left_count_ = 0;
     double radius_ = 0.0;       ///< [cells]
-    double rightmost_y_ = 0.0;  ///< where the area reaches farthest to the right
+    double rightmost_y_ = 0.0;  ///< y of the point that lies farthest to the right
     double leftmost_y_ = 0.0;
     std::int64_t first_row_ = 0;
     std::int64_t end_row_ = 0;

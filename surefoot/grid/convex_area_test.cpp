@@ -21,7 +21,7 @@ using Cells = std::set<std::pair<std::int64_t, std::int64_t>>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Unit cells: metres are cells.
+/// Unit cells: one metre is one cell.
 const GridGeometry kUnit{1.0, 8, 8, {0.0, 0.0}};
 
 Cells cells_of(const ConvexArea& area) {
@@ -44,8 +44,8 @@ double distance_to_segment(const Eigen::Vector2d& p,
     return (p - (a + s * along)).norm();
 }
 
-/// How far two hulls are apart, or minus how deep they overlap (separating axes of all pairs of
-/// points: those of the hulls are among them, and no other axis separates what these do not).
+/// Distance of two hulls, or minus their overlap depth. Uses the separating axes of all pairs of
+/// points; they include the edges of both hulls, and no other axis is needed.
 double separation(const Points& a, const Points& b) {
     double widest_gap = -kInfinity;
     const auto try_axis = [&](Eigen::Vector2d axis) {
@@ -70,7 +70,7 @@ double separation(const Points& a, const Points& b) {
     }
     if (a.size() == 2 && widest_gap <= 0.0) try_axis(a[1] - a[0]);
     if (widest_gap <= 0.0) return widest_gap;
-    double nearest = kInfinity;  // apart: the nearest points are a corner and a side
+    double nearest = kInfinity;  // separate hulls: the nearest points are a corner and a side
     for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
         for (const auto& p : *from)
             for (const auto& q : *to)
@@ -84,12 +84,13 @@ Points corners(double ix, double iy) {
 }
 
 TEST(ConvexArea, literal_circle_touches_more_cells_than_it_holds_centres) {
-    // Radius 1.2 around the common corner of four cells: all of these, and the next to each side.
+    // Radius 1.2 around the common corner of four cells covers these and the next cells on each
+    // side.
     const Cells around = cells_of({Points{{4, 4}}, 1.2, kUnit});
     EXPECT_EQ(around.size(), 12U);
     EXPECT_TRUE(around.contains({2, 4}));
     EXPECT_FALSE(around.contains({2, 2}));
-    // Smaller than a cell: the cell that it lies in.
+    // An area smaller than a cell covers the cell around it.
     EXPECT_EQ(cells_of({Points{{2.5, 3.5}}, 0.1, kUnit}), (Cells{{2, 3}}));
     EXPECT_EQ(cells_of({Points{{2.5, 3.5}}, 1e-9, kUnit}), (Cells{{2, 3}}));
 }
@@ -97,7 +98,7 @@ TEST(ConvexArea, literal_circle_touches_more_cells_than_it_holds_centres) {
 TEST(ConvexArea, box_on_cell_borders_takes_no_neighbour_whatever_the_rounding) {
     const Points box{{1, 1}, {3, 1}, {3, 2}, {1, 2}};
     EXPECT_EQ(cells_of({box, 0.0, kUnit}), (Cells{{1, 1}, {2, 1}}));
-    // 0.025 has no exact double: multiples of it lie on either side of the border.
+    // A double cannot hold 0.025 exactly: its multiples lie on both sides of the border.
     for (int shift = -40; shift < 40; ++shift) {
         const GridGeometry fine{0.025, 240, 240, {-3.0 + 0.025 * shift, -3.0}};
         Points foot;
@@ -116,8 +117,8 @@ TEST(ConvexArea, any_order_and_repeated_points_are_the_same_area) {
 }
 
 TEST(ConvexArea, overlaps_exactly_the_cells_nearer_than_its_radius) {
-    // A sliver moves the ends of a row by 1e-5 cells; corners of hulls of random points are rarely
-    // sharper than 1/20 of a right angle, which moves them by less than this.
+    // A sliver moves the ends of a row by 1e-5 cells. Hulls of random points rarely have corners
+    // sharper than 1/20 of a right angle, so the ends move by less than this limit.
     constexpr double kUnsure_cells = 40.0 * ConvexArea::kSliver_cells;
     constexpr double kRounding_cells = 1e-9;
     Rng rng(21);
@@ -126,7 +127,7 @@ TEST(ConvexArea, overlaps_exactly_the_cells_nearer_than_its_radius) {
     for (int round = 0; round < 400; ++round) {
         Points points(1 + rng.below(7));
         for (auto& p : points) p = {rng.uniform(-3.0, 11.0), rng.uniform(-3.0, 11.0)};
-        // A polygon without a radius needs an area.
+        // A polygon without a radius must have an area.
         const bool grown = points.size() < 3 || rng.below(2) == 0;
         const double radius = grown ? rng.uniform(0.05, 3.0) : 0.0;
         const Cells found = cells_of({points, radius, kUnit});

@@ -8,14 +8,14 @@
 
 namespace surefoot::grid {
 
-/// A point in units of 0.1 mm. Geometry on these is exact: the same answer on every machine.
+/// A point in units of 0.1 mm. Geometry on such points is exact and equal on every computer.
 struct FixedPoint {
     std::int64_t x = 0;
     std::int64_t y = 0;
     friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
 };
 
-/// Where the cells of a snapshot lie: cell (ix, iy) covers [origin + i * side, origin + (i+1) *
+/// Position of the cells of a snapshot: cell (ix, iy) covers [origin + i * side, origin + (i+1) *
 /// side].
 struct FixedGrid {
     std::int64_t origin_x = 0;
@@ -24,7 +24,7 @@ struct FixedGrid {
 };
 
 /// Convex polygon, counter-clockwise, of fixed capacity. Coordinates relative to the grid must stay
-/// below 2^30 units (107 km), so that cross products fit 64 bits.
+/// below 2^30 units (107 km), so that cross products fit into 64 bits.
 struct FixedConvex {
     static constexpr int kMaxVertices = 8;
     std::array<FixedPoint, kMaxVertices> vertices{};
@@ -46,7 +46,7 @@ struct FixedConvex {
     return quotient - (a % b < 0 ? 1 : 0);
 }
 
-/// Convex hull of at most 8 points (Andrew's monotone chain, 1979); points on an edge are dropped.
+/// Convex hull of at most 8 points (Andrew's monotone chain, 1979). Drops points on an edge.
 [[nodiscard]] inline FixedConvex convex_hull(std::span<const FixedPoint> points) noexcept {
     std::array<FixedPoint, FixedConvex::kMaxVertices> sorted{};
     const auto n = std::min(points.size(), sorted.size());
@@ -64,7 +64,7 @@ struct FixedConvex {
     const std::size_t lower = size - (size > 0 ? 1 : 0);  // the last point starts the upper chain
     for (std::size_t i = n; i-- > 1;) extend(sorted[i - 1], lower);
     FixedConvex hull;
-    hull.count = static_cast<int>(size > 1 ? size - 1 : size);  // the first point came twice
+    hull.count = static_cast<int>(size > 1 ? size - 1 : size);  // the first point is also the last
     hull.count = std::min(hull.count, FixedConvex::kMaxVertices);
     std::copy_n(chain.begin(), hull.count, hull.vertices.begin());
     return hull;
@@ -80,10 +80,10 @@ struct FixedRun {
     }
 };
 
-/// The cells of row `iy`, among those `within`, whose open square overlaps the open polygon
-/// (separating axes; touching along an edge is no overlap): for a convex shape one run. Exact; one
-/// division for each edge that is not parallel to the row. `relative` counts from the grid's origin
-/// and has an area; row and cells lie within its bounds.
+/// Cells of row `iy`, limited to `within`, whose open square overlaps the open polygon (separating
+/// axes; touching along an edge does not count). They form one run, because the polygon is convex.
+/// Exact; costs one division per edge that is not parallel to the row. `relative` counts from the
+/// grid's origin and has an area; row and cells lie within its bounds.
 [[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
                                              std::int64_t side,
                                              std::int64_t iy,
@@ -92,7 +92,7 @@ struct FixedRun {
     for (int i = 0; i < relative.count; ++i) {
         const FixedPoint a = relative.vertices[static_cast<std::size_t>(i)];
         const FixedPoint b = relative.vertices[static_cast<std::size_t>((i + 1) % relative.count)];
-        // Wanted: dx * (y - a.y) - dy * (x - a.x) > 0 at the corner farthest to the left of a -> b.
+        // The corner farthest to the left of a -> b must have dx * (y - a.y) - dy * (x - a.x) > 0.
         const std::int64_t dy = b.y - a.y;
         const std::int64_t y = b.x > a.x ? low_y + side : low_y;
         const std::int64_t product = (b.x - a.x) * (y - a.y);
@@ -109,7 +109,7 @@ struct FixedRun {
     return within;
 }
 
-/// A polygon as runs of cells: exact, integers only. Without area it has no rows.
+/// A polygon as runs of cells, exact integers. A polygon without area has no rows.
 class RowRuns {
   public:
     RowRuns() = default;
@@ -128,22 +128,22 @@ class RowRuns {
         rows_ = {floor_div(low.y, side_), floor_div(high.y - 1, side_)};
     }
     [[nodiscard]] FixedRun rows() const noexcept { return rows_; }
-    /// Cells of row `iy` whose interior the polygon overlaps; any row may be asked for.
+    /// Cells of row `iy` whose interior overlaps the polygon. Every `iy` is valid.
     [[nodiscard]] FixedRun run(std::int64_t iy) const noexcept {
         if (iy < rows_.first || iy > rows_.last) return {};
         return overlapped_run(relative_, side_, iy, columns_);
     }
 
   private:
-    FixedConvex relative_;  ///< counted from the grid's origin
+    FixedConvex relative_;  ///< relative to the grid's origin
     std::int64_t side_ = 1;
     FixedRun rows_;
     FixedRun columns_;
 };
 
-/// Calls `visit(ix, iy) -> bool` for every cell whose interior the polygon overlaps, rows from the
-/// smallest y, until it returns false; cells outside the map are visited too. Returns whether all
-/// were visited. A polygon without area visits nothing.
+/// Calls `visit(ix, iy) -> bool` for every cell whose interior overlaps the polygon, also outside
+/// the map. Starts at the smallest y and stops when `visit` returns false. Returns true if it
+/// visited all cells. A polygon without area has no cells.
 template <typename Visitor>
 bool for_each_overlapped_cell(const FixedConvex& polygon, const FixedGrid& grid, Visitor&& visit) {
     const RowRuns area(polygon, grid);

@@ -13,7 +13,7 @@
 namespace surefoot::grid {
 namespace {
 
-/// Area of the polygon clipped to a square (Sutherland and Hodgman): the oracle of "overlaps".
+/// Area of the polygon clipped to a square (Sutherland and Hodgman): the oracle for "overlaps".
 double clipped_area(const FixedConvex& polygon, double x, double y, double side) {
     std::vector<std::pair<double, double>> points;
     for (const FixedPoint& p : polygon.points())
@@ -86,8 +86,8 @@ TEST(FixedPolygon, hull_of_few_or_collinear_points_has_no_area) {
     EXPECT_EQ(visited, 0);
 }
 
-/// Whether the open polygon and the open square of cell (ix, iy) overlap (separating axes; touching
-/// along an edge is no overlap): every axis by itself, what the runs must agree with.
+/// True if the open polygon and the open square of cell (ix, iy) overlap (separating axes; touching
+/// along an edge does not count). The oracle for the runs: it tests every axis separately.
 bool overlaps_cell(const FixedConvex& relative,
                    std::int64_t side,
                    std::int64_t ix,
@@ -97,7 +97,7 @@ bool overlaps_cell(const FixedConvex& relative,
     for (int i = 0; i < relative.count; ++i) {
         const FixedPoint a = relative.vertices[static_cast<std::size_t>(i)];
         const FixedPoint b = relative.vertices[static_cast<std::size_t>((i + 1) % relative.count)];
-        // The corner farthest to the left of a -> b: is even that one not inside?
+        // Tests the corner farthest to the left of a -> b: if it is not inside, no corner is.
         const FixedPoint corner{b.y > a.y ? low.x : high.x, b.x > a.x ? high.y : low.y};
         if (cross(a, b, corner) <= 0) return false;
     }
@@ -108,7 +108,7 @@ TEST(FixedPolygon, runs_are_the_cells_that_every_axis_says_overlap) {
     Rng rng(12);
     for (int round = 0; round < 20'000; ++round) {
         const FixedConvex small = random_hull(rng, round % 2 == 0 ? 60 : 9000);
-        // Far out, as large as coordinates may become, nothing overflows.
+        // Nothing overflows at the largest valid coordinates.
         const std::int64_t far =
             round % 3 == 0 ? 0 : (round % 3 == 1 ? 1'000'000'000 : -1'000'000'000);
         FixedConvex hull = small;
@@ -133,8 +133,8 @@ TEST(FixedPolygon, runs_are_the_cells_that_every_axis_says_overlap) {
 
 TEST(FixedPolygon, visits_exactly_the_cells_with_common_area) {
     Rng rng(11);
-    // Integer corners up to 60: an area that is not zero is at least 1 / (2 * 120^2)^2, far above
-    // the rounding of doubles.
+    // With integer corners up to 60, the smallest area above zero is 1 / (2 * 120^2)^2. This is far
+    // above the rounding of doubles.
     constexpr double kNoArea = 1e-9;
     for (int round = 0; round < 800; ++round) {
         const FixedConvex hull = random_hull(rng, 60);

@@ -19,8 +19,8 @@ struct Cell {
     friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// Where a grid lies: axis-parallel square cells, `origin_m` the outer corner of cell (0, 0). A
-/// point belongs to the cell with floor((p - origin) / resolution). NOTATION.md has the drawing.
+/// Position of a grid: axis-parallel square cells; `origin_m` is the outer corner of cell (0, 0). A
+/// point lies in cell floor((p - origin) / resolution). Picture: NOTATION.md.
 struct GridGeometry {
     double resolution_m = 0.025;
     int nx = 0;
@@ -33,7 +33,7 @@ struct GridGeometry {
     [[nodiscard]] bool contains(Cell cell) const noexcept {
         return cell.ix >= 0 && cell.iy >= 0 && cell.ix < nx && cell.iy < ny;
     }
-    /// The cell that holds a point, or nothing outside the grid (NaN is outside).
+    /// The cell of a point; nullopt outside the grid and for NaN.
     [[nodiscard]] std::optional<Cell> cell_at(double x_m, double y_m) const noexcept {
         const double ix = std::floor((x_m - origin_m.x()) / resolution_m);
         const double iy = std::floor((y_m - origin_m.y()) / resolution_m);

@@ -13,22 +13,23 @@
 namespace surefoot::grid {
 namespace {
 
-/// 0.1 mm to 100 m: beyond these a resolution is a damaged number.
+/// Valid resolutions: 0.1 mm to 100 m. Other values come from damaged data.
 constexpr double kFinest_m = 1e-4;
 constexpr double kCoarsest_m = 100.0;
-/// Beyond a float tells no more than decimetres; keeps sums and squares of heights in its range.
+/// Highest magnitude of a height. Above it a float resolves only decimetres. The limit also keeps
+/// sums and squares of heights finite.
 constexpr float kHighest_m = 1e6F;
-/// How far a quaternion may be from length one, squared: what rounding to a file leaves.
+/// Tolerance for the squared length of a quaternion: covers the rounding of a file.
 constexpr double kNormTolerance = 1e-6;
 
-/// NaN, where it says that something is not known, or a number that is not negative.
+/// True for NaN (unknown) and for finite numbers from 0.
 bool absent_or_not_negative(float value) {
     return std::isnan(value) || (std::isfinite(value) && value >= 0.0F);
 }
 
 std::optional<std::string> problem_of_known(const MapRegion& r, std::size_t i) {
     const auto fault = [](const char* layer, float value, const char* limit) {
-        return fmt::format("{} {} where {}", layer, value, limit);
+        return fmt::format("{} {}; {}", layer, value, limit);
     };
     const float height_m = r.height_m.data()[i];
     const float var_m2 = r.height_var_m2.data()[i];
@@ -39,20 +40,21 @@ std::optional<std::string> problem_of_known(const MapRegion& r, std::size_t i) {
     const float confidence = r.confidence.data()[i];
     const float density = r.density_ratio.data()[i];
     const auto is_height = [](float z_m) { return z_m >= -kHighest_m && z_m <= kHighest_m; };
-    if (!is_height(height_m)) return fault("elevation", height_m, "-1e6 to 1e6 m are possible");
+    if (!is_height(height_m)) return fault("elevation", height_m, "it must be -1e6 to 1e6 m");
     if (!(std::isfinite(var_m2) && var_m2 > 0.0F))
-        return fault("variance", var_m2, "a positive one is needed");
+        return fault("variance", var_m2, "it must be positive");
     if (!(std::isfinite(drift_m) && drift_m >= 0.0F))
-        return fault("drift", drift_m, "none is negative or NaN");
-    if (!is_height(highest_m)) return fault("highest", highest_m, "-1e6 to 1e6 m are possible");
-    // Each is robust in its own way: of few points the lowest may be above the highest.
-    if (!is_height(lowest_m)) return fault("lowest", lowest_m, "-1e6 to 1e6 m are possible");
+        return fault("drift", drift_m, "it must be 0 or more");
+    if (!is_height(highest_m)) return fault("highest", highest_m, "it must be -1e6 to 1e6 m");
+    // Not compared with `highest`: both are robust values, and with few points the lowest may
+    // exceed the highest.
+    if (!is_height(lowest_m)) return fault("lowest", lowest_m, "it must be -1e6 to 1e6 m");
     if (!(std::isnan(clearance_m) || is_height(clearance_m)))
-        return fault("clearance", clearance_m, "-1e6 to 1e6 m are possible");
+        return fault("clearance", clearance_m, "it must be -1e6 to 1e6 m");
     if (!(confidence >= 0.0F && confidence <= 1.0F))
-        return fault("confidence", confidence, "0 to 1 are possible");
+        return fault("confidence", confidence, "it must be 0 to 1");
     if (!absent_or_not_negative(density))
-        return fault("density_ratio", density, "none is negative or infinite");
+        return fault("density_ratio", density, "it must be 0 or more and finite");
     if (r.count.data()[i] == 0) return "count 0 where the height is known";
     return std::nullopt;
 }
@@ -61,7 +63,7 @@ std::optional<std::string> problem_of_unknown(const MapRegion& r, std::size_t i)
     std::optional<std::string> problem;
     for_each_layer([&](const RegionLayer& layer, auto member, auto unknown) {
         const auto value = (r.*member).data()[i];
-        // NaN is not equal to itself.
+        // NaN is not equal to itself, so `unknown == unknown` is false for NaN.
         const bool is_unknown = unknown == unknown ? value == unknown : value != value;
         if (!is_unknown && !problem)
             problem = fmt::format("{} {} where the height is unknown", layer.name, value);
@@ -71,19 +73,22 @@ std::optional<std::string> problem_of_unknown(const MapRegion& r, std::size_t i)
 
 std::optional<std::string> problem_of_head(const MapRegion& r) {
     if (!(r.resolution_m >= kFinest_m && r.resolution_m <= kCoarsest_m)) {
-        return fmt::format(
-            "cells of {:g} m; {:g} to {:g} m are possible", r.resolution_m, kFinest_m, kCoarsest_m);
+        return fmt::format("cells of {:g} m; a cell must be {:g} to {:g} m",
+                           r.resolution_m,
+                           kFinest_m,
+                           kCoarsest_m);
     }
     const auto printable = [](char c) { return c > ' ' && c <= '~'; };
     if (r.frame.empty() || r.frame.size() > kMaxFrameName ||
         !std::all_of(r.frame.begin(), r.frame.end(), printable)) {
-        return fmt::format("its frame needs a name of 1 to {} printable characters without blanks",
-                           kMaxFrameName);
+        return fmt::format(
+            "the name of its frame must be 1 to {} printable characters without blanks",
+            kMaxFrameName);
     }
     if (!r.T_frame_body.all_finite() ||
         std::abs(r.T_frame_body.rotation.squaredNorm() - 1.0) > kNormTolerance) {
-        return "the pose of base_link is not one: its numbers are not finite or its quaternion is "
-               "not of length 1";
+        return "the pose of base_link is invalid: a number is not finite or the quaternion does "
+               "not have length 1";
     }
     return std::nullopt;
 }
@@ -93,7 +98,7 @@ std::optional<std::string> problem_of_head(const MapRegion& r) {
 std::optional<std::string> LatticeBox::problem() const {
     if (nx < 1 || ny < 1 || nx > kMaxRegionSide || ny > kMaxRegionSide ||
         std::int64_t{nx} * ny > kMaxRegionCells) {
-        return fmt::format("{} x {} cells; 1 to {} a side and {} in all are possible",
+        return fmt::format("{} x {} cells; a side must have 1 to {} cells and a region at most {}",
                            nx,
                            ny,
                            kMaxRegionSide,
@@ -104,8 +109,8 @@ std::optional<std::string> LatticeBox::problem() const {
     };
     if (!is_near(first_ix) || !is_near(first_iy)) {
         return fmt::format(
-            "first cell ({}, {}) of the lattice; up to {} from the origin are "
-            "possible",
+            "the first cell is ({}, {}) of the lattice; it must be within {} cells of the "
+            "origin",
             first_ix,
             first_iy,
             kMaxLatticeIndex);
@@ -114,7 +119,7 @@ std::optional<std::string> LatticeBox::problem() const {
 }
 
 LatticeBox box_of(const GridGeometry& geometry) {
-    // An origin is a whole number of cells, so the rounding takes back that of the product alone.
+    // The origin is a whole number of cells: rounding only removes the error of the product.
     const Eigen::Vector2d first = geometry.origin_m / geometry.resolution_m;
     return {saturated_integer<std::int64_t>(std::round(first.x())),
             saturated_integer<std::int64_t>(std::round(first.y())),
@@ -123,7 +128,7 @@ LatticeBox box_of(const GridGeometry& geometry) {
 }
 
 LatticeBox united(const LatticeBox& a, const LatticeBox& b) {
-    // Beyond the largest int a box is as impossible as at it.
+    // Limits the side to the largest int; such a box is invalid in any case.
     const auto side = [](std::int64_t cells) {
         return static_cast<int>(std::min<std::int64_t>(cells, std::numeric_limits<int>::max()));
     };
@@ -157,7 +162,7 @@ std::optional<std::string> MapRegion::problem() const {
         const auto& values = this->*member;
         if (values.width() != box.nx || values.height() != box.ny)
             wrong_size =
-                fmt::format("layer {} is not of {} x {} cells", layer.name, box.nx, box.ny);
+                fmt::format("layer {} does not have {} x {} cells", layer.name, box.nx, box.ny);
     });
     if (wrong_size) return wrong_size;
     for (std::size_t i = 0; i < height_m.size(); ++i) {
@@ -173,7 +178,7 @@ std::optional<std::string> MapRegion::problem() const {
 MapRegion cut(MapRegion region, const LatticeBox& box) {
     SUREFOOT_ASSERT(!box.problem());
     const LatticeBox& had = region.box;
-    const std::int64_t dx = box.first_ix - had.first_ix;  // column in `region` of column 0 here
+    const std::int64_t dx = box.first_ix - had.first_ix;  // column of `region` at new column 0
     const std::int64_t dy = box.first_iy - had.first_iy;
     const std::int64_t begin_ix = std::clamp<std::int64_t>(-dx, 0, box.nx);
     const std::int64_t end_ix = std::clamp<std::int64_t>(had.nx - dx, begin_ix, box.nx);

@@ -14,21 +14,21 @@
 namespace surefoot::grid {
 
 /// A rectangle of lattice cells. Cell k of the lattice covers [k resolution, (k+1) resolution) from
-/// the origin of its frame, as in `MovingWindow`: two regions of one frame and one resolution have
-/// the same cells.
+/// the origin of its frame, as in `MovingWindow`. Two regions with the same frame and resolution
+/// therefore share their cells.
 struct LatticeBox {
     std::int64_t first_ix = 0;  ///< lattice index of cell (0, 0)
     std::int64_t first_iy = 0;
     int nx = 0;
     int ny = 0;
 
-    /// Why no region can have this box, or nothing: sides, number of cells, way from the origin.
+    /// Problem of the box, or nullopt: its sides, number of cells, or distance from the origin.
     [[nodiscard]] std::optional<std::string> problem() const;
     friend bool operator==(const LatticeBox&, const LatticeBox&) = default;
 };
 
-/// Limits of a region: 102 m square at 25 mm, with all layers 740 MB; and 2^40 cells from the
-/// origin, where a double still tells millionths of a cell.
+/// Limits of a region: 102 m square at 25 mm (740 MB with all layers), within 2^40 cells of the
+/// origin, where a double still resolves a millionth of a cell.
 inline constexpr int kMaxRegionSide = 1 << 14;
 inline constexpr std::int64_t kMaxRegionCells = std::int64_t{1} << 24;
 inline constexpr std::int64_t kMaxLatticeIndex = std::int64_t{1} << 40;
@@ -37,22 +37,22 @@ inline constexpr std::size_t kMaxFrameName = 31;
 
 /// The box of a geometry whose cells lie on the lattice.
 [[nodiscard]] LatticeBox box_of(const GridGeometry& geometry);
-/// The smallest box around both; may be larger than any region.
+/// The smallest box around both boxes. It may exceed the limits of a region.
 [[nodiscard]] LatticeBox united(const LatticeBox& a, const LatticeBox& b);
 
-/// A piece of an elevation map that can be kept, sent and put together with others: what was known
-/// of the ground at `stamp_ns`. Meaning of the layers: `elevation::ElevationLayers`. A cell whose
-/// height is NaN is unknown; then count and seen are 0 and all else is NaN.
+/// A piece of an elevation map that can be stored, sent and merged: the knowledge about the ground
+/// at `stamp_ns`. For the meaning of the layers see `elevation::ElevationLayers`. In an unknown
+/// cell the height is NaN, count and seen are 0, and all other layers are NaN.
 ///
-/// Variance and drift are relative to the body at `stamp_ns`: whoever uses the region from another
-/// pose adds what the way there may have blurred (`elevation::pay_for_motion`).
+/// Variance and drift are relative to the body at `stamp_ns`. To use the region from another pose,
+/// add the uncertainty of the motion in between (`elevation::pay_for_motion`).
 struct MapRegion {
     double resolution_m = 0.025;
     LatticeBox box;
 
-    std::string frame = "odom";  ///< name of the frame that the lattice and the heights are in
-    /// When that frame was placed: the stamp of the run's first image. Every run has an odom of its
-    /// own, so a frame is the same only if name and time are.
+    std::string frame = "odom";  ///< frame of the lattice and of the heights
+    /// Start time of the frame: the stamp of the run's first image. Every run has its own odom, so
+    /// two frames are the same only if name and time agree.
     std::int64_t frame_since_ns = 0;
     std::int64_t stamp_ns = 0;
     Pose T_frame_body;  ///< base_link at `stamp_ns`
@@ -71,18 +71,18 @@ struct MapRegion {
 
     [[nodiscard]] GridGeometry geometry() const;
     [[nodiscard]] std::int64_t known_cells() const noexcept;
-    /// First reason why this is no region, with the cell and the value; or nothing.
+    /// First problem of the region, with the cell and the value; nullopt if it is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// What a layer is called and measured in, in files and tables alike.
+/// Name and unit of a layer, in files and tables.
 struct RegionLayer {
     const char* name;
     const char* unit;  ///< empty = a pure number
 };
 
-/// Calls visit(RegionLayer, member, value of unknown cells) for every layer: the one list of
-/// layers. A member is a pointer to one of the members of MapRegion.
+/// Calls visit(RegionLayer, member, value of unknown cells) for every layer: the only list of
+/// layers. A member is a pointer to a member of MapRegion.
 template <typename Visit>
 void for_each_layer(const Visit& visit) {
     using R = MapRegion;
@@ -98,11 +98,11 @@ void for_each_layer(const Visit& visit) {
     visit(RegionLayer{"density_ratio", ""}, &R::density_ratio, kNanF);
 }
 
-/// What `region` knows of another box; cells that it does not reach are unknown. `box.problem()`
+/// The region, cut or extended to another box; cells outside `region` are unknown. `box.problem()`
 /// must be empty.
 [[nodiscard]] MapRegion cut(MapRegion region, const LatticeBox& box);
 
-/// Makes a cell unknown, named by iy * nx + ix.
+/// Makes cell iy * nx + ix unknown.
 void forget(MapRegion& region, std::size_t cell);
 
 }  // namespace surefoot::grid

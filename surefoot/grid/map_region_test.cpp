@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// All cells known; the height tells the place: 100 x + y in lattice cells.
+/// All cells are known. The height encodes the cell: 100 x + y in lattice cells.
 MapRegion known_region(const LatticeBox& box) {
     MapRegion region;
     region.box = box;

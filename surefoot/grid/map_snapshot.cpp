@@ -24,8 +24,9 @@ std::uint64_t word_at(const unsigned char* bytes) noexcept {
     return word;
 }
 
-/// Four independent chains keep the multiplier busy: one chain alone waits for every product. Plain
-/// variables, because an array of lanes would live in memory. `count` elements from `first` on.
+/// Hashes `count` elements from `first`. Four independent chains keep the multiplier busy: a single
+/// chain waits for every product. Plain variables, because the compiler would keep an array of
+/// lanes in memory.
 template <typename Layer>
 std::uint64_t add_part(std::uint64_t hash,
                        const Layer& layer,
@@ -90,7 +91,8 @@ std::uint64_t top_checksum(const MapSnapshot& s) noexcept {
 }
 
 bool has_sound_header(const MapSnapshot& s) noexcept {
-    // 5 mm is the finest and 0.2 m the coarsest cell that the rules of the gate were made for.
+    // The rules of the gate are valid for cells of 5 mm to 0.2 m. 96 100 km: up to here no product
+    // of quantised coordinates overflows.
     constexpr std::int32_t kFinestTenthMm = 50;
     constexpr std::int32_t kCoarsestTenthMm = 2000;
     // 100 km: what quantised coordinates may reach without any product overflowing.
@@ -99,7 +101,7 @@ bool has_sound_header(const MapSnapshot& s) noexcept {
         return value >= -kFarthestTenthMm && value <= kFarthestTenthMm;
     };
     const double norm_sq =
-        s.body_cos_yaw * s.body_cos_yaw + s.body_sin_yaw * s.body_sin_yaw;  // NaN fails the test
+        s.body_cos_yaw * s.body_cos_yaw + s.body_sin_yaw * s.body_sin_yaw;  // NaN fails this test
     return s.magic == MapSnapshot::kMagic && s.layout == MapSnapshot::kLayout && s.nx >= 1 &&
            s.nx <= MapSnapshot::kMaxSide && s.ny >= 1 && s.ny <= MapSnapshot::kMaxSide &&
            s.edge_count >= 0 && s.edge_count <= MapSnapshot::kMaxEdges &&

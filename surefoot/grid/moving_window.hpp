@@ -7,8 +7,8 @@
 
 namespace surefoot::grid {
 
-/// By how many cells a window moved: what lay in cell (ix, iy) lies in (ix - dx, iy - dy)
-/// afterwards.
+/// Motion of a window in cells: the content of cell (ix, iy) moves to cell (ix - dx, iy -
+/// dy).
 struct Shift {
     int dx = 0;
     int dy = 0;
@@ -16,11 +16,11 @@ struct Shift {
     friend bool operator==(const Shift&, const Shift&) = default;
 };
 
-/// A square window over a fixed lattice: lattice cell k covers [k resolution, (k+1) resolution), so
-/// a place on the ground belongs to the same cell wherever the window is. Moves by whole cells
-/// only.
+/// A square window over a fixed lattice. Lattice cell k covers [k resolution, (k+1) resolution), so
+/// a ground position belongs to the same cell for every position of the window. The window moves by
+/// whole cells only.
 ///
-/// Starts centred on the origin. Frame: odom. Its layers are `SlidingLayer`s.
+/// Starts centred on the origin. Frame: odom. The layers of the window are `SlidingLayer`s.
 class MovingWindow {
   public:
     /// `length_m` is rounded to whole cells, at least one.
@@ -31,8 +31,8 @@ class MovingWindow {
     [[nodiscard]] std::int64_t first_ix() const noexcept { return first_ix_; }
     [[nodiscard]] std::int64_t first_iy() const noexcept { return first_iy_; }
 
-    /// Moves by the number of cells nearest to the way from the window's centre to the point; half
-    /// a cell rounds away from zero. A point that is not finite moves nothing.
+    /// Moves the window's centre towards the point by the nearest number of cells; half a cell
+    /// rounds away from zero. Ignores a point that is not finite.
     Shift center_on(double x_m, double y_m);
 
   private:

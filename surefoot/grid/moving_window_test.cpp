@@ -20,7 +20,7 @@ constexpr int kUnknown = -1;
 
 using Lattice = std::map<std::pair<std::int64_t, std::int64_t>, int>;
 
-/// Forgets what lies outside of the window, as the window itself must.
+/// Removes the cells outside the window, as the window must do.
 void crop(Lattice& truth, const MovingWindow& window) {
     std::erase_if(truth, [&](const auto& entry) {
         const std::int64_t ix = entry.first.first - window.first_ix();
@@ -55,7 +55,7 @@ TEST(MovingWindow, StartsCentredOnTheOriginWithTheRoundedLength) {
 }
 
 TEST(MovingWindow, MovesByWholeCellsHalvesAwayFromZero) {
-    MovingWindow window(2.0, 0.0625);  // a power of two: halves are exact
+    MovingWindow window(2.0, 0.0625);  // a power of two, so that half cells are exact
     EXPECT_EQ(window.center_on(0.03124, -0.03124), (Shift{0, 0}));
     EXPECT_EQ(window.center_on(0.03125, -0.03125), (Shift{1, -1}));
     EXPECT_DOUBLE_EQ(window.geometry().origin_m.x(), -1.0 + 0.0625);
@@ -96,7 +96,7 @@ TEST(MovingWindow, ContentsFollowARandomWalkLikeAMapByLatticeIndex) {
             crop(truth, window);
             const Eigen::Vector2d centre_m =
                 window.geometry().origin_m + Eigen::Vector2d::Constant(0.025 * n);
-            // Half a cell and the rounding of a few additions.
+            // Half a cell plus the rounding of a few additions.
             ASSERT_LE((centre_m - Eigen::Vector2d(x_m, y_m)).cwiseAbs().maxCoeff(), 0.025 + 1e-9);
             ASSERT_TRUE(same(truth, window, layer)) << "length " << length_m << " step " << step
                                                     << " shift " << shift.dx << ", " << shift.dy;

@@ -13,13 +13,13 @@
 
 namespace surefoot::grid {
 
-/// A layer of a moving window: dense and in geometric order like an `Image`, and moving it by some
-/// cells writes those cells alone that came into view.
+/// A layer of a moving window: dense and in geometric order like an `Image`. A shift writes only
+/// the cells that come into view.
 ///
-/// The rows follow each other in a longer piece of memory. Cell (ix + dx, iy + dy) lies dy rows and
-/// dx cells behind cell (ix, iy), so that a shift moves the beginning by dy * nx + dx and nothing
-/// else; what then stands in the cells that came into view is overwritten. At the end of the memory
-/// (after the window has moved by half its length) everything is moved back to the middle.
+/// The rows are consecutive in a larger block of memory. Cell (ix + dx, iy + dy) lies dy rows and
+/// dx cells behind cell (ix, iy), so a shift only moves the start by dy * nx + dx. It then
+/// overwrites the cells that come into view. At the end of the block (after a motion of half the
+/// window length) all cells are copied back to the middle.
 template <typename T>
 class SlidingLayer {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -57,7 +57,7 @@ class SlidingLayer {
 
     void fill(T value) { std::fill_n(data(), size(), value); }
 
-    /// Moves the contents along with their window and gives the cells that came into view `value`.
+    /// Moves the content with the window; cells that come into view get `value`.
     void shift(Shift shift, T value) {
         if (shift.is_zero()) return;
         if (!keeps_any(shift)) {
@@ -74,8 +74,8 @@ class SlidingLayer {
         const int first_kept_iy = shift.dy > 0 ? 0 : -shift.dy;
         fill_columns(row(first_kept_iy) + first_new_ix, std::abs(shift.dx), kept_rows, value);
     }
-    /// The same for a layer that nobody reads in those cells before writing it: they keep what
-    /// happens to be there. Touches no cell but at the end of the memory.
+    /// Like shift, but cells that come into view keep arbitrary values: for layers that write them
+    /// before reading. Copies cells only at the end of the memory block.
     void slide(Shift shift) {
         if (keeps_any(shift)) move_begin(static_cast<std::ptrdiff_t>(shift.dy) * nx_ + shift.dx);
     }
@@ -84,8 +84,8 @@ class SlidingLayer {
     [[nodiscard]] bool keeps_any(Shift shift) const noexcept {
         return std::abs(shift.dx) < nx_ && std::abs(shift.dy) < ny_;
     }
-    /// A strip of a few columns. Of bytes column by column: a call of memset for each row takes
-    /// longer.
+    /// Fills a strip of a few columns. Bytes are filled column by column, because one memset per
+    /// row takes longer.
     void fill_columns(T* first, int columns, int rows, T value) {
         if constexpr (sizeof(T) == 1) {
             for (int ix = 0; ix < columns; ++ix, ++first) {
@@ -103,7 +103,7 @@ class SlidingLayer {
             begin_ = moved;
             return;
         }
-        // Only what stays in view is there to be moved.
+        // Copies only the cells that stay in view.
         const std::ptrdiff_t middle = cells / 2;
         const std::ptrdiff_t kept = cells - std::abs(by);
         if (kept > 0) {

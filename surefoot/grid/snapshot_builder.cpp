@@ -15,14 +15,14 @@ namespace surefoot::grid {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-constexpr double kFarthestM = 1e5;    ///< of the pose, the map and edges from the origin of odom
-constexpr double kHighestM = 1000.0;  ///< a height beyond it is a broken number, not ground
+constexpr double kFarthestM = 1e5;    ///< largest distance of pose, map and edges from odom
+constexpr double kHighestM = 1000.0;  ///< a larger height is a damaged number, not ground
 
-/// Of a length within kFarthestM: check() and is_sound() see to it.
+/// For lengths within kFarthestM; check() and is_sound() ensure this.
 std::int64_t tenth_mm(double length_m) {
     return std::llround(length_m * kTenthMmPerM);  // in range: at most 10^9
 }
-/// Of a height within kHighestM.
+/// For heights within kHighestM.
 std::int32_t height_tenth_mm(double height_m) {
     return static_cast<std::int32_t>(tenth_mm(height_m));  // in range: at most 10^7
 }
@@ -30,14 +30,15 @@ std::int32_t tenth_mm_up(double length_m) {
     return static_cast<std::int32_t>(std::ceil(length_m * kTenthMmPerM));  // in range: at most 10^7
 }
 
-/// Zero or more, rounded up; NaN and what does not fit become the largest value: known to be bad.
+/// A value from 0, rounded up. NaN and too large values become the largest value, which marks them
+/// as bad.
 std::uint16_t saturated_up(double length_m) {
     const double scaled = std::ceil(length_m * kTenthMmPerM);
     if (!(scaled >= 0.0 && scaled < 65535.0)) return 0xffff;
     return static_cast<std::uint16_t>(scaled);  // in range, as checked
 }
 
-/// The same for an angle; what is not known or too large stays unknown.
+/// The same for an angle. Unknown and too large angles become unknown.
 std::uint32_t microradians_up(double angle_rad) {
     const double scaled = std::ceil(angle_rad * 1e6);
     constexpr double kLargest = 1e9;
@@ -45,7 +46,7 @@ std::uint32_t microradians_up(double angle_rad) {
     return static_cast<std::uint32_t>(scaled);  // in range, as checked
 }
 
-/// The part of the grid that fits into a snapshot: first cell of it, and its size.
+/// Part of the grid that fits into a snapshot: its first cell and its size.
 struct Window {
     int x = 0;
     int y = 0;
@@ -80,21 +81,22 @@ Status check(const SnapshotInput& input) {
     if (g.nx < 1 || g.ny < 1) return refuse("the map has no cells");
     if (!(g.resolution_m >= 0.005 && g.resolution_m <= 0.2))
         return refuse("cells of " + std::to_string(g.resolution_m) +
-                      " m; the gate works with 0.005 to 0.2 m");
+                      " m; the gate needs 0.005 to 0.2 m: change elevation.resolution_m");
     const double cells = g.resolution_m * kTenthMmPerM;
     if (std::abs(cells - std::round(cells)) > 1e-6)
         return refuse("cells of " + std::to_string(g.resolution_m) +
-                      " m are no whole number of 0.1 mm; choose elevation.resolution_m so");
+                      " m are not a whole number of 0.1 mm; change elevation.resolution_m");
     if (!g.origin_m.allFinite() || g.origin_m.cwiseAbs().maxCoeff() > kFarthestM ||
         !input.T_odom_body.all_finite() ||
         input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > kFarthestM)
-        return refuse("the pose is not finite or farther than 100 km from the origin of odom");
+        return refuse(
+            "the pose or the map is not finite or farther than 100 km from the origin of odom");
     for (const auto& [name, length_m] : {std::pair{"connect_step_m", input.connect_step_m},
                                          std::pair{"drop_step_m", input.drop_step_m},
                                          std::pair{"drop_reach_m", input.drop_reach_m}}) {
         if (!(length_m >= 0.0 && length_m <= kHighestM))
             return refuse(std::string(name) + " of " + std::to_string(length_m) +
-                          " m; 0 to 1000 m are possible");
+                          " m; it must be 0 to 1000 m");
     }
     if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
         return refuse("height and variance must have the size of the map");
@@ -137,7 +139,7 @@ void write_header(const SnapshotInput& input, const Window& window, MapSnapshot&
     out.padding = {};
 }
 
-/// Used cells become unknown; those beyond them zero, so that equal maps are equal bytes.
+/// Sets used cells to unknown and all other cells to zero, so that equal maps have equal bytes.
 void clear_cells(MapSnapshot& out) {
     const auto used = static_cast<std::ptrdiff_t>(out.nx) * out.ny;
     const auto clear = [used](auto& layer, auto unknown) {
@@ -155,13 +157,13 @@ void clear_cells(MapSnapshot& out) {
 }
 
 void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std::size_t at) {
-    if (!input.hidden.empty() && input.hidden.at(u, v) != 0) return;  // stays unknown
+    if (!input.hidden.empty() && input.hidden.at(u, v) != 0) return;  // the cell stays unknown
     const auto value = [u, v](ImageView<const float> layer) {
         return static_cast<double>(layer.at(u, v));
     };
     if (!input.drop_evidence.empty()) {
         const double evidence = value(input.drop_evidence);
-        // Absence of a drop is never taken from a broken number.
+        // A damaged number never proves that there is no drop.
         out.drop_evidence[at] = std::isnan(evidence)
                                     ? std::uint8_t{255}
                                     : saturated_integer<std::uint8_t>(std::round(255.0 * evidence));
@@ -177,7 +179,8 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
     if (!input.clearance_m.empty()) {
         const double clearance_m = value(input.clearance_m);
-        // NaN = nothing was seen above. Negative cannot be: treat it as no room at all.
+        // NaN = no obstacle above was observed. A negative clearance is damaged: treat it as no
+        // room.
         const double scaled = std::floor(std::max(clearance_m, 0.0) * kTenthMmPerM);
         if (!std::isnan(clearance_m) && scaled < 65535.0)
             out.clearance_tenth_mm[at] =
@@ -204,13 +207,13 @@ bool is_sound(const SnapshotInput::Edge& edge) {
            edge.across_sigma_m <= kHighestM;
 }
 
-/// The nearest edges, nearest first; broken numbers are left out.
+/// Writes the nearest edges, nearest first. Leaves out damaged numbers.
 void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     std::vector<std::pair<double, const SnapshotInput::Edge*>> sorted;
     const Eigen::Vector2d body_m = input.T_odom_body.translation_m.head<2>();
     for (const SnapshotInput::Edge& edge : input.edges)
         if (is_sound(edge)) sorted.emplace_back(distance_m(edge, body_m), &edge);
-    std::sort(sorted.begin(), sorted.end());  // of two as far away the one that came first
+    std::sort(sorted.begin(), sorted.end());  // equal distances: in order of the input
     const std::size_t count =
         std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
     out.edge_count = static_cast<std::int32_t>(count);
@@ -233,7 +236,7 @@ void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     }
 }
 
-/// Flood fill with an explicit stack: every cell is pushed once, and its index fits 16 bits.
+/// Flood fill with an explicit stack. Every cell is pushed once, and its index fits 16 bits.
 class Labeller {
   public:
     Labeller(MapSnapshot& map, std::int32_t step_tenth_mm) : map_(map), step_(step_tenth_mm) {}
@@ -243,7 +246,7 @@ class Labeller {
         const int count = map_.nx * map_.ny;
         for (int at = 0; at < count; ++at) {
             if (!is_free(at)) continue;
-            if (++label > 0xffff) return;  // the rest keeps kNoComponent, which inhibits
+            if (++label > 0xffff) return;  // other cells keep kNoComponent, which inhibits
             fill(at, static_cast<std::uint16_t>(label));
         }
     }
@@ -283,14 +286,14 @@ class Labeller {
     std::size_t size_ = 0;
 };
 
-/// A row or column of the snapshot in one direction.
+/// A row or column of the snapshot, in one direction.
 struct Line {
     std::ptrdiff_t first = 0;
     std::ptrdiff_t stride = 1;
     int count = 0;
 };
 
-/// Marks the upper cells of drops that begin along a line; see build_snapshot().
+/// Marks the upper cells of drops along a line; see build_snapshot().
 void mark_drops_on_line(const Line& line,
                         std::int32_t step_tenth_mm,
                         int reach_cells,
@@ -299,7 +302,7 @@ void mark_drops_on_line(const Line& line,
     int upper_i = 0;
     for (int i = 0; i < line.count; ++i) {
         const std::ptrdiff_t cell = line.first + i * line.stride;
-        // Ground lies there, or lower.
+        // The ground of the cell lies at this height or lower.
         const std::int32_t ceiling = out.height_tenth_mm[static_cast<std::size_t>(cell)];
         if (upper >= 0 && i - upper_i <= reach_cells && ceiling != MapSnapshot::kUnknownHeight &&
             ceiling - out.height_tenth_mm[static_cast<std::size_t>(upper)] < -step_tenth_mm) {

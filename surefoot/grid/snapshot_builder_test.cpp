@@ -16,7 +16,7 @@
 namespace surefoot::grid {
 namespace {
 
-/// Layers of a map and the input that looks at them.
+/// Layers of a map, and the snapshot input that refers to them.
 struct TestMap {
     GridGeometry geometry;
     Layer height, variance, drift;
@@ -59,7 +59,7 @@ TEST(MapSnapshot, checksum_sees_every_field_and_any_single_bit) {
     MapSnapshot& s = const_cast<MapSnapshot&>(map.build());
     ASSERT_TRUE(is_intact(s));
     Rng rng(5);
-    // Every byte that is no implicit padding: flip one bit, see it, flip it back.
+    // For every byte except implicit padding: flip one bit, expect detection, flip it back.
     const auto flip_everywhere = [&](void* field, std::size_t size, int tries, const char* name) {
         auto* bytes = static_cast<unsigned char*>(field);
         for (int i = 0; i < tries; ++i) {
@@ -248,7 +248,7 @@ TEST(SnapshotBuilder, labels_follow_connected_surfaces) {
     EXPECT_EQ(label(2, 0), MapSnapshot::kNoComponent);
 }
 
-/// Oracle: relax labels to the smallest neighbour until nothing changes.
+/// Oracle: lowers labels to the smallest neighbour until nothing changes.
 std::vector<int> slow_labels(const MapSnapshot& s, std::int32_t step) {
     const int n = s.nx * s.ny;
     std::vector<int> label(static_cast<std::size_t>(n));
@@ -304,7 +304,8 @@ TEST(SnapshotBuilder, a_full_map_is_one_surface_and_a_checkerboard_is_many) {
     for (int v = 0; v < 256; ++v) {
         for (int u = 0; u < 256; ++u) board.height.at(u, v) = (u + v) % 2 == 0 ? 0.0F : 1.0F;
     }
-    // 65536 surfaces for 65535 labels: the last one gets none, which the gate refuses.
+    // There are 65535 labels for 65536 surfaces: the last surface gets none, and the gate refuses
+    // it. 315 0.5 m down behind 5 occluded cells
     const MapSnapshot& many = board.build();
     EXPECT_EQ(many.component[65534], 65535);
     EXPECT_EQ(many.component[65535], MapSnapshot::kNoComponent);
@@ -315,13 +316,13 @@ TEST(SnapshotBuilder, a_drop_marks_its_upper_edge_across_a_shadow_only) {
     const MapSnapshot& s = map.build();
     EXPECT_EQ(s.drop_evidence[2], 255) << "upper edge";
     for (const std::size_t at : {0U, 1U, 3U, 7U, 8U, 9U}) EXPECT_EQ(s.drop_evidence[at], 0) << at;
-    // Nothing measured within reach: unknown stays merely unknown.
+    // Without a measured cell within reach, unknown cells are no drop.
     std::string row(60, '?');
     row[0] = '5';
     row[59] = '0';
     TestMap far({row});
     EXPECT_EQ(far.build().drop_evidence[0], 0);
-    // A level floor behind a shadow is no drop.
+    // A level floor behind an occluded region is no drop.
     TestMap level({"555???55"});
     for (const std::uint8_t evidence : level.build().drop_evidence) ASSERT_EQ(evidence, 0);
 }
@@ -332,7 +333,7 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
     free_m.at(2, 0) = 0.48F;
     free_m.at(4, 0) = 0.44F;  // 60 mm below the edges on both sides
     free_m.at(10, 0) = 0.46F;
-    free_m.at(1, 0) = -1.0F;  // of a known cell: says nothing
+    free_m.at(1, 0) = -1.0F;  // of a known cell: ignored
     SnapshotInput input = map.input();
     input.free_above_m = std::as_const(free_m).view();
     ASSERT_TRUE(build_snapshot(input, *map.out).ok());
@@ -345,9 +346,9 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
 TEST(SnapshotBuilder, what_lines_of_sight_left_for_unknown_ground_is_kept_and_is_no_measurement) {
     TestMap map({"5???5"});
     Layer free_m(5, 1, kNanF);
-    free_m.at(0, 0) = -1.0F;     // of a known cell: says nothing
-    free_m.at(1, 0) = 0.12341F;  // rounded up: ground lies lower
-    free_m.at(3, 0) = 2000.0F;   // no height of anything
+    free_m.at(0, 0) = -1.0F;     // of a known cell: ignored
+    free_m.at(1, 0) = 0.12341F;  // rounded up: the ground lies lower
+    free_m.at(3, 0) = 2000.0F;   // too large for a height
     SnapshotInput input = map.input();
     input.free_above_m = std::as_const(free_m).view();
     ASSERT_TRUE(build_snapshot(input, *map.out).ok());
@@ -399,7 +400,7 @@ SnapshotInput::Edge edge_at(double x_m) {
 }
 
 TEST(SnapshotBuilder, edges_are_kept_from_the_origin_of_the_snapshot_and_sigmas_rounded_up) {
-    TestMap map(400, 300);  // is cropped: the snapshot's origin is not that of the map
+    TestMap map(400, 300);  // larger than a snapshot: the snapshot's origin differs from the map's
     SnapshotInput input = map.input();
     input.T_odom_body.translation_m = {5.0, 3.75, 0.99};
     const SnapshotInput::Edge edges[] = {
@@ -421,7 +422,7 @@ TEST(SnapshotBuilder, the_nearest_edges_come_first_and_no_more_than_fit) {
     TestMap map(8, 8);
     constexpr std::size_t kMany = MapSnapshot::kMaxEdges + 40;
     std::vector<SnapshotInput::Edge> edges;
-    // In disorder: 79 and the number of edges have no common divisor.
+    // Shuffles the edges: 79 and the number of edges have no common divisor.
     for (std::size_t i = 0; i < kMany; ++i)
         edges.push_back(edge_at(0.01 * static_cast<double>(79 * i % kMany + 1)));
     SnapshotInput input = map.input();
@@ -431,7 +432,7 @@ TEST(SnapshotBuilder, the_nearest_edges_come_first_and_no_more_than_fit) {
     for (std::size_t i = 0; i < MapSnapshot::kMaxEdges; ++i)
         ASSERT_EQ(map.out->edges[i].from_x_tenth_mm, 100 * static_cast<int>(i + 1)) << i;
     EXPECT_TRUE(is_intact(*map.out));
-    // Near is what comes near anywhere along the edge, not at its ends or its middle.
+    // The distance is that of the nearest point on the edge, not of its ends or its middle.
     const SnapshotInput::Edge two[] = {edge_at(0.3), {{0.2, -0.1}, {0.2, 9.0}, 0.1, 0.0, 0.0, 0.0}};
     input.edges = two;
     ASSERT_TRUE(build_snapshot(input, *map.out).ok());

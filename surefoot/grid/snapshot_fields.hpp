@@ -3,10 +3,10 @@
 
 #include "surefoot/grid/map_snapshot.hpp"
 
-/// What a snapshot consists of, each listed once: for its checksums, its file and the audit log.
+/// Lists all fields and layers of a snapshot once: for its checksums, its file and the audit log.
 namespace surefoot::grid {
 
-/// visit(name, value): the header in the order of memory, but for magic, layout, padding and
+/// visit(name, value): the header in the order of memory, without magic, layout, padding and
 /// checksums.
 template <typename Snapshot, typename Visit>
 void for_each_header_field(Snapshot& s, Visit&& visit) {
@@ -31,7 +31,7 @@ void for_each_header_field(Snapshot& s, Visit&& visit) {
     visit("tilt_sigma_urad", s.tilt_sigma_urad);
 }
 
-/// visit(layer): one element a cell.
+/// visit(layer): each layer has one element per cell.
 template <typename Snapshot, typename Visit>
 void for_each_snapshot_layer(Snapshot& s, Visit&& visit) {
     visit(s.height_tenth_mm);

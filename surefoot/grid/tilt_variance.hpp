@@ -6,12 +6,12 @@
 
 namespace surefoot::grid {
 
-/// Variance of heights against the vertical: that of each cell, and what a leaning z axis adds,
-/// (tilt sigma times the horizontal distance from the origin of odom)^2. The heights at the origin,
-/// where odom was placed on the ground, do not change by a tilt.
+/// Variance of the heights against the vertical: the variance of each cell plus that of a tilted z
+/// axis, (tilt sigma times the horizontal distance from the origin of odom)^2. A tilt does not
+/// change the heights at the origin, where odom was placed on the ground.
 ///
-/// `tilt_sigma_rad`: one sigma about any horizontal axis; not finite = not known, and all known
-/// variances become infinite. NaN stays NaN.
+/// `tilt_sigma_rad`: one sigma about any horizontal axis. If it is not finite, the tilt is unknown
+/// and all known variances become infinite. NaN stays NaN.
 [[nodiscard]] Layer with_tilt_variance(ImageView<const float> variance_m2,
                                        const GridGeometry& geometry,
                                        double tilt_sigma_rad);

@@ -26,8 +26,8 @@ Result<std::string> find_resource(const std::vector<Resource>& resources,
     }
     const std::string likely = did_you_mean(name, known);
     return usage_error(
-        fmt::format("no file is named '{0}', and there is no '{0}' among the {1}{2} "
-                    "There is: {3}",
+        fmt::format("there is no file '{0}', and no '{0}' among the built-in {1}{2} "
+                    "Known names: {3}",
                     name,
                     folder,
                     likely.empty() ? "." : likely,
@@ -36,14 +36,14 @@ Result<std::string> find_resource(const std::vector<Resource>& resources,
 
 namespace {
 
-/// A gate that fails its own questions with this machine would never be ready, or would answer what
-/// it must not: no program of ours takes such a machine.
+/// Refuses a machine with which the gate fails its self-test: the gate would never be ready, or
+/// would give wrong answers. All programs use this check.
 Status self_test(const std::string& name, const Machine& machine) {
     const auto outcome = std::make_unique<gate::Canaries>(machine)->judge_all();
     if (outcome.passed) return {};
     return usage_error(
         fmt::format("{}: with this machine the gate fails its self-test, the question {} with "
-                    "movement {}: {} is expected, {} was found; check feet, body, movements and "
+                    "movement {}: expected {}, found {}; check feet, body, movements and "
                     "limits",
                     name,
                     outcome.name,

@@ -15,18 +15,18 @@ struct Resource {
     std::string_view name;  ///< "machines/rex.yaml"
     std::string_view text;
 };
-/// The files of machines/.
+/// All files of machines/.
 [[nodiscard]] const std::vector<Resource>& built_in_machines();
 
-/// Text of `folder/name.yaml` among `resources`. An unknown name is a usage error that lists the
-/// known names.
+/// Text of `folder/name.yaml` in `resources`. An unknown name is a usage error that lists the known
+/// names.
 [[nodiscard]] Result<std::string> find_resource(const std::vector<Resource>& resources,
                                                 std::string_view folder,
                                                 std::string_view name);
 
-/// A machine file by path or by built-in name. Every problem of the file is a usage error. Reading
-/// includes the gate's self-test (gate::Canaries), so that every program refuses the same machines.
-/// Takes about 10 ms.
+/// Reads a machine file by path or built-in name. Every problem of the file is a usage error. Runs
+/// the gate's self-test (gate::Canaries), so that all programs refuse the same machines. Takes
+/// about 10 ms.
 [[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
 
 }  // namespace surefoot::machines

@@ -406,7 +406,7 @@ class BadBoards(CliTest):
                      {"left0.png": "left000.png", "right0.png": "right000.png"})
 
     def test_exchanged_cameras_are_said(self):
-        self.refused("to the left of the left one; exchange the cameras", "stereo",
+        self.refused("to the left of the left one; swap the cameras", "stereo",
                      {f"{side}{i}.png": f"{other}00{i}.png" for i in range(4)
                       for side, other in (("left", "right"), ("right", "left"))})
 

@@ -76,7 +76,7 @@ class Examples(unittest.TestCase):
         self.assertRegex(out, r"movement 9 \(N\)")
         code, _, err = run("07_my_own_machine", "no_such_machine")
         self.assertEqual(code, 1)
-        self.assertIn("There is: rex", err)
+        self.assertIn("Known names: rex", err)
 
     def test_errors_say_what_is_wrong(self):
         for words in (("01_run_a_recording", "/no/such/folder"), ("03_rate_a_height_map", "/no/such/file.asc"),

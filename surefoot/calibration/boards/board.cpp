@@ -66,7 +66,7 @@ bool has_squares(BoardKind kind) {
     return kind == BoardKind::chessboard || kind == BoardKind::charuco;
 }
 
-/// "8x5" points, or "8x5squares", which have one row and one column of inner corners less.
+/// Reads "8x5" points, or "8x5squares" with one row and one column of inner corners less.
 bool read_size(std::string text, Board& board) {
     constexpr std::string_view kSquares = "squares";
     const bool squares = text.ends_with(kSquares);
@@ -75,7 +75,7 @@ bool read_size(std::string text, Board& board) {
     if (size.size() != 2 || !read(size[0], board.columns) || !read(size[1], board.rows))
         return false;
     if (!squares) return true;
-    constexpr int kMost = 1'000'000;  // problem() judges
+    constexpr int kMost = 1'000'000;  // problem() checks the final limits
     if (board.columns < 1 || board.rows < 1 || board.columns > kMost || board.rows > kMost)
         return false;
     --board.columns;

@@ -9,18 +9,18 @@
 namespace surefoot::calibration {
 namespace {
 
-/// The second knows its neighbours, and with them bends and lengths, to sub-pixels.
+/// The second round knows the neighbours to sub-pixels, and with them curvatures and steps.
 constexpr int kRounds = 2;
-/// Of the way to the next corner: what moved farther is another corner, or none.
+/// Share of the step to the next corner. A corner that moved farther is another one or none.
 constexpr double kMostMove = 0.4;
 
 using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< one per point of the board
 
-/// Points of a row or column around one of them, `stride` ids apart.
+/// Points of a row or column around one point; successive ids differ by `stride`.
 struct Line {
-    int place = 0;   ///< of the point
-    int length = 0;  ///< points
-    int first = 0;   ///< id
+    int place = 0;   ///< position of the point in the line
+    int length = 0;  ///< number of points
+    int first = 0;   ///< id of the first point
     int stride = 1;
 
     [[nodiscard]] std::optional<Eigen::Vector2d> at(const Found& found, int i) const {
@@ -29,7 +29,7 @@ struct Line {
     }
 };
 
-/// To the next point of the line: of both neighbours the mean.
+/// Step to the next point of the line: the mean over both neighbours.
 std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
     const auto here = line.at(found, line.place);
     const auto before = line.at(found, line.place - 1);
@@ -40,8 +40,8 @@ std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
     return std::nullopt;
 }
 
-/// Curvature of the parabola through three neighbours; at the end of a line through the last three.
-/// 0 where they are not known.
+/// Curvature of the parabola through three neighbours; at the end of a line, through the last three
+/// points. 0 if they are unknown.
 double bend_per_px(const Line& line, const Found& found) {
     const int middle = std::clamp(line.place, 1, std::max(1, line.length - 2));
     const auto before = line.at(found, middle - 1);
@@ -79,7 +79,7 @@ std::optional<Eigen::Vector2d> fitted(ImageView<const std::uint8_t> image,
     auto pixel = fit_corner(image, guess);
     const double room_px = std::min(guess.along_row_px.norm(), guess.along_column_px.norm());
     if (!pixel || (*pixel - guess.pixel).norm() > kMostMove * room_px) return std::nullopt;
-    // Half of a corner shows at the border of the image and its fit may end beyond.
+    // At the image border only half of a corner is visible; its fit may end outside.
     const bool inside = pixel->x() >= 0.0 && pixel->y() >= 0.0 && pixel->x() <= image.width - 1 &&
                         pixel->y() <= image.height - 1;
     return inside ? pixel : std::nullopt;
@@ -93,7 +93,7 @@ void fit_corners(const Board& board, ImageView<const std::uint8_t> image, BoardV
         found[static_cast<std::size_t>(view.ids[i])] = view.pixels[i];
     BoardView fitted_view;
     for (int round = 0; round < kRounds; ++round) {
-        const Found before = found;  // of what is hidden the rough place still shows directions
+        const Found before = found;  // rough positions of hidden points still give directions
         fitted_view = {};
         for (const int id : view.ids) {
             const auto guess = guess_of(board, before, id);

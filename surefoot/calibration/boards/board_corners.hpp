@@ -8,9 +8,9 @@
 
 namespace surefoot::calibration {
 
-/// Corners of a chessboard to sub-pixels (`fit_corner`), from where they roughly lie: neighbours on
-/// the board tell the directions, lengths and bends of its lines. What has no neighbour in its row
-/// or in its column, or does not look like a corner, leaves the view.
+/// Refines rough corners of a chessboard to sub-pixels (`fit_corner`). Neighbours on the board give
+/// the direction, step and curvature of the lines. Removes points without a neighbour in their row
+/// or column, and points that do not look like a corner.
 void fit_corners(const Board& board, ImageView<const std::uint8_t> image, BoardView& view);
 
 }  // namespace surefoot::calibration

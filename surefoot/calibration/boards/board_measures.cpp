@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLeastPoints = 8;
 constexpr int kPoseSteps = 10;
-/// Of a pose, in m and rad: derivatives by central differences.
+/// Step of the pose in m and rad, for central differences.
 constexpr double kPoseStep = 1e-6;
 
 struct Mean {
@@ -33,7 +33,7 @@ Mean mean_of(const std::vector<double>& values) {
     return result;
 }
 
-/// Points that both eyes see: where they are on the board, in the left image and in space.
+/// Points that both cameras see: position on the board, in the left image, and in space.
 struct Triangulated {
     std::vector<int> ids;
     std::vector<Eigen::Vector3d> board_m;
@@ -61,7 +61,7 @@ Triangulated triangulate(const Board& board,
     return result;
 }
 
-/// Errors of the board's points in an image, one after the other [px].
+/// Reprojection errors of the board's points in an image, concatenated [px].
 std::optional<Eigen::VectorXd> errors_px(const Triangulated& seen,
                                          const camera::Camera& camera,
                                          const Pose& T_camera_board) {
@@ -74,7 +74,7 @@ std::optional<Eigen::VectorXd> errors_px(const Triangulated& seen,
     return errors;
 }
 
-/// Where the board is by its size alone: least squares of one image, by Gauss and Newton.
+/// Pose of the board from its size alone: least squares in one image, by Gauss and Newton.
 std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera& camera) {
     std::vector<Eigen::Vector3d> rays;
     rays.reserve(seen.left_pixels.size());
@@ -101,8 +101,8 @@ std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera&
     return pose;
 }
 
-/// Depths beside the plane through all points. Noise of a disparity is even in 1/z, in which the
-/// plane is linear.
+/// Depths relative to the plane through all points. The noise of a disparity is uniform in 1/z, and
+/// in 1/z the plane is linear.
 std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -119,7 +119,7 @@ std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     return off_m;
 }
 
-/// Triangulated less true length from every point to the next of its row and of its column.
+/// Triangulated minus true length from every point to the next one of its row and of its column.
 std::vector<double> length_errors_m(const Board& board, const Triangulated& seen) {
     std::vector<double> errors_m;
     errors_m.reserve(2 * seen.ids.size());

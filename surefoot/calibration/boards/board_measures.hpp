@@ -8,24 +8,24 @@
 
 namespace surefoot::calibration {
 
-/// A board of known size as a stereo rig measures it: the points that both images show are
-/// triangulated as `run` does, from columns of the rectified images. Means nothing of a pair by
-/// which the rig was calibrated; a wrong size of the squares goes into rig and board alike and does
-/// not show.
+/// Measures a board of known size with a stereo rig. Triangulates the points that both images
+/// show, as `run` does, from columns of the rectified images. Not meaningful for a pair from the
+/// rig's own calibration. A wrong square size there changes rig and board alike and does not
+/// show.
 struct BoardMeasures {
-    int points = 0;           ///< seen by both eyes
+    int points = 0;           ///< points that both cameras see
     int lengths = 0;          ///< between neighbours of a row or a column
-    double distance_m = 0.0;  ///< mean depth of the points in the rectified left frame, by size
-    /// Triangulated depth less the one that the board's size says in the left image alone, mean of
-    /// the points: baseline and turn of the right eye against focal length and squares.
+    double distance_m = 0.0;  ///< mean depth from the board size; rectified left frame
+    /// Mean difference of triangulated depth and depth from the board size in the left image alone:
+    /// baseline and rotation of the right camera against focal length and square size.
     double axial_m = 0.0;
-    double axial_std_m = 0.0;    ///< of the triangulated depths about their plane
-    double lateral_m = 0.0;      ///< triangulated length between neighbours less the true, mean
+    double axial_std_m = 0.0;    ///< of the triangulated depths around their plane
+    double lateral_m = 0.0;      ///< mean of triangulated minus true length of neighbours
     double lateral_std_m = 0.0;  ///< of single lengths
 };
 
-/// Nothing for fewer than eight points in common, points that no plane explains, or views of discs,
-/// whose centres the images do not show. Both views must have no view_problem().
+/// nullopt with fewer than eight common points, with points that no plane explains, or with views
+/// of discs, because images do not show disc centres. Both views must have no view_problem().
 [[nodiscard]] std::optional<BoardMeasures> measure_board(const Board& board,
                                                          const BoardView& left,
                                                          const BoardView& right,

@@ -14,7 +14,7 @@ namespace {
 const Board kBoard{.columns = 7, .rows = 5, .spacing_m = 0.04};
 constexpr int kLengths = 6 * 5 + 7 * 4;
 
-/// The board's middle on the axis, turned about x and y.
+/// A board with its middle on the optical axis, rotated about x and y.
 Pose board_ahead(double distance_m, double tilt_rad) {
     Pose T;
     T.rotation = exp_so3({tilt_rad, -0.5 * tilt_rad, 0.1});
@@ -23,7 +23,7 @@ Pose board_ahead(double distance_m, double tilt_rad) {
     return T;
 }
 
-/// What the rig `believed` makes of pictures that the rig `truth` took.
+/// Measures with the rig `believed` the images that the rig `truth` takes.
 BoardMeasures measured(const camera::StereoRig& truth,
                        const camera::StereoRig& believed,
                        const Pose& T_left_board,
@@ -46,7 +46,7 @@ TEST(BoardMeasures, TheTrueRigMeasuresTheTrueBoard) {
             const BoardMeasures found = measured(rig, rig, board_ahead(distance_m, 0.4));
             EXPECT_EQ(found.points, 35);
             EXPECT_EQ(found.lengths, kLengths);
-            // The rectified camera is turned by the rig's build, a degree or two.
+            // The rectified camera is rotated against the rig by a degree or two.
             EXPECT_NEAR(found.distance_m, distance_m, 0.02 * distance_m);
             EXPECT_NEAR(found.axial_m, 0.0, 1e-7 * distance_m);
             EXPECT_NEAR(found.lateral_m, 0.0, 1e-7);
@@ -75,7 +75,7 @@ TEST(BoardMeasures, ATurnedEyeErrsWithTheSquareOfTheDistance) {
     const double baseline_m = truth.T_left_right.translation_m.norm();
     for (const double distance_m : {1.0, 2.0, 4.0}) {
         const BoardMeasures found = measured(truth, turned, board_ahead(distance_m, 0.0));
-        // Disparity shrinks by the turn, of rays aside by up to 2 % more.
+        // The rotation reduces the disparity; for rays off the axis by up to 2 % more.
         const double expected_m = found.distance_m * found.distance_m * kTurn_rad / baseline_m;
         EXPECT_NEAR(found.axial_m, expected_m, 0.05 * expected_m) << distance_m;
         const double lateral_m = kBoard.spacing_m * expected_m / found.distance_m;
@@ -98,7 +98,7 @@ TEST(BoardMeasures, NoiseScattersDepthsAsDisparitiesDo) {
         EXPECT_GT(found.lateral_std_m, 0.5 * kNoise_px * kDistance_m / 460.0);
         EXPECT_LT(found.lateral_std_m, 4.0 * kNoise_px * kDistance_m / 460.0);
     }
-    // f of the EuRoC rig is 457 px; of 35 depths the plane follows three.
+    // f of the EuRoC rig is 457 px. The fitted plane removes three of 35 degrees of freedom.
     const double baseline_m = rig.T_left_right.translation_m.norm();
     const double sigma_m =
         std::sqrt(2.0 * 32.0 / 35.0) * kNoise_px * kDistance_m * kDistance_m / (457.0 * baseline_m);
@@ -114,8 +114,8 @@ TEST(BoardMeasures, SizeTellsTheDistanceOfATiltedBoardAsWellAsNoiseAllows) {
         const BoardMeasures found = measured(rig, rig, board_ahead(0.4, 0.8), 0.3, seed);
         var_m2 += found.axial_m * found.axial_m / kSeeds;
     }
-    // Of the triangulated mean sqrt(2 / 35) sigma_px z^2 / (f b) = 0.23 mm; of the size, which is
-    // known to sigma_px over the root of the squared distances from the middle, 0.18 mm.
+    // Triangulated mean: sqrt(2 / 35) sigma_px z^2 / (f b) = 0.23 mm. Depth from the size: 0.18 mm,
+    // because the size is known to sigma_px over the root of the squared distances from the middle.
     EXPECT_NEAR(std::sqrt(var_m2), 0.3e-3, 0.1e-3);
 }
 

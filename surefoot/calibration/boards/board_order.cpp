@@ -14,8 +14,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Of neighbouring squares, the white ones must be brighter than the black ones this often: light
-/// may be weak and uneven, but glints and shadows do not lie on every square.
+/// Share of neighbouring squares of which the white one must be brighter. Light may be weak and
+/// uneven, but glints and shadows do not lie on every square.
 constexpr double kLeastAlternating = 0.8;
 
 std::vector<Eigen::Vector2d> places_of(const Board& board) {
@@ -28,7 +28,7 @@ std::size_t index_of(const Board& board, int column, int row) {
     return static_cast<std::size_t>(row * board.columns + column);
 }
 
-/// Mean direction of the rows in the image, unit length (or zero).
+/// Mean direction of the rows in the image: a unit vector, or zero.
 Eigen::Vector2d row_direction(const Board& board, const BoardView& view) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (std::size_t i = 1; i < view.ids.size(); ++i) {
@@ -46,7 +46,7 @@ BoardView whole_view(Points pixels) {
     return view;
 }
 
-/// Orders in which a detector may have walked through the grid.
+/// Possible orders of the points in which a detector walks through the grid.
 std::vector<Points> readings_of(const Board& board, const Points& found) {
     std::vector<Points> readings;
     for (int variant = 0; variant < (board.columns == board.rows ? 8 : 4); ++variant) {
@@ -64,7 +64,7 @@ std::vector<Points> readings_of(const Board& board, const Points& found) {
     return readings;
 }
 
-/// Mean of the 3 x 3 pixels around a place; nothing at the border.
+/// Mean of the 3 x 3 pixels around a position; nullopt at the border.
 std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eigen::Vector2d& at) {
     const auto middle = nearest_pixel(at.x(), at.y(), image.width, image.height, 1);
     if (!middle) return std::nullopt;
@@ -75,7 +75,7 @@ std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eige
     return sum / 9.0;
 }
 
-/// Whether the squares that should be black are darker than their neighbours.
+/// True if the squares that should be black are darker than their neighbours.
 bool black_where_it_should_be(const Board& board,
                               const Points& points,
                               ImageView<const std::uint8_t> image) {
@@ -108,10 +108,10 @@ bool black_where_it_should_be(const Board& board,
     return compared > 0 && right >= kLeastAlternating * compared;
 }
 
-/// Rows and columns change from one point to the next gently: no step is more than 2.5 times as
-/// long as the one before, nor turned by more than 45 deg. Perspective and wide lenses at the
-/// border of an image change them by up to a half, and 30 deg; a grid with a point of another row
-/// or of something else jumps back and forth.
+/// True if rows and columns change gently from point to point: no step is more than 2.5 times as
+/// long as the one before, nor rotated by more than 45 deg. Perspective and wide lenses change
+/// steps by up to a half and 30 deg at the image border. A grid with a wrong point jumps back and
+/// forth.
 bool is_smooth(const Board& board, const Points& points) {
     constexpr double kMostRatio = 2.5;
     constexpr double kLeastCosine = 0.7;
@@ -144,7 +144,7 @@ std::optional<LocalMap> fit_local_map(const std::vector<Eigen::Vector2d>& places
                                       const std::vector<Eigen::Vector2d>& pixels) {
     const auto count = static_cast<Eigen::Index>(places_m.size());
     if (count < 6) return std::nullopt;
-    double scale_m = 0.0;  // unknowns of similar size, whatever the unit of the board
+    double scale_m = 0.0;  // scales the unknowns to similar size, for any unit of the board
     for (const auto& place_m : places_m) scale_m = std::max(scale_m, place_m.norm());
     Eigen::MatrixXd A(count, 6);
     Eigen::MatrixXd b(count, 2);
@@ -185,8 +185,8 @@ std::vector<std::vector<int>> turns_of(const Board& board) {
     const Eigen::Vector2d middle_m = 0.5 * (low + high);
     for (int quarter = 1; quarter < 4; ++quarter) {
         const bool checked = board.kind == BoardKind::chessboard;
-        // Squares keep their colour in a half turn if the sides are alike, even and even or odd and
-        // odd; in a quarter turn of a square board if they are even.
+        // After a half turn the squares keep their colours if both sides are even or both are odd;
+        // after a quarter turn of a square board, if the sides are even.
         if (checked && quarter == 2 && (board.columns + board.rows) % 2 != 0) continue;
         if (checked && quarter != 2 && board.columns % 2 != 0) continue;
         Eigen::Matrix2d R;
@@ -247,12 +247,12 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     double best_right = 0.0;
     for (Points& points : readings_of(board, found)) {
         const auto map = fit_local_map(centred_m, points);
-        if (!map || map->J_px_m.determinant() <= 0.0) continue;  // seen from behind
+        if (!map || map->J_px_m.determinant() <= 0.0) continue;  // the board is seen from behind
         if (!is_smooth(board, points)) continue;
         if (board.kind == BoardKind::chessboard && !black_where_it_should_be(board, points, image))
             continue;
-        // Rows shifted the wrong way fit worse by a quarter of their distance; the right orders
-        // fit alike.
+        // With rows shifted in the wrong direction the fit error grows by a quarter of their
+        // distance. The right orders fit equally well.
         const double tolerance_px = 0.1 * board.spacing_m * std::sqrt(map->J_px_m.determinant());
         const double right = row_direction(board, whole_view(points)).x();
         const bool better = !best || map->rms_px < best_rms_px - tolerance_px ||

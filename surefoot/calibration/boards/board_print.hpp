@@ -7,11 +7,11 @@
 
 namespace surefoot::calibration {
 
-/// What is black on a printed board, in the board's frame.
-/// Squares: the one at the top left is black, so is the one between the first four points. ChArUco:
-/// a marker in the middle of each white square, numbered row by row (OpenCV since 4.6). Circles:
-/// `circle_share` is their diameter over the distance of the nearest neighbour. Fails with the
-/// reason why there is no such board (sizes, dictionary).
+/// Black shapes of a printed board, in the board's frame. Squares: the top left square and the
+/// one between the first four points are black. ChArUco: a marker in the middle of each white
+/// square, numbered row by row (OpenCV since 4.6). Circles: `circle_share` is their diameter
+/// divided by the distance of nearest neighbours. An error if the board is invalid (sizes,
+/// dictionary).
 [[nodiscard]] Result<PrintedSheet> print_of(const Board& board, double circle_share = 0.5);
 
 }  // namespace surefoot::calibration

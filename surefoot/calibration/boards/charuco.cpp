@@ -55,8 +55,8 @@ Result<cv::Ptr<cv::aruco::Dictionary>> dictionary_of(const Board& board) {
         }
         return dictionary;
     }
-    return usage_error(
-        fmt::format("board: no dictionary '{}'; known are {}", board.dictionary, known));
+    return usage_error(fmt::format(
+        "board: unknown dictionary '{}'; known dictionaries: {}", board.dictionary, known));
 }
 
 }  // namespace surefoot::calibration

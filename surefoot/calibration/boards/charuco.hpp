@@ -9,12 +9,12 @@
 // Only for the .cpp files of this folder: OpenCV appears in no public header.
 namespace surefoot::calibration {
 
-/// Squares of a board in a row: one more than corners.
+/// Number of squares in a row: one more than the inner corners.
 [[nodiscard]] inline int squares(int corners) {
     return corners + 1;
 }
 
-/// The dictionary that a ChArUco board names; an error where OpenCV knows none of that name or it
+/// The dictionary of a ChArUco board. An error if OpenCV has no dictionary of that name, or if it
 /// has too few markers for the board.
 [[nodiscard]] Result<cv::Ptr<cv::aruco::Dictionary>> dictionary_of(const Board& board);
 

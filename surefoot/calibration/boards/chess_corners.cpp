@@ -11,18 +11,18 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Blur before anything is measured: derivatives of 8-bit images need it, squares of 4 px bear it.
+/// Initial blur: derivatives of 8-bit images need it, and squares of 4 px tolerate it.
 constexpr double kBlur_px = 1.2;
 constexpr double kLeastContrast_dn = 5.0;
-/// A ring must not reach into the next squares and shall be long: the first that shows a corner
-/// counts.
+/// Radii of the ring, longest first: a ring should be long but must not reach into the next
+/// squares. The first ring that shows a corner is used.
 constexpr std::array kRadii_px{5.0, 3.5, 2.5};
-constexpr int kRing = 32;  ///< places on a ring
+constexpr int kRing = 32;  ///< positions on a ring
 constexpr int kBorder_px = 2;
 constexpr double kMostBeside_px = 1.2;
-/// Halves of one line may bend against each other by this much.
+/// Largest angle between the two halves of one line.
 constexpr double kMostBend_rad = 0.5;
-/// Narrowest angle between two edges: of squares seen at a slant of about 75 deg.
+/// Smallest angle between two edges: squares seen at a slant of about 75 deg.
 constexpr double kLeastAngle_rad = 0.3;
 constexpr std::size_t kMostCorners = 2500;
 
@@ -57,7 +57,7 @@ Curvature curvature_at(const cv::Mat& light, int u, int v) {
     return c;
 }
 
-/// Grey value between pixels; outside the image that of its border.
+/// Interpolated grey value; outside the image the value of its border.
 double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
     const Eigen::Vector2d p(std::clamp(place.x(), 0.0, light.cols - 1.0),
                             std::clamp(place.y(), 0.0, light.rows - 1.0));
@@ -72,7 +72,7 @@ double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
            t * ((1.0 - s) * static_cast<double>(lower[u]) + s * static_cast<double>(lower[u + 1]));
 }
 
-/// Places where a ring goes from black to white or back, with the grey values that decide it.
+/// Positions where a ring changes between black and white, with their grey values.
 struct Crossings {
     std::vector<double> at_rad;
     bool white_first = false;  ///< white before the first crossing
@@ -88,7 +88,7 @@ Crossings crossings_of(const cv::Mat& light, const Eigen::Vector2d& centre, doub
     }
     std::array<double, kRing> sorted = values;
     std::sort(sorted.begin(), sorted.end());
-    // Narrow squares hold few places of the ring: both ends are means of three.
+    // In narrow squares few positions of the ring lie: use the mean of three at both ends.
     const double dark = (sorted[0] + sorted[1] + sorted[2]) / 3.0;
     const double bright = (sorted[kRing - 1] + sorted[kRing - 2] + sorted[kRing - 3]) / 3.0;
     const double middle = 0.5 * (dark + bright);
@@ -110,7 +110,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
                                      double radius_px) {
     const Crossings ring = crossings_of(light, centre, radius_px);
     if (ring.at_rad.size() != 4 || ring.contrast_dn < kLeastContrast_dn) return std::nullopt;
-    // The first edge has black after it.
+    // The first edge is followed by black.
     const std::size_t first = ring.white_first ? 0 : 1;
     std::array<double, 4> angles{};
     for (std::size_t i = 0; i < 4; ++i)
@@ -130,7 +130,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
     return corner;
 }
 
-/// Whether no pixel within two has a stronger saddle; of equal ones the first counts.
+/// True if no pixel within two has a stronger saddle; of equal pixels the first one is the peak.
 bool is_peak(const cv::Mat& saddles, int u, int v) {
     const float here = saddles.at<float>(v, u);
     for (int dv = -2; dv <= 2; ++dv) {
@@ -153,7 +153,7 @@ cv::Mat saddles_of(const cv::Mat& light) {
     return saddles;
 }
 
-/// Where the gradient vanishes, near the strongest saddle.
+/// Position of zero gradient near the strongest saddle.
 Eigen::Vector2d place_of(const cv::Mat& light, int u, int v) {
     const Curvature c = curvature_at(light, u, v);
     const Eigen::Vector2d beside = -c.H.inverse() * c.gradient;
@@ -169,7 +169,7 @@ std::vector<ChessCorner> chess_corners(ImageView<const std::uint8_t> image) {
     if (image.width <= 2 * kBorder_px || image.height <= 2 * kBorder_px) return corners;
     const cv::Mat light = blurred(image);
     const cv::Mat saddles = saddles_of(light);
-    // Two perpendicular edges of the contrast c have the saddle (c / (pi blur^2))^2; slanted ones
+    // Two perpendicular edges of contrast c have the saddle (c / (pi blur^2))^2; slanted edges have
     // less.
     constexpr double kSlant = 0.3;
     const double least =

@@ -12,15 +12,15 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Of the points of a board, as of those that must be clear in the end.
+/// Least share of the board's points that must be clear, at the start and at the end.
 constexpr double kLeastShare = 0.75;
-/// Of each line of a board's border: a border without corners may lie anywhere.
+/// Least share of each border line: without border corners the position of the board is open.
 constexpr double kLeastOfBorder = 0.5;
 
-/// Corners in a group, from which a board can grow.
+/// Smallest group of corners from which a board can grow.
 constexpr std::size_t kFewestJoined = 9;
 
-/// A rectangle of nodes that may be the board: `columns` nodes along the first axis.
+/// A rectangle of nodes that may be the board, with `columns` nodes along the first axis.
 struct Window {
     Node low;
     int columns = 0;
@@ -36,7 +36,7 @@ int corners_in(const Lattice& lattice, const Node& low, int columns, int rows) {
     return corners;
 }
 
-/// The lines of one node's width at the four sides of a window, `outside` of it or its own.
+/// The four border lines of a window, one node wide: just outside (`outside`) or just inside.
 std::array<Window, 4> borders_of(const Window& w, bool outside) {
     const int out = outside ? 1 : 0;
     const auto [x, y] = w.low;
@@ -46,7 +46,7 @@ std::array<Window, 4> borders_of(const Window& w, bool outside) {
              {{x, y + w.rows - 1 + out}, w.columns, 1, 0}}};
 }
 
-/// How well the least or best of the borders is filled.
+/// Smallest and largest filled share of the border lines.
 std::pair<double, double> border_shares(const Lattice& lattice, const Window& w, bool outside) {
     double least = 1.0;
     double most = 0.0;
@@ -60,7 +60,7 @@ std::pair<double, double> border_shares(const Lattice& lattice, const Window& w,
     return {least, most};
 }
 
-/// All places of the board on the lattice, the fullest first.
+/// All positions of the board on the lattice, the most filled first.
 std::vector<Window> windows_of(const Board& board, const Lattice& lattice) {
     const auto [low, high] = bounds_of(lattice);
     std::vector<Window> windows;
@@ -81,7 +81,7 @@ std::vector<Window> windows_of(const Board& board, const Lattice& lattice) {
 
 std::vector<Eigen::Vector2d> points_of(const Board& board, const Lattice& lattice, Window window) {
     std::vector<Eigen::Vector2d> points;
-    Lattice whole;  // what lies outside is another thing
+    Lattice whole;  // without corners outside, which belong to another object
     for (const auto& [node, pixel] : lattice)
         if (corners_in({{node, pixel}}, window.low, window.columns, window.rows) > 0)
             whole.emplace(node, pixel);
@@ -136,7 +136,7 @@ GrownChessboard board_in(const Board& board, const Lattice& lattice) {
     return grown;
 }
 
-/// Of the box around points in the image.
+/// Area of the bounding box of points in the image.
 double area_of(const std::vector<Eigen::Vector2d>& points) {
     if (points.empty()) return 0.0;
     Eigen::Vector2d low = points.front();
@@ -156,7 +156,7 @@ GrownChessboard grown_chessboard(const Board& board,
     GrownChessboard best;
     double best_area_px2 = 0.0;
     for (const JoinedCorners& joined : joined_corners(corners, image)) {
-        // A board whose corners fell apart still has a part of some squares.
+        // Even a board with a broken group of corners keeps a part with some squares.
         if (joined.lattice.size() < kFewestJoined) break;
         const int most = std::max(board.columns, board.rows) + 2;
         const Lattice lattice = grown_lattice(joined, corners, image, most);

@@ -13,21 +13,21 @@
 
 namespace surefoot::calibration {
 
-/// What growing a chessboard out of single corners gave.
+/// Result of growing a chessboard from single corners.
 struct GrownChessboard {
-    /// All points of the board in an order along its rows and columns, roughly; those that do not
-    /// show lie where their neighbours expect them. Empty when no such board was found.
+    /// All points of the board, roughly, in order along rows and columns. Hidden points lie where
+    /// their neighbours predict them. Empty if the board was not found.
     std::vector<Eigen::Vector2d> points;
-    std::string problem;  ///< what was found instead, where that is worth a word
+    std::string problem;  ///< what was found instead; may be empty
 };
 
-/// Joins corners whose edges lead to each other and whose black squares alternate, and looks for
-/// the corners of `board` among them; what is missing is looked for in `image` where neighbours
-/// expect it. No model of the lens is needed: only that neighbouring squares look alike.
+/// Joins corners whose edges lead to each other and whose black squares alternate, and finds the
+/// corners of `board` among them. Looks in `image` for missing corners, where neighbours predict
+/// them. Needs no lens model: only that neighbouring squares look similar.
 ///
-/// Of several such boards the one that fills the largest part of the image counts: the others may
-/// be seen in mirrors or on screens. A board that is not seen whole is not found: nobody could
-/// number its points. Neither is a part of a larger one.
+/// Of several such boards, returns the one that fills the largest part of the image: the others may
+/// be reflections or pictures on screens. A board that is partly outside, or part of a larger one,
+/// is not found: its points have no certain numbers.
 [[nodiscard]] GrownChessboard grown_chessboard(const Board& board,
                                                std::span<const ChessCorner> corners,
                                                ImageView<const std::uint8_t> image);

@@ -12,22 +12,22 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr int kNobody = -1;
-/// Cosine between an edge as a corner shows it and the way to the next corner: 25 deg. A ring of
-/// some pixels shows an edge to about 5 deg; lenses bend it.
+/// Cosine of the largest angle between a corner's edge and the step to the next corner: 25 deg. A
+/// ring of some pixels gives the edge direction to about 5 deg; lenses bend the edge.
 constexpr double kLeastCosine = 0.906;
-/// Nearest corners that may be the next one.
+/// Number of nearest corners that are tried as the next one.
 constexpr std::size_t kTried = 4;
-/// Places along an edge where black must be on one side and white on the other.
+/// Positions along an edge where black must be on one side and white on the other.
 constexpr std::array kAlong{0.2, 0.35, 0.5, 0.65, 0.8};
-/// Of the contrast of the corners at the ends.
+/// Share of the contrast of the two end corners.
 constexpr double kLeastEdge = 0.25;
-/// Corners this far from where they are expected, as a share of the step, are others.
+/// Share of the step: a corner farther from its predicted position is another corner.
 constexpr double kCapture = 0.3;
-/// Places of the squares' brightness around a corner, as a share of the step.
+/// Offset from a corner into the squares for their brightness, as a share of the step.
 constexpr double kIntoSquare = 0.3;
-/// The same of corners that are there already, whose neighbours may be at either end of a step.
+/// Like kCapture, for existing corners, whose neighbours may be at either end of a step.
 constexpr double kMostMisfit = 0.4;
-/// Contrast of a corner that is added, of the corners around it.
+/// Least contrast of an added corner, as a share of the contrast of its neighbours.
 constexpr double kLeastClear = 0.4;
 constexpr int kRounds = 12;
 
@@ -40,7 +40,7 @@ Node operator*(int n, const Node& a) {
     return {n * a.first, n * a.second};
 }
 
-/// Grey value between pixels; nothing outside the image.
+/// Interpolated grey value; nullopt outside the image.
 std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::Vector2d& p) {
     if (!(p.x() >= 0.0 && p.y() >= 0.0 && p.x() < image.width - 1 && p.y() < image.height - 1))
         return std::nullopt;
@@ -54,8 +54,8 @@ std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::
            t * ((1.0 - s) * lower[0] + s * lower[1]);
 }
 
-/// Whether the way from one corner to the other is an edge with black on its side onwards
-/// (`black_onwards`) or on the other one.
+/// True if an edge runs from one corner to the other, with black on the side onwards
+/// (`black_onwards`) or on the other side. Onwards means rotated from x (right) to y (down).
 bool is_edge(ImageView<const std::uint8_t> image,
              const ChessCorner& from,
              const ChessCorner& to,
@@ -80,14 +80,14 @@ bool is_edge(ImageView<const std::uint8_t> image,
     return right + 1 >= places && sum > kLeastEdge * contrast_dn * places;
 }
 
-/// The next corner along an edge, and which of its own edges leads back.
+/// The next corner along an edge, and its own edge that leads back.
 struct Link {
     int to = kNobody;
     int back = 0;
 };
 using Links = std::array<Link, 4>;
 
-/// The edge of a corner that leads into a direction (unit vector), and nothing where none does.
+/// The edge of a corner in a direction (unit vector); nullopt if it has none.
 std::optional<int> edge_towards(const ChessCorner& corner, const Eigen::Vector2d& direction) {
     for (int k = 0; k < 4; ++k)
         if (corner.edges[static_cast<std::size_t>(k)].dot(direction) > kLeastCosine) return k;
@@ -111,7 +111,7 @@ Links links_of(std::span<const ChessCorner> corners,
         const auto edge = edge_towards(corners[from], direction);
         if (!edge) continue;
         const auto back = edge_towards(corners[to], -direction);
-        // Black on one side: onwards of the way here, and so not onwards of the way back.
+        // Black lies on one side: onwards on the way there, so not onwards on the way back.
         if (!back || (*edge + *back) % 2 == 0) continue;
         auto& mine = all[static_cast<std::size_t>(*edge)];
         const Candidate candidate{distance_px, {static_cast<int>(to), *back}};
@@ -134,7 +134,7 @@ Links links_of(std::span<const ChessCorner> corners,
     return links;
 }
 
-/// Links that both corners agree on.
+/// Links that both corners confirm.
 std::vector<Links> mutual_links(std::span<const ChessCorner> corners,
                                 ImageView<const std::uint8_t> image) {
     std::vector<Links> all;
@@ -154,7 +154,7 @@ std::vector<Links> mutual_links(std::span<const ChessCorner> corners,
     return mutual;
 }
 
-/// Links that are a side of a closed square of four corners: what leads into clutter closes none.
+/// Links that are a side of a closed square of four corners. Links into clutter close no square.
 std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
     std::vector<Links> sides(links.size());
     const auto link = [&](int corner, int edge) -> const Link& {
@@ -171,7 +171,7 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
             const Link& ahead = link(corner, edge);
             const Link& aside = link(corner, edge + 1);
             if (ahead.to == kNobody || aside.to == kNobody) continue;
-            // The way aside at the corner ahead, and the way ahead at the corner aside.
+            // The sideways step at the corner ahead, and the step ahead at the corner beside.
             const Link& first = link(ahead.to, ahead.back + 3);
             const Link& second = link(aside.to, aside.back + 1);
             if (first.to == kNobody || first.to != second.to) continue;
@@ -184,8 +184,8 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
     return sides;
 }
 
-/// Walks from one corner to all that it leads to. The way `w` of the lattice leaves a corner by its
-/// edge w - turn.
+/// Walks from one corner to all connected corners. Direction `w` of the lattice leaves a corner
+/// along its edge w - turn.
 JoinedCorners walked_from(std::span<const ChessCorner> corners,
                           const std::vector<Links>& links,
                           std::size_t start,
@@ -216,7 +216,7 @@ JoinedCorners walked_from(std::span<const ChessCorner> corners,
     return joined;
 }
 
-/// Nodes that are a corner of a square whose other corners are there too.
+/// Nodes that are a corner of a complete square of nodes.
 Lattice in_squares(const Lattice& lattice) {
     Lattice kept;
     for (const auto& [node, pixel] : lattice) {
@@ -232,7 +232,7 @@ Lattice in_squares(const Lattice& lattice) {
     return kept;
 }
 
-/// To the next node along an axis: of the node itself, or of a neighbour across.
+/// Step to the next node along an axis: of the node itself, or of a neighbour across.
 std::optional<Eigen::Vector2d> step_px(const Lattice& lattice,
                                        const Node& node,
                                        const Eigen::Vector2d& pixel,
@@ -256,7 +256,7 @@ std::optional<Eigen::Vector2d> step_px(const Lattice& lattice,
     return std::nullopt;
 }
 
-/// Takes corners away that lie elsewhere than their neighbours expect, the worst first.
+/// Removes corners that differ from the prediction of their neighbours, the worst first.
 void drop_misfits(Lattice& lattice) {
     while (true) {
         auto worst = lattice.end();
@@ -277,8 +277,8 @@ void drop_misfits(Lattice& lattice) {
     }
 }
 
-/// The darkest white square around a corner less the brightest black one; nothing at the border of
-/// the image.
+/// Darkest white square around a corner minus the brightest black one; nullopt at the border of the
+/// image.
 std::optional<double> contrast_dn(ImageView<const std::uint8_t> image,
                                   const Eigen::Vector2d& pixel,
                                   const Eigen::Vector2d& first_px,
@@ -299,8 +299,8 @@ std::optional<double> contrast_dn(ImageView<const std::uint8_t> image,
     return darkest_white - brightest_black;
 }
 
-/// Whether a place of the lattice shows as much contrast as the corners beside it: light changes
-/// gently over a board, and what lies beside it is paler or of one colour.
+/// True if a lattice position shows as much contrast as the corners beside it. Light changes gently
+/// over a board; objects beside a board are paler or uniform.
 bool is_as_clear(const JoinedCorners& joined,
                  const Lattice& lattice,
                  const Node& node,
@@ -328,7 +328,7 @@ bool is_as_clear(const JoinedCorners& joined,
     return count > 0 && *own > kLeastClear * sum / count;
 }
 
-/// A node as the image shows it near where it is expected.
+/// Position of a node in the image, near its predicted position.
 std::optional<Eigen::Vector2d> shown_place(const JoinedCorners& joined,
                                            const Lattice& lattice,
                                            const Node& node,

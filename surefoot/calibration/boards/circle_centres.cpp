@@ -17,16 +17,16 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Circles that a local map is fitted to: one with the ring around it. A second ring would make the
-/// map flatter than it is, and the radius too large by 0.4 % instead of 0.27 with a fisheye lens.
+/// Number of circles behind a local map: one circle and the ring around it. With a second ring the
+/// map is too flat: with a fisheye lens the radius is 0.4 % too large instead of 0.27 %.
 constexpr std::size_t kNeighbours = 9;
-/// Ink is looked for this far beyond the rim: three sigma of a blur of 0.8 px. What is further away
-/// is noise, which weighs the more the further away it is.
+/// Reach of the dark area beyond the rim: three sigma of a blur of 0.8 px. Farther pixels only add
+/// noise, and far noise has the largest weight.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 
-/// Derivative of the board's map into the image in the middle of some pairs. Perspective first,
-/// since a parabola follows it badly on a tilted board; what the lens adds is what it leaves.
+/// Derivative of the map from board to image, in the middle of some pairs. First fits a perspective
+/// map, because a parabola fits a tilted board badly; then the remaining effect of the lens.
 std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& places_m,
                                            const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<cv::Point2d> from;
@@ -49,7 +49,7 @@ std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& p
     }
     const auto map = fit_local_map(places_m, rest);
     if (!map) return std::nullopt;
-    // pixel = (p + A x) / (1 + c x) + rest: J = A - p c' + that of the rest.
+    // pixel = (p + A x) / (1 + c x) + rest, so J = A - p c' + J of the rest.
     const Eigen::Vector2d p = H.topRightCorner<2, 1>();
     const Eigen::RowVector2d c = H.bottomLeftCorner<1, 2>();
     const Eigen::Matrix2d J_px_m = H.topLeftCorner<2, 2>() - p * c + map->J_px_m;
@@ -57,7 +57,7 @@ std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& p
     return J_px_m;
 }
 
-/// The same around each point of the board.
+/// The same derivative around each point of the board.
 std::vector<std::optional<Eigen::Matrix2d>> local_slopes(
     const std::vector<Eigen::Vector3d>& board_m, const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<std::optional<Eigen::Matrix2d>> slopes;
@@ -85,7 +85,7 @@ struct Blob {
     double area_px2 = 0.0;
 };
 
-/// Calls `use(pixel, distance from the centre on the board / reach)` for the pixels within `reach`.
+/// Calls `use(pixel, distance from the centre on the board / reach)` for pixels within `reach`.
 template <typename Use>
 void for_pixels_around(const Eigen::Vector2d& centre,
                        const Eigen::Matrix2d& J_px_m,
@@ -107,15 +107,15 @@ void for_pixels_around(const Eigen::Vector2d& centre,
     }
 }
 
-/// Ink around a rough centre: its centre of gravity within `ink_m`, and how much of it there is
-/// within `reach_m`, where the paper is.
+/// Dark area around a rough centre: its centre of gravity within `ink_m`, and its size within
+/// `reach_m`, up to the paper.
 std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
                             const Eigen::Matrix2d& J_px_m,
                             double reach_m,
                             double ink_m,
                             ImageView<const std::uint8_t> image) {
-    constexpr double kRing = 0.9;    // beyond is paper
-    constexpr double kHeart = 0.25;  // within is ink
+    constexpr double kRing = 0.9;    // paper lies beyond this share
+    constexpr double kHeart = 0.25;  // ink lies within this share
     std::vector<double> paper_dn;
     std::vector<double> ink_dn;
     for_pixels_around(centre, J_px_m, reach_m, image, [&](const auto&, double distance, double dn) {
@@ -142,7 +142,7 @@ std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
     return blob;
 }
 
-/// `kSoftRim_px` on the board, where it is seen shortest.
+/// `kSoftRim_px` on the board, in the direction of the strongest foreshortening.
 double soft_rim_m(const Eigen::Matrix2d& J_px_m) {
     return kSoftRim_px * J_px_m.inverse().operatorNorm();
 }
@@ -158,7 +158,7 @@ DiscImages measured_discs(const Board& board,
     const double reach_m = 0.48 * nearest_m;
     DiscImages discs{rough, 0.0};
     std::vector<double> radii_sq_m2;
-    constexpr int kRounds = 3;  // each looks around the centres, and as far as the radius, before
+    constexpr int kRounds = 3;  // each round uses the centres and radius of the previous one
     for (int round = 0; round < kRounds; ++round) {
         const auto slopes = local_slopes(board_m, discs.centroids);
         radii_sq_m2.clear();

@@ -11,13 +11,13 @@ namespace surefoot::calibration {
 namespace {
 
 using Spots = std::vector<Eigen::Vector2d>;
-/// Place on the lattice of nearest neighbours.
+/// Position in the lattice of nearest neighbours.
 using Node = std::pair<int, int>;
 
-/// Spots this far from where they are expected, as a share of the step, are others.
+/// Share of the step: a spot farther from its predicted position is another spot.
 constexpr double kCapture = 0.35;
 
-/// Nodes of the board's points. Rows of staggered circles run along the diagonals of their lattice.
+/// Nodes of the board's points. Rows of staggered circles run along the lattice diagonals.
 std::vector<Node> nodes_of(const Board& board) {
     std::vector<Node> nodes;
     for (int row = 0; row < board.rows; ++row) {
@@ -51,14 +51,15 @@ std::optional<Nearest> nearest_spot(const Spots& spots,
     return best;
 }
 
-/// A spot on the lattice with the steps to its neighbours there.
+/// A spot in the lattice, with the steps to its neighbours.
 struct Placed {
     std::size_t spot = 0;
     Node node;
     Eigen::Vector2d steps_px[2];
 };
 
-/// The spot nearest to the middle of all, and its two nearest neighbours in different directions.
+/// The spot nearest to the middle of all spots, and its two nearest neighbours in different
+/// directions.
 std::optional<Placed> seed_of(const Spots& spots) {
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
     for (const auto& spot : spots) middle += spot / static_cast<double>(spots.size());

@@ -9,9 +9,9 @@
 
 namespace surefoot::calibration {
 
-/// Which spots are the circles of a grid: grown from the middle, neighbour by neighbour, each step
-/// predicted from the one before, so that lenses may bend the grid. The spots in the order of
-/// Board::points_m up to a turn or a mirror image of the board; nothing where they do not form it.
+/// Selects the spots that form a circle grid. Grows from the middle; each step is predicted from
+/// the previous one, so the lens may bend the grid. Returns the order of Board::points_m, up to a
+/// rotation or mirror image of the board; nullopt if the spots do not form it.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> grown_grid(
     const Board& board, const std::vector<Eigen::Vector2d>& spots);
 

@@ -13,30 +13,31 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Of the step to the next corner: the next edge is as far again.
+/// Share of the step to the next corner. The next edge is one step away.
 constexpr double kWindow = 0.5;
-/// Beyond it light and bends change, and noise is small enough.
+/// Farther away light and curvature change, and the noise is small enough.
 constexpr double kMostRadius_px = 8.0;
 constexpr double kFirstBlur_px = 0.8;
-constexpr double kLeastBlur_px = 0.3;  ///< of the area of a pixel alone
+constexpr double kLeastBlur_px = 0.3;  ///< blur of a pixel's own area
 constexpr double kMostBlur_px = 5.0;
 constexpr int kParameters = 7;
 constexpr int kMostSteps = 30;
 constexpr double kRefined_px = 1e-4;
-/// Half of black beside white; noise alone has less.
+/// Half of black minus white. Pure noise has less.
 constexpr double kLeastContrast_dn = 4.0;
-/// Rms of what the model does not explain, of the contrast: an edge alone, half a blot and a bright
-/// reflection leave more, sharpened or noisy pictures of corners a tenth.
+/// Largest rms of the unexplained grey values, relative to the contrast. A single edge, half a spot
+/// or a bright reflection leave more. Sharpened or noisy images of corners leave a tenth.
 constexpr double kMostMisfit = 0.3;
-/// A board that moves by several squares' widths while the shutter is open still shows edges along
-/// its way, and corners anywhere on them. Corners in noise of half their contrast are known better.
+/// Largest standard deviation of a corner. A board that moves by several square widths during the
+/// exposure still shows edges along its motion, and apparent corners anywhere on them. Corners with
+/// noise of half their contrast are still more certain.
 constexpr double kMostSpread_px = 0.2;
 
 using Vector7 = Eigen::Matrix<double, kParameters, 1>;
 using Matrix7 = Eigen::Matrix<double, kParameters, kParameters>;
 
 /// Order of the parameters.
-constexpr int kRowAngle = 2;  // after the place
+constexpr int kRowAngle = 2;  // after the position
 constexpr int kColumnAngle = 3;
 constexpr int kLogBlur = 4;
 constexpr int kMean = 5;
@@ -73,13 +74,13 @@ std::vector<Sample> samples_of(ImageView<const std::uint8_t> image, const Corner
     return samples;
 }
 
-/// One edge through the corner at a sample.
+/// Values of one edge through the corner, at a sample.
 struct Edge {
     double step = 0.0;          ///< -1 on one side, 1 on the other
-    double per_px = 0.0;        ///< of the distance from the line
+    double per_px = 0.0;        ///< derivative of `step` by the distance from the line
     double distance_px = 0.0;   ///< from the line
-    double per_rad = 0.0;       ///< distance, per turn of the line
-    Eigen::Vector2d per_place;  ///< distance, per move of the corner
+    double per_rad = 0.0;       ///< derivative of the distance by the rotation of the line
+    Eigen::Vector2d per_place;  ///< derivative of the distance by the corner position
 };
 
 Edge edge_at(const Eigen::Vector2d& from_px, double angle_rad, double bend_per_px, double blur_px) {
@@ -97,7 +98,7 @@ Edge edge_at(const Eigen::Vector2d& from_px, double angle_rad, double bend_per_p
     return edge;
 }
 
-/// Normal equations of the fit at some parameters.
+/// Normal equations of the fit at given parameters.
 struct System {
     double cost = 0.0;
     Matrix7 JtJ = Matrix7::Zero();
@@ -128,7 +129,7 @@ System system_at(const std::vector<Sample>& samples, const CornerGuess& guess, c
     return system;
 }
 
-/// Mean and contrast are linear: they follow from the pixels where the edges are guessed.
+/// Mean and contrast are linear: solves for them with the guessed edges.
 void start_light(const std::vector<Sample>& samples, const CornerGuess& guess, Vector7& p) {
     p[kMean] = 0.0;
     p[kContrast] = 0.0;
@@ -140,7 +141,7 @@ double angle_of(const Eigen::Vector2d& direction) {
     return std::atan2(direction.y(), direction.x());
 }
 
-/// Where the blur would leave its limits it is no parameter: the others must settle without it.
+/// Fixes the blur at its limit if it would leave it: the other parameters converge without it.
 void hold_blur_at_limit(const Vector7& p, System& system) {
     const double pull = system.Jtr[kLogBlur];
     const bool held =
@@ -152,7 +153,7 @@ void hold_blur_at_limit(const Vector7& p, System& system) {
     system.Jtr[kLogBlur] = 0.0;
 }
 
-/// Levenberg and Marquardt. The equations where it ends, or nothing where it does not settle.
+/// Levenberg and Marquardt. Returns the final equations; nullopt without convergence.
 std::optional<System> settle(const std::vector<Sample>& samples,
                              const CornerGuess& guess,
                              Vector7& p) {
@@ -173,14 +174,14 @@ std::optional<System> settle(const std::vector<Sample>& samples,
             system = there;
             damping *= 0.1;
         } else {
-            damping *= 10.0;  // the steps become shorter, and end where nothing is better
+            damping *= 10.0;  // shorter steps; ends if no step improves
         }
         if (settled) return system;
     }
     return std::nullopt;
 }
 
-/// Standard deviation of the place in the direction in which the pixels leave it most open.
+/// Standard deviation of the position in its most uncertain direction.
 double spread_px(const System& system, double misfit_dn) {
     Matrix7 damped = system.JtJ;
     damped.diagonal() *= 1.0 + 1e-9;

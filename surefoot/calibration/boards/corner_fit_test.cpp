@@ -20,8 +20,8 @@ constexpr int kHeight = 70;
 constexpr double kBlur_px = 0.75;
 const Board kBoard{.columns = 5, .rows = 4, .spacing_m = 1.0};
 
-/// Where a place of the board (in squares; corners at whole numbers) lies in the image: an affine
-/// map, and a bend of both its directions.
+/// Maps a board position (in squares; corners at integers) into the image: an affine map, with
+/// curvature in both directions.
 struct Map {
     Eigen::Vector2d origin_px{22.3, 15.7};
     Eigen::Matrix2d steps_px;
@@ -30,7 +30,7 @@ struct Map {
     [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector2d& place) const {
         return bent(steps_px * place, 1.0) + origin_px;
     }
-    /// Inverse by iteration: the bends are slight.
+    /// Inverse by iteration: the curvature is small.
     [[nodiscard]] Eigen::Vector2d place_of(const Eigen::Vector2d& pixel) const {
         Eigen::Vector2d flat_px = pixel - origin_px;
         for (int i = 0; i < 6; ++i) flat_px = pixel - origin_px - (bent(flat_px, 1.0) - flat_px);
@@ -41,9 +41,9 @@ struct Map {
     }
 };
 
-/// Chessboard without end, blurred by a Gaussian spot; `noise_dn` of every pixel.
+/// An endless chessboard, blurred by a Gaussian spot; every pixel has noise of `noise_dn`.
 GreyImage picture_of(const Map& map, double noise_dn, std::uint64_t seed) {
-    constexpr int kHalf = 12;  // samples to each side, to three sigma
+    constexpr int kHalf = 12;  // samples on each side, up to three sigma
     Rng rng(seed);
     GreyImage image(kWidth, kHeight);
     for (int v = 0; v < kHeight; ++v) {
@@ -69,7 +69,7 @@ GreyImage picture_of(const Map& map, double noise_dn, std::uint64_t seed) {
     return image;
 }
 
-/// The board moves by `motion_px` while the shutter is open; `map` is the middle of it.
+/// The board moves by `motion_px` during the exposure; `map` is its middle position.
 GreyImage moving_picture_of(const Map& map, const Eigen::Vector2d& motion_px) {
     constexpr int kMoments = 9;
     std::vector<double> sums(static_cast<std::size_t>(kWidth * kHeight), 0.0);
@@ -89,7 +89,7 @@ GreyImage moving_picture_of(const Map& map, const Eigen::Vector2d& motion_px) {
     return image;
 }
 
-/// All corners of the board, `off_px` beside their places in turning directions.
+/// All corners of the board, each `off_px` from its true position, in rotating directions.
 BoardView rough_view(const Map& map, double off_px) {
     BoardView view;
     for (const Eigen::Vector3d& point : kBoard.points_m()) {
@@ -118,7 +118,7 @@ Map affine(double a, double b, double c, double d) {
 }
 
 TEST(CornerFit, SmallAndSlantedSquaresAreFoundToHundredthsOfAPixel) {
-    // The last ones are seen flat: 4.1 px from edge to edge, far narrower than long.
+    // The last maps show flat squares: 4.1 px from edge to edge, much narrower than long.
     for (const Map& map :
          {affine(4.4, -0.6, 0.8, 4.2), affine(9.3, 1.7, -2.1, 8.8), affine(11.0, 2.0, 0.5, 4.2)}) {
         const GreyImage image = picture_of(map, 0.0, 1);
@@ -154,8 +154,8 @@ TEST(CornerFit, NoiseMovesItAsMuchAsTheEdgesAllow) {
             count += 1.0;
         }
     }
-    // Of an edge of contrast 2h, L px long, noise n leaves n sqrt(sqrt(pi) s / L) / (2h / sqrt(2)):
-    // 0.02 px with 9 px of edge each way.
+    // Noise n shifts an edge of contrast 2h and length L px by n sqrt(sqrt(pi) s / L) / (2h /
+    // sqrt(2)): 0.02 px for 9 px of edge in each direction.
     EXPECT_LT(std::sqrt(square / count), 0.03);
     EXPECT_GT(std::sqrt(square / count), 0.008) << "noise of 6 grey values must show";
 }
@@ -176,7 +176,7 @@ TEST(CornerFit, WhatIsNoCornerLeavesTheView) {
 }
 
 TEST(CornerFit, AGlintBesideItIsSeenInWhatTheModelLeaves) {
-    // The fit settles 0.8 px beside the corner, with contrast: only its residuals tell.
+    // The fit converges 0.8 px from the corner, with contrast: only its residuals reveal this.
     const Map map = affine(9.3, 1.7, -2.1, 8.8);
     GreyImage image = picture_of(map, 2.0, 1);
     const Eigen::Vector2d corner = map.pixel_of({1.0, 2.0});
@@ -193,7 +193,7 @@ TEST(CornerFit, AGlintBesideItIsSeenInWhatTheModelLeaves) {
 }
 
 TEST(CornerFit, WeakLightAndNoiseAreNoReasonToRefuse) {
-    // The noise that is left is a seventh of the contrast, in a picture taken with little light.
+    // The remaining noise is a seventh of the contrast, as in an image with little light.
     const Map map = affine(9.3, 1.7, -2.1, 8.8);
     GreyImage image = picture_of(map, 12.0, 1);
     for (int v = 0; v < kHeight; ++v)

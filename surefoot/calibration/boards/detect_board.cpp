@@ -25,20 +25,19 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// A point of a board needs at least this many pixels to its neighbour; what has less is not
-/// looked for.
+/// Least number of pixels between neighbouring points; the board is not searched for with fewer.
 constexpr int kFewestPixelsPerPoint = 4;
-/// Half the window of the corner refinement: OpenCV's samples use it, and so do the figures that
-/// ours are compared with.
+/// Half the window of the corner refinement, as in OpenCV's samples and in the published figures
+/// that we compare with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
-/// Single corners may hide under a reflection; a board that shows fewer is another thing.
+/// Least share of clear corners. Reflections may hide single ones; with fewer it is another object.
 constexpr int kLeastPercent = 75;
-/// Boards less sharp than a blur of 2 px are looked for in images reduced to a half and a quarter.
+/// Searches boards with a blur above 2 px in images reduced to a half and to a quarter.
 constexpr int kMostHalvings = 2;
-/// With more dark spots than this the search for the grid takes minutes.
+/// With more dark spots the search for the grid would take minutes.
 constexpr std::size_t kMostBlobs = 600;
-/// Larger images are not enlarged to find small circles: it would take seconds.
+/// Larger images are not enlarged to find small circles: this would take seconds.
 constexpr std::size_t kMostPixelsEnlarged = 1280 * 1024;
 
 Points points_of(const std::vector<cv::Point2f>& found) {
@@ -60,7 +59,7 @@ BoardSighting whole_board(const Points& points) {
     return sighting;
 }
 
-/// Distance of a point to its nearest neighbour in row and column; infinity without any.
+/// Distance of a point to its nearest neighbour in row and column; infinity without neighbours.
 double nearest_px(const Board& board, const BoardView& view, std::size_t index) {
     double nearest = std::numeric_limits<double>::infinity();
     const int id = view.ids[index];
@@ -73,8 +72,8 @@ double nearest_px(const Board& board, const BoardView& view, std::size_t index) 
     return nearest;
 }
 
-/// Moves corners to where the gradients around them meet. The window is `reach` of the distance to
-/// the next corner wide to each side. False where one ran away from its place.
+/// Moves corners to the point where the surrounding gradients meet. The half window is `reach` of
+/// the distance to the next corner. False if a corner moved too far.
 bool refine_corners(const Board& board, const cv::Mat& image, double reach, BoardView& view) {
     const BoardView rough = view;
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
@@ -91,8 +90,8 @@ bool refine_corners(const Board& board, const cv::Mat& image, double reach, Boar
     return true;
 }
 
-/// OpenCV's sector method: it knows boards that ours does not, and does not mind noise, on which
-/// the older cv::findChessboardCorners can spend a minute.
+/// OpenCV's sector method. It finds boards that our method misses, and noise does not slow it down.
+/// The older cv::findChessboardCorners can need a minute in noise.
 Points sector_corners(const Board& board, const cv::Mat& image, int more) {
     std::vector<cv::Point2f> corners;
     const cv::Size size(board.columns, board.rows);
@@ -101,7 +100,7 @@ Points sector_corners(const Board& board, const cv::Mat& image, int more) {
     return points_of(corners);
 }
 
-/// Boards that grow out of single corners, in an image reduced by `halvings` of its sides.
+/// Boards grown from single corners, in an image whose sides are halved `halvings` times.
 GrownChessboard grown_corners(const Board& board,
                               const cv::Mat& image,
                               ImageView<const std::uint8_t> view,
@@ -117,7 +116,7 @@ GrownChessboard grown_corners(const Board& board,
     return grown_chessboard(board, corners, view);
 }
 
-/// The board from where its corners roughly lie.
+/// The board from rough corner positions.
 BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
@@ -154,7 +153,7 @@ BoardSighting find_chessboard(const Board& board,
     }
     if (!problem.empty()) return not_found(problem);
     return not_found(fmt::format(
-        "no chessboard of {} x {} inner corners, seen whole", board.columns, board.rows));
+        "no chessboard of {} x {} inner corners is fully visible", board.columns, board.rows));
 }
 
 cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& image) {
@@ -167,8 +166,8 @@ cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& im
     return params;
 }
 
-/// Centres of the grid in an image that is `enlarged` times the original, in pixels of the
-/// original and in the board's order.
+/// Centres of the grid from an image that is `enlarged` times the original, in pixels of the
+/// original and in the order of the board.
 std::optional<Points> find_grid(const Board& board,
                                 const cv::Mat& image,
                                 double enlarged,
@@ -190,7 +189,7 @@ std::optional<Points> find_grid(const Board& board,
     if (const auto grid = grown_grid(board, spots)) {
         if (auto points = in_order(*grid)) return points;
     }
-    // OpenCV's search copes better with spots beside the board.
+    // OpenCV's search tolerates spots beside the board better.
     const int kind = board.kind == BoardKind::circles ? cv::CALIB_CB_SYMMETRIC_GRID
                                                       : cv::CALIB_CB_ASYMMETRIC_GRID;
     const cv::Size size(board.columns, board.rows);
@@ -218,13 +217,13 @@ BoardSighting find_circles(const Board& board,
         sighting.view.disc_radius_m = discs.radius_m;
         return sighting;
     }
-    return not_found(fmt::format("no {} of {} x {} dark circles on white, seen whole",
+    return not_found(fmt::format("no {} of {} x {} dark circles on white is fully visible",
                                  board.kind == BoardKind::circles ? "grid" : "staggered grid",
                                  board.columns,
                                  board.rows));
 }
 
-/// Whether points fix a plane's place: not all on one line (of the board).
+/// True if all points lie on one line of the board: they then do not fix the plane.
 bool on_one_line(const Board& board, const std::vector<int>& ids) {
     const int first_row = ids.front() / board.columns;
     const int first_column = ids.front() % board.columns;
@@ -259,11 +258,12 @@ BoardSighting find_charuco(const Board& board, const cv::Mat& image) {
                                      ids.size(),
                                      kFewestCharucoPoints));
     }
-    if (on_one_line(board, ids)) return not_found("only corners on one line of the board");
+    if (on_one_line(board, ids))
+        return not_found("only corners on one line of the board; show more of it");
     BoardSighting sighting;
     sighting.view.ids = ids;
     sighting.view.pixels = points_of(corners);
-    // No further than to the marker beside the corner.
+    // The window ends before the marker beside the corner.
     const double margin = 0.5 * (board.spacing_m - board.marker_m) / board.spacing_m;
     if (!refine_corners(board, image, margin, sighting.view))
         return not_found("a ChArUco board without clear corners (blurred?)");
@@ -306,9 +306,9 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
             case BoardKind::charuco: return find_charuco(board, pixels);
         }
     } catch (const cv::Exception& error) {
-        return not_found(fmt::format("OpenCV gave up: {}", error.err));
+        return not_found(fmt::format("OpenCV failed: {}", error.err));
     }
-    return not_found("no such kind of board");
+    return not_found("unknown kind of board");
 }
 
 }  // namespace surefoot::calibration

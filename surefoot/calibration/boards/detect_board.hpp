@@ -10,36 +10,36 @@
 
 namespace surefoot::calibration {
 
-/// What looking for a board in an image gave: its points, or the reason why there are none.
+/// Result of a board detection: the points, or the reason why there are none.
 struct BoardSighting {
     BoardView view;
-    std::string problem;  ///< empty when found
+    std::string problem;  ///< empty if the board was found
     [[nodiscard]] bool found() const noexcept { return problem.empty(); }
 };
 
-/// Whether boards of this kind can be looked for: sizes, and the dictionary of a ChArUco board.
+/// Error if boards of this kind cannot be detected: wrong sizes or ChArUco dictionary.
 [[nodiscard]] Status check_detectable(const Board& board);
 
-/// Looks for the board in an image, to sub-pixels. Grids and chessboards must be seen whole;
-/// of a ChArUco board `kFewestCharucoPoints` points that do not lie on one line are enough.
+/// Detects the board in an image, to sub-pixels. Grids and chessboards must be fully visible; a
+/// ChArUco board needs `kFewestCharucoPoints` points that do not lie on one line.
 ///
-/// Order of the points: seen from the front, x of the board to the right and y down, turned so that
-/// the square between the first four points of a chessboard is black. Boards that look the same
-/// after a turn (see `turns_of`) come in the order whose rows run most to the right in the image;
-/// `turned_like` makes the second eye of a pair agree with the first.
+/// Order of the points: seen from the front, x of the board points right and y down, rotated so
+/// that the square between the first four points of a chessboard is black. If a board looks the
+/// same after a rotation (see `turns_of`), its rows run to the right in the image. `turned_like`
+/// makes the second camera of a pair agree with the first.
 ///
-/// Circles: centre of gravity of the ink, with the radius that its area shows. The image of a
-/// circle's centre lies up to half a pixel beside it on a tilted board close by; only who knows the
-/// lens can say where.
+/// Circles: centre of gravity of the dark area, and the radius from its size. On a near, tilted
+/// board the image of a circle's centre lies up to half a pixel beside it. Computing that offset
+/// needs the lens model.
 inline constexpr int kFewestCharucoPoints = 6;
 [[nodiscard]] BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> image);
 
-/// Every way to renumber the points of the board so that it looks the same, as the new id of each
-/// point: the identity first, then turns by a quarter, half and three quarters where they fit.
+/// All renumberings of the points after which the board looks the same, as the new id of each
+/// point: first the identity, then rotations by a quarter, half and three quarters if valid.
 [[nodiscard]] std::vector<std::vector<int>> turns_of(const Board& board);
 
-/// The view, renumbered by that turn of the board whose rows run most like those of `reference`:
-/// right for the two eyes of a rig, which are not turned by 45 deg against each other.
+/// The view, renumbered by the rotation of the board whose rows are most parallel to those of
+/// `reference`. Valid for the two cameras of a rig, which differ by less than 45 deg.
 [[nodiscard]] BoardView turned_like(const Board& board,
                                     const BoardView& reference,
                                     const BoardView& view);

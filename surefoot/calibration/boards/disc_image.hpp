@@ -7,17 +7,17 @@
 
 namespace surefoot::calibration {
 
-/// Places on the rim of a disc that stand for all of it. What they miss is of the sixth order in
-/// the radius: 1e-4 px for discs that fill half of their cells on a board that fills the image.
+/// Number of rim positions that represent a disc. The error is of sixth order in the radius: 1e-4
+/// px for discs that fill half of their cells on a board that fills the image.
 inline constexpr int kRimPoints = 8;
 
-/// Rim points of a disc of radius 1, and their derivative by the angle: the weights of a
-/// trigonometric polynomial through values at even angles (Trefethen, *Spectral methods in
-/// MATLAB*, 2000, chapter 3), which repeat around the rim.
+/// Rim points of a disc of radius 1, and weights for the derivative by the angle: those of a
+/// trigonometric polynomial through values at equal angles (Trefethen, *Spectral methods in
+/// MATLAB*, 2000, chapter 3). The weights repeat around the rim.
 struct Rim {
     std::array<double, kRimPoints> x{};
     std::array<double, kRimPoints> y{};
-    std::array<double, kRimPoints> slope{};  ///< weight of the value so many places ahead
+    std::array<double, kRimPoints> slope{};  ///< weight of the value so many positions ahead
 
     Rim() {
         constexpr double kStep_rad = 2.0 * std::numbers::pi / kRimPoints;
@@ -32,12 +32,12 @@ struct Rim {
     }
 };
 
-/// Centre of gravity of the image of a disc, which is what a picture of it shows; the image of its
-/// centre lies elsewhere where the map bends (perspective, lens). By Green's theorem, integrals
-/// over the rim: twice the area is that of u dv - v du, the moments those of u^2 dv and -v^2 du.
+/// Centre of gravity of the image of a disc, the quantity that an image shows. Where the map bends
+/// (perspective, lens), the image of the centre lies elsewhere. Green's theorem turns area and
+/// moments into rim integrals: of u dv - v du (twice the area), u^2 dv and -v^2 du.
 ///
-/// `project(x, y, pixel)` maps a place relative to the centre of a disc of radius 1 into the image
-/// and says whether it has one. False where it has not, or where the disc is seen edge on.
+/// `project(x, y, pixel)` maps a position relative to the centre of a disc of radius 1 into the
+/// image; returns false without an image. The result is then false, as for a disc seen edge on.
 template <typename T, typename Project>
 bool disc_image(const Project& project, T* pixel) {
     static const Rim rim;

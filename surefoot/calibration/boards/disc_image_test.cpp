@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the image of a disc has its centre of gravity, against sums over the whole disc.
+// Checks the centre of gravity of a disc's image against sums over the whole disc.
 #include "surefoot/calibration/boards/disc_image.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ camera::CameraModel fisheye() {
                                  .k4 = 0.0005};
 }
 
-/// Places on a disc of radius 1 into the image.
+/// Maps positions on a disc of radius 1 into the image.
 struct SeenDisc {
     camera::CameraModel model;
     Pose T_camera_disc;
@@ -53,8 +53,8 @@ struct SeenDisc {
     }
 };
 
-/// Every part of the disc counts by the area of its image. The midpoint rule in rings and sectors
-/// has an error of the second order in their size: 1e-4 of the offset of half a pixel.
+/// Weights every part of the disc by the area of its image. The midpoint rule in rings and sectors
+/// has an error of second order in their size: 1e-4 of the offset of half a pixel.
 Eigen::Vector2d by_sums(const SeenDisc& disc) {
     constexpr int kRings = 60;
     constexpr int kSectors = 90;
@@ -80,7 +80,7 @@ Eigen::Vector2d by_sums(const SeenDisc& disc) {
 
 constexpr double kSumError_px = 2e-4;
 
-/// Far out and close by, facing the camera and up to 70 deg away from it.
+/// Discs far and near, facing the camera and tilted by up to 70 deg.
 TEST(DiscImage, IsTheCentreOfGravityOfItsImage) {
     double largest_offset_px = 0.0;
     for (const camera::CameraModel& model : {pinhole(), fisheye()}) {

@@ -8,26 +8,26 @@
 
 namespace surefoot::calibration {
 
-/// A lens where no board was: nothing but its formula says what happens there, and a formula may
-/// let the image turn back before it reaches the corners. A lens does not: every pixel sees
-/// something. Each kind of profile says how its image grows at a `place`, in units of its centre,
-/// and how much a lens that is built grows there at least. Half of that is left open.
+/// Keeps a lens model plausible where no board was. There only the formula counts, and its image
+/// can fold back before the corners, while every pixel of a real lens sees something. A profile
+/// gives the growth of its image at a `place`, relative to the centre, and the least growth of real
+/// lenses. The limit is half of that growth.
 inline constexpr double kLeastGrowth = 0.5;
-inline constexpr double kGrowthStep = 0.05;  ///< of tan(angle), of a fisheye of the angle [rad]
-inline constexpr int kGrowthPlaces = 60;     ///< up to 72 deg from the axis, of a fisheye 172 deg
+inline constexpr double kGrowthStep = 0.05;  ///< of tan(angle); fisheyes: of the angle [rad]
+inline constexpr int kGrowthPlaces = 60;     ///< up to 72 deg from the axis, for a fisheye 172 deg
 
 inline double growth_place(int i) {
     return kGrowthStep * (i + 0.5);
 }
 
-/// `lens` = fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6; places are tan(angle).
+/// `lens` = fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6; a place is a value of tan(angle).
 struct PinholeGrowth {
     static constexpr int kParameters = 12;
 
-    /// Of an orthographic lens, which shows angles shorter than the fisheyes that are built.
+    /// Limit from an orthographic lens, which grows less than real fisheye lenses.
     static double least(double r) { return kLeastGrowth * std::pow(1.0 + r * r, -1.5); }
 
-    /// d image / d r of the radial profile at the distance `r` on the plane z = 1. False beyond a
+    /// d image / d r of the radial profile at distance `r` on the plane z = 1. False beyond a
     /// pole.
     template <typename T>
     static bool at(const T* lens, double r, T* growth) {
@@ -42,11 +42,11 @@ struct PinholeGrowth {
     }
 };
 
-/// `lens` = fx fy cx cy k1 k2 k3 k4 of Kannala and Brandt; places are angles [rad].
+/// `lens` = fx fy cx cy k1 k2 k3 k4 of Kannala and Brandt; a place is an angle [rad].
 struct FisheyeGrowth {
     static constexpr int kParameters = 8;
 
-    /// Of an equisolid lens, 2 sin(angle / 2): flatter ones (orthographic) end before 90 deg.
+    /// Limit of an equisolid lens, 2 sin(angle / 2): an orthographic image ends before 90 deg.
     static double least(double theta) { return kLeastGrowth * std::cos(0.5 * theta); }
 
     /// d image / d theta.
@@ -59,8 +59,8 @@ struct FisheyeGrowth {
     }
 };
 
-/// How many places a profile needs to reach the farthest corner of the image when it grows nowhere
-/// less than a lens does, and whether it turns back before.
+/// Number of places until a profile with the least growth reaches the farthest image corner, and
+/// whether the profile folds back before.
 struct GrowthCheck {
     int places = 0;
     bool turns_back = false;
@@ -83,7 +83,7 @@ GrowthCheck check_growth(const double* lens, ImageSize size) {
     return check;
 }
 
-/// What an image lacks in growth until it reaches its corners, for a least squares solver.
+/// Missing growth of an image up to its corners, as residuals for a least-squares solver.
 template <typename Profile>
 struct GrowthLack {
     int places = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lenses whose image turns back before it reaches the corners, and others.
+// Tests lenses whose image folds back before the corners, and lenses whose image does not.
 #include "surefoot/calibration/boards/growing_image.hpp"
 
 #include <gtest/gtest.h>
@@ -15,17 +15,17 @@ constexpr ImageSize kSize{320, 240};
 
 using Lens = std::array<double, 12>;  ///< fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6
 
-/// Its image reaches the farthest corner, 160 px across and 122 px up, at tan(angle) = 1.422.
+/// The image reaches the farthest corner, 160 px across and 122 px up, at tan(angle) = 1.422.
 constexpr Lens kWide{210.0, 210.5, 159.0, 122.0, 0.51, -0.6, 0.0, 0.0, 0.3, 0.8, -0.6, 0.35};
-/// What ten boards that left the corners out made of it.
+/// An estimate of kWide from ten boards that did not cover the corners.
 constexpr Lens kTurning{
     209.938, 210.441, 159.033, 122.010, -0.052, 0.055, 0.0, 0.0, 0.077, 0.234, -0.068, 0.235};
 
 using Fisheye = std::array<double, 8>;  ///< fx fy cx cy k1 k2 k3 k4
 
-/// Its image reaches the farthest corner, 161 px across and 122 px up, at 1.78 rad.
+/// The image reaches the farthest corner, 161 px across and 122 px up, at 1.78 rad.
 constexpr Fisheye kNearlyHalf{120.0, 120.3, 158.5, 122.0, 0.0121, 0.0056, -0.0061, 0.0005};
-/// An estimate whose last coefficients no board held: it turns at 1.45 rad.
+/// An estimate whose last coefficients are not determined by boards: it folds back at 1.45 rad.
 constexpr Fisheye kTurningFisheye{120.0, 120.3, 158.5, 122.0, 0.02, -0.02, 0.02, -0.0112};
 
 double angular(const Fisheye& lens, double theta) {
@@ -41,7 +41,7 @@ double radial(const Lens& lens, double r) {
 
 TEST(GrowingImage, GrowthIsTheSlopeOfTheProfile) {
     constexpr double kStep = 1e-5;
-    constexpr double kDifferences = 1e-8;  // of the second order in the step, and rounding
+    constexpr double kDifferences = 1e-8;  // second order in the step, plus rounding
     for (const Lens& lens : {kWide, kTurning}) {
         for (const double r : {0.1, 0.7, 1.3, 2.2}) {
             double growth = 0.0;
@@ -71,7 +71,7 @@ TEST(GrowingImage, GrowthOfAFisheyeIsTheSlopeOfItsProfile) {
 TEST(GrowingImage, AFisheyeThatTurnsBackIsNoticed) {
     EXPECT_FALSE(check_growth<FisheyeGrowth>(kNearlyHalf.data(), kSize).turns_back);
     EXPECT_TRUE(check_growth<FisheyeGrowth>(kTurningFisheye.data(), kSize).turns_back);
-    // A smaller image ends before.
+    // A smaller image ends before the fold.
     Fisheye cropped = kTurningFisheye;
     cropped[2] = 80.0;
     cropped[3] = 60.0;
@@ -85,7 +85,7 @@ TEST(GrowingImage, WhatLacksIsZeroForALensThatGrows) {
     ASSERT_TRUE(of_places(kNearlyHalf.data(), lack.data()));
     EXPECT_EQ(*std::max_element(lack.begin(), lack.end()), 0.0);
     ASSERT_TRUE(of_places(kTurningFisheye.data(), lack.data()));
-    // Beyond the turn, at 1.475 rad, all of the least growth is missing and more.
+    // Beyond the fold, at 1.475 rad, more than the whole least growth is missing.
     const double theta = growth_place(29);
     double growth = 0.0;
     (void)FisheyeGrowth::at(kTurningFisheye.data(), theta, &growth);
@@ -101,7 +101,7 @@ TEST(GrowingImage, ALensThatReachesItsCornersDoesNotTurnBack) {
 
 TEST(GrowingImage, OneThatTurnsBackBeforeIsNoticed) {
     EXPECT_TRUE(check_growth<PinholeGrowth>(kTurning.data(), kSize).turns_back);
-    // A smaller image ends before.
+    // A smaller image ends before the fold.
     Lens cropped = kTurning;
     cropped[2] = 100.0;
     cropped[3] = 75.0;
@@ -111,7 +111,7 @@ TEST(GrowingImage, OneThatTurnsBackBeforeIsNoticed) {
 TEST(GrowingImage, APoleLiesBeyondEveryCorner) {
     Lens pole = kWide;
     pole[4] = pole[5] = pole[8] = pole[9] = pole[10] = 0.0;
-    pole[11] = -8.0;  // at r = 0.71, where the image has gone to infinity
+    pole[11] = -8.0;  // a pole at r = 0.71, where the image is at infinity
     EXPECT_FALSE(check_growth<PinholeGrowth>(pole.data(), kSize).turns_back);
     double growth = 0.0;
     EXPECT_FALSE(PinholeGrowth::at(pole.data(), 0.8, &growth));

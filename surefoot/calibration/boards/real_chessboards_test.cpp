@@ -22,7 +22,7 @@ std::string data_folder() {
     return folder != nullptr ? folder : SUREFOOT_DEFAULT_DATA_DIR;
 }
 
-/// `make test` counts these words.
+/// `make test` counts messages with these words.
 constexpr const char* kNoData = "skipped 1 check: no calibration/";
 
 struct Pairs {
@@ -64,7 +64,7 @@ Pairs pairs_of(const std::string& set, const Board& board) {
     return pairs;
 }
 
-/// Says what it found, so that a log shows how near the limits are.
+/// Prints the result, so that a log shows the distance from the limits.
 void print(const char* set, const StereoCalibration& result) {
     std::cout << set << ": " << result.pairs.size() << " pairs, rms " << result.rms_px
               << " px, rows " << result.row_rms_px << " px at f " << result.row_focal_px
@@ -74,13 +74,14 @@ void print(const char* set, const StereoCalibration& result) {
         std::cout << "  pair " << pair.index << ": " << pair.reason << '\n';
 }
 
-/// In the images that `camera/rectifier` would make. The rational lens's are larger than the lens.
+/// Row error in images from `camera/rectifier`. For the rational lens they are larger than the raw
+/// ones.
 double rectified_row_px(const StereoCalibration& result) {
     return result.row_rms_px * result.rectified_focal_px / result.row_focal_px;
 }
 
-/// From images to the rig with our own corners. The limits are what OpenCV 4.6 reaches with its own
-/// and the lens of five coefficients.
+/// The whole way from images to the rig, with our own corners. The limits are the results of OpenCV
+/// 4.6 with its own corners and the lens of five coefficients.
 TEST(RealChessboards, PinholePairIsAsGoodAsOpenCv) {
     const Board board{.spacing_m = 1.0};  // its unit is one square
     const Pairs pairs = pairs_of("chess_pinhole", board);
@@ -114,7 +115,7 @@ TEST(RealChessboards, FisheyePairsThatWereNotTakenTogetherAreFound) {
     EXPECT_LE(rectified_row_px(*result), 0.65);
 }
 
-/// The pairs `indices` of a set alone.
+/// Selects the pairs `indices` of a set.
 Pairs chosen(const Pairs& pairs, const std::vector<std::size_t>& indices) {
     Pairs some;
     some.size = pairs.size;
@@ -125,7 +126,7 @@ Pairs chosen(const Pairs& pairs, const std::vector<std::size_t>& indices) {
     return some;
 }
 
-/// Length of the baseline with its sigma, as stated.
+/// Length of the baseline with its stated sigma.
 std::pair<double, double> baseline_of(const StereoCalibration& result) {
     const Pose& T = result.rig.T_left_right;
     const Eigen::Vector3d along = T.R().transpose() * T.translation_m.normalized();
@@ -133,8 +134,8 @@ std::pair<double, double> baseline_of(const StereoCalibration& result) {
     return {T.translation_m.norm(), std::sqrt(along.dot(block * along))};
 }
 
-/// Halves of the pairs that belong together are two calibrations of one rig: boards that are not
-/// flat, hands that move and lenses that no model follows are in both.
+/// Two halves of the pairs give two calibrations of one rig. Both contain the errors of boards that
+/// are not flat, hands that move, and lenses beyond the model.
 void expect_halves_to_agree(const char* set, const Board& board, LensKind kind) {
     const Pairs pairs = pairs_of(set, board);
     if (pairs.left.empty()) GTEST_SKIP() << kNoData << set << " in " << data_folder();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chessboards through wide lenses: found, numbered right, and to a fraction of a pixel.
+// Chessboards through wide lenses: detection, right numbering, and sub-pixel accuracy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST_P(WideBoards, AreFoundAndNumberedWhereverTheyAre) {
     }
 }
 
-/// A board straight ahead of a lens of 120 deg, `distance` of its own length away.
+/// A board straight ahead of a lens of 120 deg, at `distance` times its own length.
 GreyImage picture_ahead(const Board& board, double distance, double turn_rad = 0.0) {
     const auto camera = testing::wide_camera(WideProfile::equidistant, 120.0, kSize);
     Pose T;
@@ -95,7 +95,7 @@ TEST(WideBoardsNot, ImagesWithoutABoardGiveNone) {
     const Board small{.columns = 4, .rows = 3, .spacing_m = 0.03};
     for (std::uint64_t seed = 601; seed < 609; ++seed) {
         Rng rng(seed);
-        const cv::Mat drawn = testing::clutter(kSize, rng);  // chequers of 3 x 3 among it
+        const cv::Mat drawn = testing::clutter(kSize, rng);  // contains chequers of 3 x 3
         GreyImage image(kSize.width, kSize.height);
         for (int v = 0; v < kSize.height; ++v)
             for (int u = 0; u < kSize.width; ++u)
@@ -133,7 +133,7 @@ TEST(WideBoardsHidden, OfTwoBoardsTheLargerInTheImageCounts) {
     const BoardSighting alone = detect_board(kBoard, image.view());
     ASSERT_TRUE(alone.found());
     ASSERT_TRUE(detect_board(kBoard, far.view()).found());
-    // As on a screen at the left border of the image.
+    // A copy, as on a screen at the left border of the image.
     const int from_u = kSize.width / 2 - 60;
     const int from_v = kSize.height / 2 - 45;
     for (int v = 0; v < 90; ++v)
@@ -152,7 +152,7 @@ TEST(ChessCorners, TellWhichSquaresAreBlack) {
     const auto corners = chess_corners(image.view());
     ASSERT_EQ(corners.size(), 1U);
     EXPECT_LT((corners[0].pixel - Eigen::Vector2d(29.5, 29.5)).norm(), 0.5);
-    // From its first edge onwards to its second one the square is black: to the right and below.
+    // The square from its first edge onwards to its second one is black: to the right and below.
     const Eigen::Vector2d into = corners[0].edges[0] + corners[0].edges[1];
     EXPECT_GT(into.x() * into.y(), 0.0);
     EXPECT_GT(corners[0].contrast_dn, 100.0);

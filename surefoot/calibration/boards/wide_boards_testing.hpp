@@ -17,17 +17,17 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/views.hpp"
 
-/// Pictures of chessboards through wide lenses, with known corners, for tests and experiments. The
-/// sheet lies before a background of random rectangles.
+/// Images of chessboards through wide lenses, with known corners, for tests and experiments. The
+/// background consists of random rectangles.
 namespace surefoot::calibration::testing {
 
-/// Shape of a wide lens's radial profile.
+/// Radial profile of a wide lens.
 enum class WideProfile : std::uint8_t { equidistant, equisolid, stereographic, bought, rational };
 inline constexpr const char* kWideProfileNames[] = {
     "equidistant", "equisolid", "stereographic", "bought", "rational"};
 
-/// Lens of `fov_deg` across the width of the image, with its centre a little beside the middle.
-/// `rational` reaches 130 deg, the others are fisheyes.
+/// Lens with `fov_deg` across the image width; its centre lies slightly beside the middle.
+/// `rational` reaches 130 deg; all others are fisheyes.
 inline camera::Camera wide_camera(WideProfile profile, double fov_deg, ImageSize size) {
     const double half_rad = 0.5 * fov_deg * std::numbers::pi / 180.0;
     const double half_px = 0.5 * size.width;
@@ -57,7 +57,7 @@ inline camera::Camera wide_camera(WideProfile profile, double fov_deg, ImageSize
             size.height};
 }
 
-/// Light, focus and noise of a picture. Grey values are linear in light.
+/// Illumination, focus and noise of an image. Grey values are linear in light.
 struct WideImagingConditions {
     const char* name = "clean";
     double paper_dn = 210.0;
@@ -67,8 +67,8 @@ struct WideImagingConditions {
     double noise_dn = 2.0;
     double corner_light = 1.0;  ///< share of the light that reaches the corners of the image
     double right_light = 1.0;   ///< share of the light at the right border
-    double margin = 1.4;        ///< white paper around the squares, in squares
-    double shown = 1.0;         ///< share of the outer squares that must be in the image
+    double margin = 1.4;        ///< width of the white paper margin, in squares
+    double shown = 1.0;         ///< share of the outer squares that must be visible
 };
 inline constexpr std::array<WideImagingConditions, 9> kWideLooks{
     {{},
@@ -85,8 +85,8 @@ inline constexpr std::array<WideImagingConditions, 9> kWideLooks{
      {.name = "no margin", .blur_px = 0.8, .blur_right_px = 0.8, .noise_dn = 4.0, .margin = 0.0},
      {.name = "cut off", .noise_dn = 4.0, .shown = 0.3}}};
 
-/// True pixels of the board's points; nothing where one of them is not in the image, or where a
-/// square is narrower than `least_step_px` in the image.
+/// True pixels of the board's points. nullopt if a point is outside the image, or if a square is
+/// narrower than `least_step_px` in the image.
 inline std::optional<std::vector<Eigen::Vector2d>> true_corners(const Board& board,
                                                                 const camera::Camera& camera,
                                                                 const Pose& T_camera_board,
@@ -107,9 +107,9 @@ inline std::optional<std::vector<Eigen::Vector2d>> true_corners(const Board& boa
     return pixels;
 }
 
-/// A board anywhere in the image, its printed squares wholly seen, tilted by up to `most_tilt_deg`
-/// against the ray to its middle and rolled by up to 45 deg; 0.35 to 1.6 of its longer side away.
-/// With `shown` below 1 the outer squares may be cut off by so much.
+/// A random board pose with all printed squares visible, tilted by up to `most_tilt_deg` against
+/// the ray to its middle, rolled by up to 45 deg, at 0.35 to 1.6 of its longer side. With `shown`
+/// below 1, only this share of the outer squares must be visible.
 inline Pose wide_pose(const Board& board,
                       const camera::Camera& camera,
                       double most_tilt_deg,
@@ -117,7 +117,7 @@ inline Pose wide_pose(const Board& board,
                       Rng& rng,
                       double shown = 1.0) {
     constexpr double kBorder_px = 2.0;
-    Board squares = board;  // corners of the outer squares too
+    Board squares = board;  // includes the corners of the outer squares
     squares.columns += 2;
     squares.rows += 2;
     const Eigen::Vector3d one(board.spacing_m, board.spacing_m, 0.0);
@@ -155,7 +155,7 @@ inline Pose wide_pose(const Board& board,
     }
 }
 
-/// Random rectangles, some of them chequered: what stands around in a workshop.
+/// Random rectangles, some of them chequered: clutter of a workshop.
 inline cv::Mat clutter(ImageSize size, Rng& rng) {
     cv::Mat image(size.height, size.width, CV_32F, cv::Scalar(100.0));
     const auto number = [&](int n) {
@@ -179,7 +179,7 @@ inline cv::Mat clutter(ImageSize size, Rng& rng) {
     return image;
 }
 
-/// Picture of a board, sampled 4 x 4 times a pixel; 1.4 squares of white paper around its squares.
+/// Image of a board, with 4 x 4 samples per pixel and a white paper margin.
 inline GreyImage wide_picture(const Board& board,
                               const camera::Camera& camera,
                               const Pose& T_camera_board,

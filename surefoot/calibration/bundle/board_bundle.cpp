@@ -16,21 +16,21 @@
 namespace surefoot::calibration {
 namespace {
 
-constexpr int kPinhole = 12;  ///< block size of all pinhole kinds; what a kind lacks stays 0
+constexpr int kPinhole = 12;  ///< block size of all pinhole kinds; unused parameters stay 0
 constexpr int kFisheye = 8;
 
-/// The denominator of the rational model can cancel its numerator, which leaves a direction that no
-/// view determines: a prior keeps the coefficients near zero along it. Beside corner noise of 0.15
-/// px it is one of standard deviation 3, the size of what lenses in the field have (Azure Kinect:
-/// 0.5 -2.6 1.5 / 0.4 -2.5 1.4).
+/// The denominator of the rational model can cancel its numerator: along that direction views do
+/// not determine the coefficients. This prior keeps them near zero. Relative to corner noise of
+/// 0.15 px it has standard deviation 3, the size in real lenses (Azure Kinect: 0.5 -2.6 1.5 / 0.4
+/// -2.5 1.4).
 constexpr double kPriorWeight_px = 0.05;
 constexpr double kRationalBound = 20.0;
-/// For an image that should grow and does not, by how much in units of its centre: a limit of 0.01
-/// beside errors of 0.05 px.
+/// Weight of missing image growth, in units of the growth at the centre: a limit of 0.01 relative
+/// to errors of 0.05 px.
 constexpr double kGrowthWeight_px = 5.0;
 constexpr int kGrowthRounds = 4;
-/// What holding an image may cost, in variances of a coordinate: two sigma. Boards that object more
-/// than that were there.
+/// Largest cost of holding the growth, in variances of a coordinate: two sigma. A larger cost means
+/// that boards were in that image part and contradict.
 constexpr double kMostObjection = 4.0;
 constexpr std::array<int, 6> kRadial{4, 5, 8, 9, 10, 11};  ///< k1 k2 k3 k4 k5 k6
 
@@ -59,7 +59,7 @@ void transform_inverse(const T* pose, const T* p, T* result) {
     ceres::AngleAxisRotatePoint(back, shifted, result);
 }
 
-/// Reprojection of one sight, left or right: of a point, or of a disc with a radius.
+/// Reprojection of one sight, left or right: of a point, or of a disc with radius.
 template <bool kIsFisheye>
 struct Reprojection {
     Eigen::Vector3d point;
@@ -91,7 +91,7 @@ struct Reprojection {
         return compare(seen, residual);
     }
 
-    /// `seen` maps a place on the board into the image.
+    /// `seen` maps a board position into the image.
     template <typename T, typename Seen>
     bool compare(const Seen& seen, T* residual) const {
         const auto beside = [&](double x, double y, T* predicted) {
@@ -126,13 +126,13 @@ template <bool kIsFisheye>
 ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
     using Functor = Reprojection<kIsFisheye>;
-    // The cost function owns it.
+    // The cost function takes ownership.
     auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
     if (sight.camera == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
 
-/// Parameters of a lens that stay as they are.
+/// Indices of the lens parameters that stay fixed.
 std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
     const int block = kind == LensKind::fisheye ? kFisheye : kPinhole;
     const int used = static_cast<int>(parameter_names(kind).size());
@@ -142,7 +142,7 @@ std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
     return fixed;
 }
 
-/// The problem as Ceres sees it, over copies of the bundle's values.
+/// The Ceres problem, on copies of the bundle's values.
 class Graph {
   public:
     Graph(const BoardBundle& bundle, const BundleOptions& options) : bundle_(bundle) {
@@ -168,7 +168,7 @@ class Graph {
         for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
     }
 
-    /// The images of the lenses shall reach their corners. False where they do.
+    /// Makes the lens images reach their corners. False if they already do.
     bool hold_growth() {
         bool turns_back = false;
         for (Lens& lens : lenses_) {
@@ -180,14 +180,14 @@ class Graph {
         return turns_back;
     }
 
-    /// Lenses without distortion, from where a run begins anew.
+    /// Removes the distortion of the lenses, to restart a run.
     void straighten() {
         for (Lens& lens : lenses_) std::fill(lens.begin() + 4, lens.end(), 0.0);
     }
 
     std::optional<double> run(const BundleOptions& options) {
         ceres::Solver::Options settings;
-        // Without a lens that moves there is nothing to eliminate the boards from.
+        // With fixed lenses there is no second group, so the boards cannot be eliminated.
         const bool alone = options.freedom == Freedom::poses;
         settings.linear_solver_type = alone ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
         settings.num_threads = 1;
@@ -211,7 +211,7 @@ class Graph {
         for (std::size_t i = 0; i < poses_.size(); ++i) bundle.T_left_board[i] = pose_of(poses_[i]);
     }
 
-    /// In the blocks' own coordinates.
+    /// Covariance in the coordinates of the parameter blocks.
     std::optional<Eigen::MatrixXd> covariance() {
         ceres::Covariance::Options settings;
         settings.algorithm_type = ceres::SPARSE_QR;
@@ -243,7 +243,7 @@ class Graph {
         return true;
     }
 
-    /// Boards are eliminated first. The solver owns the answer.
+    /// Order that eliminates the boards first. The solver takes ownership.
     ceres::ParameterBlockOrdering* boards_first() {
         auto* order = new ceres::ParameterBlockOrdering;
         for (PoseBlock& pose : poses_)
@@ -284,8 +284,8 @@ class Graph {
     ceres::Problem problem_;
 };
 
-/// d theta of R Exp(theta) per change of the rotation vector of R (right Jacobian of SO(3); Sola
-/// et al. 2018, equation 143).
+/// Derivative of theta in R Exp(theta) by the rotation vector of R: the right Jacobian of SO(3)
+/// (Sola et al. 2018, equation 143).
 Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const Eigen::Matrix3d W = skew(w);
@@ -295,8 +295,8 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     return Eigen::Matrix3d::Identity() - a * W + b * W * W;
 }
 
-/// The cost with images that reach their corners; nothing where they do so unheld, or no step is
-/// found.
+/// Cost with images that reach their corners; nullopt if they do so without the limit, or if the
+/// solver finds no step.
 std::optional<double> run_held(Graph& graph, const BundleOptions& options) {
     std::optional<double> held;
     for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
@@ -314,11 +314,11 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     if (!cost) return cost;
     graph.store(bundle);
     if (!options.hold_growth) return cost;
-    // Half of two residuals a sight, each of a variance.
+    // The cost is half of two residuals per sight, each with this variance.
     const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
     const double most = *cost + 0.5 * kMostObjection * variance_px2;
     std::optional<double> held = run_held(graph, options);
-    // What turned back may lie behind a pole, from where no step leads to a lens that grows.
+    // An image that folded back may lie behind a pole; no step leads from there to a growing lens.
     if (held && *held > most) {
         graph.straighten();
         held = graph.run(options);
@@ -372,7 +372,7 @@ std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigm
     const Eigen::Index used = bundle.lenses.front().size();
     const auto lenses = static_cast<Eigen::Index>(bundle.lenses.size());
     const Eigen::Index pose = lenses > 1 ? 6 : 0;
-    // Rows of the result per row of the blocks: unused lens parameters go; the pose changes from
+    // Maps the blocks to the result. Unused lens parameters are dropped. The pose changes from
     // (rotation vector, translation) to (translation, rotation) in the right camera's frame.
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(lenses * used + pose, all->rows());
     for (Eigen::Index i = 0; i < lenses; ++i)

@@ -13,21 +13,22 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Over the longer image side: 0.1 is an equidistant lens of 570 deg, 6 a telephoto lens of 9 deg.
+/// Focal length divided by the longer image side: 0.1 is an equidistant lens of 570 deg, 6 a
+/// telephoto lens of 9 deg.
 constexpr double kShortest = 0.1;
 constexpr double kLongest = 6.0;
 constexpr double kFocalStep = 1.15;
 constexpr std::size_t kRefined = 3;
-/// A view's error saturates here, so that one with wrong ids cannot choose the focal length [px].
+/// Largest error of a view [px], so that a view with wrong ids cannot determine the focal length.
 constexpr double kSaturation_px = 20.0;
-/// Before the distortion is known, errors of this size are normal [px].
+/// Without known distortion, errors of this size are normal [px].
 constexpr double kStartHuber_px = 5.0;
 constexpr int kStageIterations = 30;
 constexpr double kStageTolerance = 1e-6;
 constexpr BundleOptions kLastStage{
     Freedom::everything, kStartHuber_px, kStageIterations, kStageTolerance};
 
-/// Sights of one view as plane points and rays.
+/// Sights of one view, as plane points and rays.
 struct ViewRays {
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector3d> rays;
@@ -53,12 +54,12 @@ void set_focal(BoardBundle& bundle, double focal_px) {
         0.5 * (bundle.size.height - 1);
 }
 
-/// Board poses for the present lens; how badly they explain the views.
+/// Computes the board poses for the current lens; returns their error.
 double score(BoardBundle& bundle) {
     const std::vector<ViewRays> views = rays_of(bundle);
     for (std::size_t v = 0; v < views.size(); ++v) {
         const std::optional<Pose> T = planar_pose(views[v].points, views[v].rays);
-        // NaN keeps a view without a pose out of all that follows.
+        // NaN excludes a view without a pose from all later steps.
         const Pose none{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Constant(kNan)};
         bundle.T_left_board[v] = T.value_or(none);
     }
@@ -74,7 +75,7 @@ struct Candidate {
     double score = 0.0;
 };
 
-/// Best first: the minima of the score along the focal lengths.
+/// Minima of the score along the focal lengths, best first.
 std::vector<Candidate> candidates(BoardBundle bundle) {
     const double side_px = std::max(bundle.size.width, bundle.size.height);
     std::vector<Candidate> all;
@@ -95,7 +96,7 @@ std::vector<Candidate> candidates(BoardBundle bundle) {
     return minima;
 }
 
-/// Views in which some point has no image would stop the solver: they wait outside.
+/// Removes views in which a point has no image, because they would stop the solver.
 void drop_invisible(BoardBundle& bundle) {
     const std::vector<double> rms = view_rms_px(bundle);
     for (std::size_t v = 0; v < rms.size(); ++v)
@@ -113,7 +114,7 @@ std::optional<double> refine(BoardBundle& bundle) {
     return cost;
 }
 
-/// Views that the rough lens could not explain get another chance with the refined one.
+/// Adds views that the rough lens could not explain, if the refined lens can.
 void add_missing(const BoardBundle& all, BoardBundle& refined) {
     BoardBundle trial = all;
     trial.lenses = refined.lenses;
@@ -133,12 +134,12 @@ struct Start {
     double cost = 0.0;
 };
 
-/// Infinite where there is none yet: a cost that is no number never wins.
+/// Infinite without a start: an invalid cost never wins.
 double cost_of(const std::optional<Start>& start) {
     return start ? start->cost : std::numeric_limits<double>::infinity();
 }
 
-/// What a start cannot explain must not make it look better.
+/// Cost of the views that a start cannot explain, so that it does not look better without them.
 double cost_of_missing(const BoardBundle& all, const BoardBundle& start) {
     const auto missing = static_cast<double>(all.sights.size() - start.sights.size());
     return missing * kStartHuber_px * kSaturation_px;
@@ -160,9 +161,9 @@ std::optional<Start> best_start(const BoardBundle& bundle) {
     return best;
 }
 
-/// The rational lens whose radius r of the angle t is nearest to that of Kannala and Brandt:
-/// tan t (1 + k1 tan^2 t + k2 tan^4 t) = r (1 + k4 tan^2 t + k5 tan^4 t) is linear in its
-/// coefficients. The highest ones are left at 0: with them the quotient may have a pole.
+/// The rational lens that is nearest to Kannala and Brandt's radius r of the angle t: tan t (1 + k1
+/// tan^2 t + k2 tan^4 t) = r (1 + k4 tan^2 t + k5 tan^4 t) is linear in the coefficients. The
+/// highest ones stay 0: with them the quotient may have a pole.
 Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad) {
     constexpr int kAngles = 60;
     const camera::CameraModel model = model_of(LensKind::fisheye, fisheye);
@@ -203,8 +204,8 @@ void become_rational(BoardBundle& bundle) {
     drop_invisible(bundle);
 }
 
-/// Neither a pinhole camera nor a fisheye is near every rational lens: from 100 deg on the
-/// polynomial of the first one ends in a false minimum now and then.
+/// Neither a pinhole camera nor a fisheye is near every rational lens. From 100 deg on the
+/// polynomial of the pinhole sometimes ends in a false minimum.
 std::optional<Start> best_rational_start(const BoardBundle& bundle) {
     std::optional<Start> best;
     for (const LensKind near : {LensKind::pinhole5, LensKind::fisheye}) {

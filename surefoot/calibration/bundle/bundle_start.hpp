@@ -7,12 +7,12 @@
 
 namespace surefoot::calibration {
 
-/// Finds lens and board poses of a one-camera bundle whose sights are given (ordered by view), from
-/// nothing. Focal lengths from a tenth to six times the image side are tried: for each, every board
-/// pose follows in closed form from the undistorted (pinhole) or equidistant (fisheye) lens, and
-/// the poses explain the views best near the truth. The best three are refined in stages, fewer
-/// parameters first; the rational lens grows out of the five-parameter one and out of a fisheye,
-/// and the better one counts. False when no focal length explains any view.
+/// Finds lens and board poses of a one-camera bundle with given sights (ordered by view), without a
+/// start value. Tries focal lengths from 0.1 to 6 times the image side. Each gives all board poses
+/// in closed form, with an undistorted (pinhole) or equidistant (fisheye) lens; the poses explain
+/// the views best near the truth. Refines the best three in stages, with few parameters first. A
+/// rational lens starts from the five-parameter lens and from a fisheye; the better result counts.
+/// False if no focal length explains any view.
 [[nodiscard]] bool start_bundle(BoardBundle& bundle);
 
 }  // namespace surefoot::calibration

@@ -14,12 +14,12 @@
 namespace surefoot::calibration {
 namespace {
 
-// ASSUMPTION, all four and kEnoughTilt_deg: what hand-books of calibration tools ask for (ten views
-// and more, tilts of 20 to 45 deg, the whole image, two distances); how much is really enough is
-// said by the covariance of the result.
+// ASSUMPTION for all four limits and kEnoughTilt_deg: handbooks of calibration tools ask for ten or
+// more views, tilts of 20 to 45 deg, the whole image and two distances. The covariance of the
+// result says whether that was enough.
 constexpr int kEnoughViews = 10;
-constexpr double kEnoughDistances = 1.5;  ///< largest over smallest spacing
-constexpr double kFilledShare = 0.5;      ///< of the parts of a region
+constexpr double kEnoughDistances = 1.5;  ///< largest divided by smallest spacing
+constexpr double kFilledShare = 0.5;      ///< share of the parts of a region
 constexpr double kNearView = 0.4;         ///< share of the image that a near view fills
 
 constexpr const char* kRegionNames[3][3] = {{"top left", "top", "top right"},
@@ -60,8 +60,8 @@ ViewShape shape_of(const Board& board,
     shape.spacing_px = board.spacing_m * std::sqrt(scales_px_m[0] * scales_px_m[1]);
     shape.tilt_deg =
         std::acos(std::min(1.0, scales_px_m[1] / scales_px_m[0])) * 180.0 / std::numbers::pi;
-    // The image of a square grows towards the side that is near: gradient of log det J, from the
-    // board into the image.
+    // The image of a square grows towards the near side. This direction is the gradient of log det
+    // J, mapped from the board into the image.
     const Eigen::Matrix2d inverse = map->J_px_m.inverse();
     Eigen::Vector2d growth_m;
     for (Eigen::Index k = 0; k < 2; ++k) {
@@ -82,7 +82,7 @@ ViewShape shape_of(const Board& board,
 void advise_views(int usable, Coverage& coverage) {
     if (usable >= kEnoughViews) return;
     coverage.advice.push_back(fmt::format(
-        "{} usable view{}: show the board at least {} times, each time held differently.",
+        "{} usable view{}: show the board at least {} times, each time in a different pose.",
         usable,
         usable == 1 ? "" : "s",
         kEnoughViews));
@@ -110,7 +110,8 @@ void advise_regions(Coverage& coverage) {
     if (missing.empty()) return;
     coverage.advice.push_back(
         fmt::format("Too few points in the {} of the image: bring the board there, until it almost "
-                    "leaves the image. The lens is a guess where it was not seen.",
+                    "leaves the image. Where no board was seen, the lens model is "
+                    "only extrapolated.",
                     joined(missing)));
 }
 
@@ -126,7 +127,7 @@ void advise_tilts(Coverage& coverage) {
     if (missing.empty()) return;
     coverage.advice.push_back(
         fmt::format("Missing tilts: turn the board by {:.0f} to 45 deg so that its {} side comes "
-                    "nearer. Without tilts focal length and distance cannot be told apart.",
+                    "nearer. Without tilts, focal length and distance cannot be separated.",
                     kEnoughTilt_deg,
                     joined(missing)));
 }

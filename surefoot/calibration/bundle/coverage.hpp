@@ -10,33 +10,33 @@
 
 namespace surefoot::calibration {
 
-/// The side of a board that is nearest to the camera, as the image shows it.
+/// The side of a board that is nearest to the camera, named as in the image.
 enum class NearSide : std::uint8_t { left, right, top, bottom };
 inline constexpr const char* kNearSideNames[] = {"left", "right", "top", "bottom"};
 
-/// A view counts as tilted from here on: see coverage.cpp.
+/// Smallest angle of a view that counts as tilted; for the reason see coverage.cpp.
 inline constexpr double kEnoughTilt_deg = 20.0;
 
-/// How a board was held, told from the image alone.
+/// Pose of a board, estimated from the image alone.
 struct ViewShape {
-    double spacing_px = 0.0;  ///< of neighbouring points in the middle of the view, geometric mean
+    double spacing_px = 0.0;  ///< geometric mean for neighbouring points in the middle of the view
     /// Angle between the board and the image plane, from the foreshortening in the middle of the
-    /// view (exact for a board that is small and on the optical axis).
+    /// view (exact for a small board on the optical axis).
     double tilt_deg = 0.0;
-    NearSide near_side = NearSide::left;  ///< means something only with a tilt
+    NearSide near_side = NearSide::left;  ///< meaningful only for a tilted board
 };
 
-/// What a set of views has shown, and what is missing.
+/// Coverage of a set of views, and advice on missing views.
 struct Coverage {
     static constexpr int kColumns = 12;
     static constexpr int kRows = 9;
     Image<int> points{kColumns, kRows};  ///< board points seen in each part of the image
-    std::vector<ViewShape> views;        ///< one per view given, all zero where it has few points
-    double seen_share = 0.0;             ///< parts with a point
+    std::vector<ViewShape> views;        ///< one per view; all zero for a view with too few points
+    double seen_share = 0.0;             ///< share of parts with a point
     std::vector<std::string> advice;     ///< sentences, most important first; empty = enough
 };
 
-/// Views need not have passed any check; points outside of the image are left out.
+/// Views need no previous check. Points outside the image are ignored.
 [[nodiscard]] Coverage coverage_of(const Board& board,
                                    std::span<const BoardView> views,
                                    int width,

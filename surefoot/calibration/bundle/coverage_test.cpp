@@ -23,7 +23,7 @@ Board board() {
     return parse_board("chessboard:9x6:0.03").value();
 }
 
-/// The board, turned about its own middle, with its middle at a pixel of an ideal camera.
+/// The board, rotated about its own middle, with its middle at a pixel of an ideal camera.
 BoardView view_at(double u, double v, double distance_m, const Eigen::Vector3d& turn_rad) {
     const camera::PinholeRadTan lens{
         .fx_px = 500.0, .fy_px = 500.0, .cx_px = 319.5, .cy_px = 239.5};
@@ -72,8 +72,8 @@ TEST(Coverage, TellsTiltAndDistanceOfAView) {
         Eigen::Vector3d turn_rad;
         NearSide near_side;
     };
-    // Turning about x (to the right) moves what is below away: the upper side comes nearer for a
-    // positive turn of y = down towards z = forward; about y it is the right side.
+    // A rotation about x (right) by a positive angle turns y (down) towards z (forward): the lower
+    // side moves away and the upper side comes nearer. About y, the right side comes nearer.
     const double tilt_rad = radians(35.0);
     for (const Case& c : {Case{{tilt_rad, 0.0, 0.0}, NearSide::top},
                           Case{{-tilt_rad, 0.0, 0.0}, NearSide::bottom},

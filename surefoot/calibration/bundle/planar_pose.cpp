@@ -10,7 +10,7 @@ namespace {
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// Shortest axis of the scatter over the longest at which points count as a line.
+/// Points count as a line if shortest over longest axis of their scatter is below this.
 constexpr double kLine = 1e-3;
 
 Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
@@ -19,7 +19,7 @@ Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Maps board coordinates to mean 0 and mean square 2, which keeps the system well conditioned.
+/// Maps board coordinates to mean 0 and mean square 2; this keeps the system well conditioned.
 Eigen::Matrix3d normaliser(std::span<const Eigen::Vector3d> points) {
     const Eigen::Vector3d centre = mean(points);
     double square = 0.0;
@@ -31,7 +31,7 @@ Eigen::Matrix3d normaliser(std::span<const Eigen::Vector3d> points) {
     return N;
 }
 
-/// H with rays parallel to H (x, y, 1), up to scale.
+/// H such that the rays are parallel to H (x, y, 1), up to scale.
 Eigen::Matrix3d homography(std::span<const Eigen::Vector3d> points,
                            std::span<const Eigen::Vector3d> rays) {
     const Eigen::Matrix3d N = normaliser(points);
@@ -71,7 +71,7 @@ std::optional<Pose> planar_pose(std::span<const Eigen::Vector3d> points_board_m,
         agreement += rays_camera[i].dot(
             H * Eigen::Vector3d(points_board_m[i].x(), points_board_m[i].y(), 1.0));
     }
-    if (agreement < 0.0) H = -H;  // the board lies where the rays go
+    if (agreement < 0.0) H = -H;  // the board must lie in the direction of the rays
     const double scale = 0.5 * (H.col(0).norm() + H.col(1).norm());
     Eigen::Matrix3d R;
     R << H.col(0) / scale, H.col(1) / scale, H.col(0).cross(H.col(1)) / (scale * scale);

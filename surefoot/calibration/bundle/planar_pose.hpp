@@ -8,14 +8,14 @@
 
 namespace surefoot::calibration {
 
-/// Pose of a flat board whose points (z = 0) appear along `rays`, by the direct linear transform
+/// Pose of a flat board whose points (z = 0) appear along `rays`. Uses the direct linear transform
 /// between the plane and the rays (Hartley and Zisserman 2004, section 4.1), orthonormalised. Rays
-/// may point anywhere, beyond 90 deg too. A start for a refinement, not an optimum. Nothing for
-/// fewer than four points, points on a line, or rays that no plane in front could cause.
+/// may point anywhere, also beyond 90 deg. A start value, not an optimum. nullopt for fewer than
+/// four points, for points on a line, or if no plane in front explains the rays.
 [[nodiscard]] std::optional<Pose> planar_pose(std::span<const Eigen::Vector3d> points_board_m,
                                               std::span<const Eigen::Vector3d> rays_camera);
 
-/// Whether all points lie on a line (or one point, or none).
+/// True if all points lie on one line; also for one point or no points.
 [[nodiscard]] bool collinear(std::span<const Eigen::Vector3d> points_board_m);
 
 }  // namespace surefoot::calibration

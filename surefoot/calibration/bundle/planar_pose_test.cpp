@@ -22,7 +22,7 @@ TEST(PlanarPose, ExactRaysGiveTheExactPose) {
     const std::vector<Pose> poses{
         {Eigen::Quaterniond::Identity(), {-0.1, -0.06, 0.5}},
         {exp_so3({0.6, -0.4, 2.9}), {0.2, 0.1, 0.4}},
-        {exp_so3({0.0, 1.4, 0.2}), {0.6, 0.0, -0.1}},  // beyond 90 deg, as a fisheye sees it
+        {exp_so3({0.0, 1.4, 0.2}), {0.6, 0.0, -0.1}},  // beyond 90 deg, as in a fisheye
     };
     for (const Pose& truth : poses) {
         const auto found = planar_pose(points, rays_to(points, truth));

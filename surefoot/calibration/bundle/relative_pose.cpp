@@ -9,7 +9,7 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Rotation vectors bend little around their origin: a few rounds reach the last digit.
+/// Rotation vectors are almost linear around their origin: few rounds reach the last digit.
 constexpr int kRounds = 5;
 
 template <typename Coordinates>

@@ -7,11 +7,11 @@
 
 namespace surefoot::calibration {
 
-/// Median of poses that should be the same one: of each coordinate of the position, and of each
-/// coordinate of the rotation vector away from the median itself. At least one pose.
+/// Median of repeated estimates of one pose: per coordinate of the position, and per coordinate of
+/// the rotation vector relative to the median itself. Needs at least one pose.
 [[nodiscard]] Pose median_pose(std::span<const Pose> poses);
 
-/// Distance of one pose from another.
+/// Difference between two poses.
 struct PoseDistance {
     double translation_m = 0.0;
     double rotation_rad = 0.0;

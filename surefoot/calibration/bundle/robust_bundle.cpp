@@ -11,24 +11,24 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr double kHuberSigmas = 2.5;
-/// When views are judged, a single corner counts for no more than this: it can leave alone.
+/// Limit of a single corner's error in the rms of its view: such a corner can be removed alone.
 constexpr double kClipSigmas = 10.0;
-/// Enough to tell a view that does not belong: its rms is known to a thousandth.
+/// Enough to detect a view that does not fit: its rms is then known to a thousandth.
 constexpr double kRoughTolerance = 1e-5;
-/// Noiseless input must not shrink the loss to nothing: no corner is known better [px].
+/// Least sigma [px]: noiseless input must not shrink the loss to zero.
 constexpr double kLeastSigma_px = 1e-3;
-/// The median of the length of a two-dimensional normal error is sqrt(2 ln 2) standard deviations.
+/// Median length of a two-dimensional normal error, in standard deviations: sqrt(2 ln 2).
 constexpr double kMedianLength = 1.17741;
-constexpr double kMadToSigma = 1.4826;  ///< of one-dimensional normal values
+constexpr double kMadToSigma = 1.4826;  ///< factor for one-dimensional normal values
 
-/// Standard deviation of a coordinate that a minority of wild points cannot move.
+/// Standard deviation of a coordinate, robust against a minority of outliers.
 double robust_sigma_px(const BoardBundle& bundle) {
     std::vector<double> lengths;
     for (const Eigen::Vector2d& r : residuals_px(bundle)) lengths.push_back(r.norm());
     return std::max(median(lengths) / kMedianLength, kLeastSigma_px);
 }
 
-/// What the rms of a view may be when all are as good as most of them.
+/// Largest rms of a view that is as good as most views.
 double common_limit_px(const std::vector<double>& all, const RobustLimits& limits) {
     std::vector<double> known;
     for (const double rms : all)
@@ -65,7 +65,7 @@ std::vector<Sight> take_outliers(BoardBundle& bundle, double limit_px) {
     return outliers;
 }
 
-/// Degrees of freedom count, so that few views do not look better than they are.
+/// Uses the degrees of freedom, so that few views do not look better than they are.
 double unbiased_sigma_px(const BoardBundle& bundle) {
     double square = 0.0;
     for (const Eigen::Vector2d& r : residuals_px(bundle)) square += r.squaredNorm();
@@ -84,7 +84,7 @@ std::vector<double> view_rms_px(const BoardBundle& bundle, double clip_px) {
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         const auto view = static_cast<std::size_t>(bundle.sights[i].view);
-        // Not std::min: NaN must stay NaN.
+        // std::min would lose NaN.
         const double length_px = residuals[i].norm();
         const double counted_px = length_px > clip_px ? clip_px : length_px;
         square[view] += counted_px * counted_px;

@@ -15,7 +15,7 @@ namespace {
 
 std::optional<std::string> point_problem(int id, const Eigen::Vector2d& pixel, ImageSize size) {
     if (!pixel.allFinite()) return fmt::format("point {} has a pixel that is not finite", id);
-    // A pixel reaches half a pixel beyond its centre.
+    // A pixel extends half a pixel beyond its centre.
     if (pixel.x() < -0.5 || pixel.y() < -0.5 || pixel.x() > size.width - 0.5 ||
         pixel.y() > size.height - 0.5) {
         return fmt::format("point {} at ({:.1f}, {:.1f}) px lies outside the {}x{} image",
@@ -46,11 +46,12 @@ std::optional<std::string> view_problem(const Board& board,
                                         ImageSize size,
                                         int least_points) {
     if (view.ids.size() != view.pixels.size()) {
-        return fmt::format("{} ids for {} pixels", view.ids.size(), view.pixels.size());
+        return fmt::format("it has {} ids but {} pixels", view.ids.size(), view.pixels.size());
     }
     if (!(view.disc_radius_m >= 0.0 && view.disc_radius_m <= board.spacing_m))
-        return fmt::format(
-            "circles of radius {} m, {} m apart", view.disc_radius_m, board.spacing_m);
+        return fmt::format("its circles have radius {} m and are {} m apart; this is impossible",
+                           view.disc_radius_m,
+                           board.spacing_m);
     if (view.ids.empty()) return "the board was not found";
     const std::vector<Eigen::Vector3d> all = board.points_m();
     std::vector<Eigen::Vector3d> points;
@@ -65,7 +66,8 @@ std::optional<std::string> view_problem(const Board& board,
         points.push_back(all[static_cast<std::size_t>(id)]);
     }
     if (static_cast<int>(points.size()) < least_points) {
-        return fmt::format("too few points: {} of at least {}", points.size(), least_points);
+        return fmt::format(
+            "too few points: {}, at least {} are needed", points.size(), least_points);
     }
     if (collinear(points)) return "all its points lie on a line";
     return std::nullopt;

@@ -12,34 +12,34 @@
 
 namespace surefoot::calibration {
 
-/// A view that a calibration leaves out.
+/// A view that the calibration does not use.
 struct RejectedView {
     std::size_t index = 0;  ///< into the views given
     std::string reason;
     friend bool operator==(const RejectedView&, const RejectedView&) = default;
 };
 
-/// Adds a view in ascending order; a second reason joins the first.
+/// Adds a view in ascending order. A second reason is appended to the first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
-/// First reason why a view cannot serve: ids and pixels that do not match, ids out of order or not
-/// on the board, pixels that are NaN or outside the image, fewer than `least_points`, points on a
+/// First problem of a view, or nullopt: ids and pixels that do not match; ids out of order or not
+/// on the board; pixels that are NaN or outside the image; fewer than `least_points`; points on a
 /// line.
 [[nodiscard]] std::optional<std::string> view_problem(const Board& board,
                                                       const BoardView& view,
                                                       ImageSize size,
                                                       int least_points);
 
-/// Rms distance of the points that two views share [px]; infinity when less than half of the points
-/// of one are shared.
+/// Rms distance of the common points of two views [px]; infinity if a view shares fewer than half
+/// of its points.
 [[nodiscard]] double motion_px(const BoardView& a, const BoardView& b);
 
-/// Median of what the views say of their discs' radius; 0 where they show points.
+/// Median of the disc radii that the views state; 0 for views of points.
 [[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
 
-/// "6 of 8 views left out: view 2 ...; view 5 ...": the first three reasons.
+/// Text with the first three reasons: "6 of 8 views left out: view 2 ...; view 5 ...".
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
-[[nodiscard]] double median(std::vector<double> values);  ///< 0 when empty
+[[nodiscard]] double median(std::vector<double> values);  ///< returns 0 for no values
 
 }  // namespace surefoot::calibration

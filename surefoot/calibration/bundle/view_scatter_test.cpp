@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views that disagree about the cameras by more than corner noise make a calibration less certain.
+// If views disagree about the cameras by more than corner noise, the stated uncertainty grows.
 #include "surefoot/calibration/bundle/view_scatter.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ constexpr double kNoise_px = 0.05;
 constexpr int kViews = 14;
 const Board kBoard{.columns = 7, .rows = 5, .spacing_m = 0.04};
 
-/// A sheet that bends by `bow_m` between its middle and its ends, every time another way, seen by
-/// both cameras.
+/// A sheet that bends by `bow_m` between its middle and its ends, differently in every view, seen
+/// by both cameras.
 testing::SyntheticViews bowed_views(const camera::StereoRig& rig, double bow_m, Rng& rng) {
     const double half_m = 0.5 * kBoard.points_m().back().x();
     testing::SyntheticViews views = testing::synthetic_views(kBoard, rig, kViews, kNoise_px, rng);
@@ -44,15 +44,15 @@ testing::SyntheticViews bowed_views(const camera::StereoRig& rig, double bow_m, 
 }
 
 struct Stated {
-    double error_m = 0.0;  ///< of the baseline
-    double sigma_m = 0.0;  ///< as stated
-    double alone_m = 0.0;  ///< as the noise of single corners alone would state it
+    double error_m = 0.0;  ///< error of the baseline
+    double sigma_m = 0.0;  ///< stated sigma of the baseline
+    double alone_m = 0.0;  ///< sigma from the noise of single corners alone
 };
 
 Stated baseline_of(const camera::StereoRig& rig, const testing::SyntheticViews& views) {
     const ImageSize size{rig.left.width, rig.left.height};
     StereoOptions options;
-    options.pair_factor = 1e3;  // all pairs stay: their errors are the question
+    options.pair_factor = 1e3;  // keeps all pairs: the test needs their errors
     options.camera.limits.least_px = 10.0;
     const auto result =
         calibrate_stereo(kBoard, views.left, views.right, size, LensKind::pinhole4, options);
@@ -83,7 +83,7 @@ TEST(ViewScatter, IndependentNoiseIsNoDisagreement) {
         EXPECT_LT(result->stated_sigma_px, 1.25 * result->sigma_px) << "seed " << seed;
         square += std::pow(result->stated_sigma_px / kNoise_px, 2) / kSeeds;
     }
-    // About 290 degrees of freedom each; what lies below the noise counts as the noise.
+    // About 290 degrees of freedom each. The stated value is never below the corner noise.
     EXPECT_NEAR(std::sqrt(square), 1.03, 0.06);
 }
 
@@ -99,7 +99,7 @@ TEST(ViewScatter, BentBoardsAreCoveredWhereCornerNoiseAloneDoesNot) {
         stated += std::pow(baseline.error_m / baseline.sigma_m, 2) / kSeeds;
         alone += std::pow(baseline.error_m / baseline.alone_m, 2) / kSeeds;
     }
-    // 99.8 % of the mean of twenty squares of normal values lie between 0.30 and 2.27.
+    // For twenty squared normal values, 99.8 % of the means lie between 0.30 and 2.27.
     EXPECT_LT(stated, 2.27);
     EXPECT_GT(stated, 0.15) << "or sigma is far too large";
     EXPECT_GT(alone, 2.27) << "the noise of single corners alone says too little";

@@ -9,7 +9,7 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Views on a line: how much two differ is how far they lie apart.
+/// Views on a line: the difference of two views is their distance.
 std::vector<std::size_t> select(const std::vector<double>& places,
                                 const SelectionLimits& limits,
                                 std::vector<RejectedView>& rejected) {

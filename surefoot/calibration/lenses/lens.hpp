@@ -10,7 +10,7 @@
 
 namespace surefoot::calibration {
 
-/// What a calibration estimates of a lens.
+/// Lens model of a calibration, with its estimated parameters.
 enum class LensKind : std::uint8_t {
     pinhole4,  ///< fx fy cx cy k1 k2 p1 p2
     pinhole5,  ///< ... and k3
@@ -24,10 +24,10 @@ struct ImageSize {
     int height = 0;
 };
 
-/// Names of the parameters of a kind, in the order of its covariance.
+/// Parameter names of a lens kind, in the order of its covariance.
 [[nodiscard]] std::vector<std::string> parameter_names(LensKind kind);
 
-/// The model that a list of parameters in that order means.
+/// The camera model for a parameter list in that order.
 [[nodiscard]] camera::CameraModel model_of(LensKind kind, const Eigen::VectorXd& parameters);
 
 }  // namespace surefoot::calibration

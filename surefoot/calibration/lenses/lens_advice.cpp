@@ -20,12 +20,12 @@ constexpr std::size_t kMostViews = 16;
 constexpr std::size_t kFewestViews = 3;
 constexpr std::size_t kFewestHalved = 8;
 constexpr int kFewestPoints = 8;
-/// A lens that is worth naming is better by this factor, and by more than corner noise.
+/// An advised lens must reduce the rms by this factor, and by more than corner noise.
 constexpr double kBetter = 0.7;
 constexpr double kLeastGain_px = 0.02;
-/// Explains the boards about equally well.
+/// Lenses within this factor explain the boards about equally well.
 constexpr double kAlike = 1.1;
-/// Errors beyond it count linearly: a single wrong corner must not choose the lens [px].
+/// Larger errors count linearly [px]: a single wrong corner must not choose the lens.
 constexpr double kHuber_px = 1.0;
 constexpr int kIterations = 50;
 constexpr double kTolerance = 1e-6;
@@ -52,7 +52,7 @@ std::optional<Eigen::VectorXd> fitted_lens(BoardBundle bundle) {
     return bundle.lenses[0];
 }
 
-/// A view's rms with the pose that suits it best; infinite where the lens does not show it.
+/// Rms of a view with its best pose; infinite if the lens does not show the view.
 double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     view.lenses = {lens};
     const camera::CameraModel model = model_of(view.kind, lens);
@@ -75,7 +75,7 @@ double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     return rms;
 }
 
-/// What lenses of the fisheye kind and others are called in a sentence.
+/// Name of a lens kind in a sentence.
 std::string name_of(LensKind kind) {
     switch (kind) {
         case LensKind::fisheye: return "a fisheye";
@@ -142,7 +142,7 @@ std::string in_words(const LensAdvice& advice) {
                                               advice.better.rms_px,
                                               advice.chosen.rms_px,
                                               model_name(advice.chosen.kind))
-                                : fmt::format("rms {:.2f} px; {} shows most boards nowhere",
+                                : fmt::format("rms {:.2f} px; {} cannot show most boards",
                                               advice.better.rms_px,
                                               model_name(advice.chosen.kind));
     return fmt::format("this lens looks like {} ({}): try --model {}",

@@ -11,8 +11,8 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Central differences: the image is linear in the first four parameters, and so nearly in the
-/// coefficients that 1e-5 leaves ten digits.
+/// Step of central differences. The image is linear in the first four parameters and almost linear
+/// in the coefficients; a step of 1e-5 keeps ten digits.
 constexpr double kStep = 1e-5;
 constexpr int kColumns = 9;
 constexpr int kRows = 7;

@@ -8,20 +8,20 @@
 
 namespace surefoot::calibration {
 
-/// What the covariance of a lens means in the image: how the picture of a fixed direction, that of
-/// `pixel`, moves when the parameters are off [px^2]. The coefficients of a rational lens are
-/// almost exchangeable, so that their own deviations say nothing, but what they do together is
-/// known as well as for any lens. First order; nothing where no direction belongs to the pixel.
+/// Covariance of the image position of a fixed direction, the one of `pixel`, caused by the
+/// covariance of the lens [px^2]. Reason: the coefficients of a rational lens can almost replace
+/// each other. Their single deviations say little, but their common effect is well known. First
+/// order; nullopt if the pixel has no direction.
 [[nodiscard]] std::optional<Eigen::Matrix2d> mapping_covariance_px2(
     LensKind kind,
     const Eigen::VectorXd& parameters,
     const Eigen::MatrixXd& covariance,
     const Eigen::Vector2d& pixel);
 
-/// Standard deviation along the worst direction, on a grid of pixels that reaches the corners of
-/// the image [px]. A corner that no view showed is extrapolated, and may be known very badly.
+/// Standard deviation in the worst direction, on a grid of pixels up to the image corners [px]. A
+/// corner that no view showed is extrapolated and may have a very large value.
 struct MappingSigmas {
-    double median_px = 0.0;  ///< NaN where no pixel has one
+    double median_px = 0.0;  ///< NaN if no pixel has a value
     double largest_px = 0.0;
 };
 [[nodiscard]] MappingSigmas mapping_sigmas_px(LensKind kind,

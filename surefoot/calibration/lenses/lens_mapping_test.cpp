@@ -24,7 +24,7 @@ TEST(LensMapping, OfAPlainLensIsWhatTheFormulaSays) {
     const Eigen::VectorXd lens = values({400, 410, 375, 240, 0, 0, 0, 0});
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(8, 8);
     covariance.diagonal().head<4>() << 4.0, 9.0, 0.25, 0.16;
-    // Rounding of a pixel, 1e-13, over the step of the differences, 1e-5, and some.
+    // The rounding of a pixel, 1e-13, divided by the step of the differences, 1e-5, with a margin.
     constexpr double kRounding_px2 = 1e-7;
     const Eigen::Vector2d pixel(575.0, 35.0);  // x = 0.5, y = -0.5
     const auto moved = mapping_covariance_px2(LensKind::pinhole4, lens, covariance, pixel);
@@ -32,11 +32,11 @@ TEST(LensMapping, OfAPlainLensIsWhatTheFormulaSays) {
     EXPECT_NEAR((*moved)(0, 0), 0.25 * 4.0 + 0.25, kRounding_px2);
     EXPECT_NEAR((*moved)(1, 1), 0.25 * 9.0 + 0.16, kRounding_px2);
     EXPECT_NEAR((*moved)(0, 1), 0.0, kRounding_px2);
-    // The worst of the image is its left or right border: |x| = 376 / 400, or its upper one.
+    // The worst position is the left or right border, |x| = 376 / 400, or the upper border.
     const MappingSigmas sigmas = mapping_sigmas_px(LensKind::pinhole4, lens, covariance, kSize);
     const double x = 376.0 / 400.0;
     const double y = 240.0 / 410.0;
-    EXPECT_GT(sigmas.median_px, std::sqrt(0.25));  // that of the principal point
+    EXPECT_GT(sigmas.median_px, std::sqrt(0.25));  // the principal point alone gives this
     EXPECT_LT(sigmas.median_px, sigmas.largest_px);
     EXPECT_NEAR(sigmas.largest_px,
                 std::sqrt(std::max(x * x * 4.0 + 0.25, y * y * 9.0 + 0.16)),
@@ -44,7 +44,7 @@ TEST(LensMapping, OfAPlainLensIsWhatTheFormulaSays) {
 }
 
 TEST(LensMapping, HasNoValueWhereTheLensSeesNothing) {
-    // The image turns back at r^2 = 1 / 2.4: pixels farther out show nothing.
+    // The image folds back at r^2 = 1 / 2.4: pixels farther out have no direction.
     const Eigen::VectorXd lens = values({300, 300, 375, 240, -0.8, 0, 0, 0});
     const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(8, 8);
     EXPECT_FALSE(mapping_covariance_px2(LensKind::pinhole4, lens, covariance, {0.0, 0.0}));
@@ -52,8 +52,8 @@ TEST(LensMapping, HasNoValueWhereTheLensSeesNothing) {
     EXPECT_GT(mapping_sigmas_px(LensKind::pinhole4, lens, covariance, kSize).median_px, 1.0);
 }
 
-/// Truth against estimate where it can be observed: in the image. The coefficients themselves are
-/// held by a prior along the direction in which they cancel.
+/// Compares truth and estimate in the image. A prior fixes the coefficients themselves along the
+/// direction in which they cancel.
 TEST(LensMapping, OfARationalLensIsTrueWithinItsOwnUncertainty) {
     const Board board{.columns = 7, .rows = 5, .spacing_m = 0.04};
     constexpr double kNoise_px = 0.1;
@@ -92,8 +92,8 @@ TEST(LensMapping, OfARationalLensIsTrueWithinItsOwnUncertainty) {
                 sum / pixels,
                 100.0 * beyond_three_sigma / pixels,
                 pixels);
-    // Neighbouring pixels go together: 12 independent parameters per seed, hence a mean of 2 within
-    // 3.3 standard deviations (99.9 %) of chi square.
+    // Neighbouring pixels correlate: each seed has 12 independent parameters. The mean is therefore
+    // 2 within 3.3 standard deviations (99.9 %) of chi square.
     EXPECT_NEAR(sum / pixels, 2.0, 2.0 * 3.3 * std::sqrt(2.0 / (12.0 * kSeeds)));
     EXPECT_LE(beyond_three_sigma, pixels / 100);
 }

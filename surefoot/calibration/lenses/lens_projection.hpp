@@ -5,8 +5,8 @@
 
 namespace surefoot::calibration {
 
-/// The formulas of camera/pinhole_radtan.hpp and camera/kannala_brandt.hpp, for plain numbers and
-/// for those that carry derivatives along. False where a point has no image.
+/// Formulas of camera/pinhole_radtan.hpp and camera/kannala_brandt.hpp, for plain numbers and for
+/// numbers with derivatives. False if a point has no image.
 
 /// `lens` = fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6.
 template <typename T>
@@ -16,7 +16,7 @@ bool project_pinhole(const T* lens, const T* p, T* pixel) {
     const T y = p[1] / p[2];
     const T r2 = x * x + y * y;
     const T below = T(1.0) + r2 * (lens[9] + r2 * (lens[10] + r2 * lens[11]));
-    if (!(below > T(0.0))) return false;  // beyond a pole the image comes back from infinity
+    if (!(below > T(0.0))) return false;  // beyond a pole the image returns from infinity
     const T radial = (T(1.0) + r2 * (lens[4] + r2 * (lens[5] + r2 * lens[8]))) / below;
     const T xy = T(2.0) * x * y;
     pixel[0] = lens[0] * (x * radial + lens[6] * xy + lens[7] * (r2 + T(2.0) * x * x)) + lens[2];
@@ -30,7 +30,7 @@ bool project_fisheye(const T* lens, const T* p, T* pixel) {
     using std::atan2;
     using std::sqrt;
     const T r2 = p[0] * p[0] + p[1] * p[1];
-    // On the axis itself sqrt has no derivative, and theta / r is 1 / z.
+    // On the axis sqrt has no derivative, and theta / r is 1 / z.
     const bool on_axis = !(r2 > p[2] * p[2] * T(1e-20));
     if (on_axis && !(p[2] > T(0.0))) return false;
     const T r = on_axis ? T(0.0) : T(sqrt(r2));

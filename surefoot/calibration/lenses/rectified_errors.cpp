@@ -13,7 +13,7 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Central differences over this share of a standard deviation: depth is straight that far.
+/// Step of central differences, as a share of a standard deviation: depth is linear that far.
 constexpr double kStep = 0.1;
 
 std::optional<Eigen::Vector2d> seen(const camera::RectifiedCamera& camera,
@@ -27,14 +27,14 @@ std::optional<Eigen::Vector2d> seen(const camera::RectifiedCamera& camera,
     return raw;
 }
 
-/// The turns of the eyes do not depend on how much is shown, and little is planned quickly.
+/// A small image: the rotations of the cameras do not depend on its size, and planning is fast.
 camera::Rectification plan_of(const camera::StereoRig& rig) {
     camera::RectificationConfig config;
     config.max_view_deg = 20.0;
     return camera::plan_rectification(rig, config, camera::Rectifier::kVirtualBaseline_m);
 }
 
-/// The raw pixels of a point in both images.
+/// The raw pixels of one point in both images.
 struct PixelPair {
     Eigen::Vector2d left;
     Eigen::Vector2d right;
@@ -49,7 +49,7 @@ StereoParameters moved(const StereoParameters& from, const Eigen::VectorXd& delt
     return to;
 }
 
-/// Depths that a calibration makes of pairs of raw pixels.
+/// Depths of pairs of raw pixels, for a given calibration.
 Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const PixelPair> pixels) {
     Eigen::VectorXd depths = Eigen::VectorXd::Constant(std::ssize(pixels), kNan);
     const camera::StereoRig rig = rig_of(parameters);
@@ -116,7 +116,7 @@ std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
         const Eigen::Vector2d none = Eigen::Vector2d::Constant(kNan);
         pixels.push_back({left.value_or(none), right.value_or(none)});
     }
-    // Independent directions of error, each one standard deviation long.
+    // Independent error directions, each one standard deviation long.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
     Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(std::ssize(pixels));
     for (Eigen::Index i = 0; i < covariance.cols(); ++i) {

@@ -338,7 +338,7 @@ TEST(RigVariants, OpenCvUnitsAreNamed) {
     EXPECT_TRUE(squares.ok()) << message(squares);
     EXPECT_TRUE(has_note(squares, "3.327 m is longer than 1 m")) << "the unit is only guessed";
     EXPECT_TRUE(has_note(squares, "in squares of a chessboard?"));
-    EXPECT_TRUE(contains(message(with_T("[ 0.12, 0.0004, 0.0002 ]")), "exchange the cameras"));
+    EXPECT_TRUE(contains(message(with_T("[ 0.12, 0.0004, 0.0002 ]")), "swap the cameras"));
 }
 
 TEST(RigVariants, AFocalLengthInMillimetresIsSaid) {
