@@ -37,8 +37,7 @@ struct RigSelfCalibration {
 };
 
 /// Estimates the right camera's rotation (pitch p about x, roll r about z) and the share m by which
-/// its focal lengths are too long. These errors move the image of the ray (x, y, 1), to first
-/// order, by
+/// its focal lengths are too long. To first order, the image of the ray (x, y, 1) moves by
 ///   rows:    dv / f = p (1 + y^2) - r x + m y
 ///   columns: du / f = p x y + r y + m x
 /// Row errors should be 0: they give p, r and m, and so the error of every disparity (0.06 % too
