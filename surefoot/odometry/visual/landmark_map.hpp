@@ -74,8 +74,7 @@ class LandmarkMap {
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
     void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);
     void remove(int slot);
-    /// Bundle adjustment of the newest keyframes and their landmarks; drops sightings that
-    /// disagree.
+    /// Bundle adjustment of the newest keyframes and their landmarks; drops outlier observations.
     void adjust();
     /// Removes the least useful landmarks beyond the limit, but none that `in_use` marks.
     void limit(const std::vector<std::uint8_t>& in_use);

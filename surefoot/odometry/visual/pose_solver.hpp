@@ -56,7 +56,7 @@ inline constexpr int kMinimalPoseMatches = 5;
                                      Rng rng);
 
 /// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
-/// weights and a gate that starts wide. The last rounds use only matches with a full vote, if there
+/// weights and a gate. The first rounds use a wide gate and only matches with a full vote, if there
 /// are enough. Each residual is weighted by its pixel noise plus the projected covariance of its
 /// point; points count as independent. The covariance is the inverse information, scaled by the
 /// residuals (by no less than kMinResidualScale).
