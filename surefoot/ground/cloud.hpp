@@ -13,11 +13,10 @@ namespace surefoot::ground {
 /// Points relative to the sensor.
 struct Cloud {
     std::vector<Eigen::Vector3d> points;
-    std::vector<double> inverse_range_sigma;  ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;          ///< per point, see `judge_noise`; may be empty
-    double band_m = 0.0;                      ///< points farther off a plane are not on it
-    Eigen::Vector3d base =
-        Eigen::Vector3d::Zero();  ///< point whose height above the ground is asked for
+    std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
+    std::vector<double> tolerance_m;                 ///< per point, see `judge_noise`; may be empty
+    double band_m = 0.0;                             ///< points farther off a plane are not on it
+    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is asked for
 
     [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
 

@@ -15,15 +15,14 @@ struct GroundConfig {
     double min_inlier_ratio = 0.15;  ///< floor between walls and furniture
     double min_area_m2 = 0.3;        ///< of occupied squares; two soles cover 0.14
     double min_extent_m = 0.12;      ///< narrow one-sigma extent; slices through walls are thinner
-    double max_rms_m = 0.025;   ///< clutter cut by a slab scatters by tolerance / sqrt(3) = 0.029
-    double min_height_m = 0.1;  ///< of the sensor above the plane
+    double max_rms_m = 0.025;        ///< clutter cut by a slab has tolerance / sqrt(3) = 0.029
+    double min_height_m = 0.1;       ///< of the sensor above the plane
     double max_height_m = 3.0;
     double expected_height_m =
         0.0;  ///< of base_link over its own ground (machine file); 0 = unknown
 
     /// Search without a known camera mount (ground_search.hpp): limits of the optical axis above
-    /// and below the horizon, and of the roll. At steeper angles a wall is hard to tell from a
-    /// floor.
+    /// and below the horizon, and of roll. At steeper angles a wall resembles a floor.
     double search_up_deg = 10.0;
     double search_down_deg = 65.0;
     double search_roll_deg = 20.0;

@@ -25,9 +25,8 @@ enum class GroundReason : std::uint8_t {
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
 
-/// The best ground plane in a set of points. If no plane was found, `observation` is not accepted
-/// and has default values. A plane that fails a limit is returned for diagnosis with accepted =
-/// false.
+/// The best ground plane in a set of points. Without a plane, `observation` is not accepted and has
+/// default values. A plane that fails a limit is given for diagnosis with accepted = false.
 struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;

@@ -104,8 +104,7 @@ inline Hit cast(const std::vector<Block>& blocks,
     return hit;
 }
 
-/// Simulates a camera above the origin that looks along world x. `step_px`: distance of sampled
-/// pixels.
+/// View of a camera above the origin that looks along world x. `step_px`: spacing of the pixels.
 inline View view_of(const std::vector<Block>& blocks,
                     bool has_floor,
                     const Camera& camera,

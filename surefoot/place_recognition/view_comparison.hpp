@@ -27,12 +27,11 @@ struct ComparisonConfig {
     double min_agreeing_all = 0.35;  ///< the same for all checked features
     double max_parts_against = 0.2;  ///< largest share of the parts that may contradict
     // Features off the level surface on which most features agree (the floor) must agree too.
-    int min_asked_off_floor = 15;  ///< fewer do not suffice
-    double min_agreeing_off_floor =
-        0.15;                   ///< least share that agrees; almost 0 where the floor moved
-    double level_m = 0.01;      ///< unevenness of a floor, in addition to disparity_px
-    int min_parts = 5;          ///< least number of parts with an inlier
-    double max_sigma_m = 0.05;  ///< of the position
+    int min_asked_off_floor = 15;          ///< fewer do not suffice
+    double min_agreeing_off_floor = 0.15;  ///< least share that agrees; near 0 if the floor moved
+    double level_m = 0.01;                 ///< unevenness of a floor, in addition to disparity_px
+    int min_parts = 5;                     ///< least number of parts with an inlier
+    double max_sigma_m = 0.05;             ///< of the position
     double max_sigma_deg = 1.5;
     double max_tilt_deg = 3.0;  ///< between the up directions of the two views
 };

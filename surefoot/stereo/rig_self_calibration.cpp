@@ -10,11 +10,11 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kRounds = 8;      ///< of weighting; it settles in four or five
+constexpr int kRounds = 8;      ///< of re-weighting; it converges in four or five
 constexpr double kHuber = 1.5;  ///< sigmas
 /// Corners within a few degrees of each other share lens errors: this many count as one.
 constexpr double kCornersPerIndependent = 4.0;
-/// What nobody knows better than: without it a handful of corners on a line could say anything.
+/// Weak prior. Without it a few corners on a line could give any result.
 constexpr double kPriorTurn_rad = 0.01;
 constexpr double kPriorFocal = 0.01;
 constexpr double kLeastSigma_px = 0.02;
