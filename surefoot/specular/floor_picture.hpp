@@ -23,9 +23,8 @@ class FloorPicture {
 
     /// Moves the window ahead of the body when the body has left its place in it.
     void follow(const Pose& T_odom_body);
-    /// Adds the part of a rectified left image that shows the plane z = `floor_z_m` (odom), a
-    /// quarter of the rows per frame, in turn. Pixels whose disparity contradicts the plane do not
-    /// count.
+    /// Adds the part of a rectified left image that shows the plane z = `floor_z_m` (odom). Each
+    /// frame uses a quarter of the rows. Pixels whose disparity contradicts the plane do not count.
     void add(const camera::RectifiedRig& rig,
              const Pose& T_odom_body,
              ImageView<const std::uint8_t> left,

@@ -324,7 +324,7 @@ struct Winner {
 
     HWY_INLINE void see(Bytes sum) {
         const Bytes least = hn::Min(cost, sum);
-        const auto stays = hn::Eq(least, cost);  // sorting bytes would be slower
+        const auto stays = hn::Eq(least, cost);  // ordering bytes is slower than this comparison
         const Bytes rest = hn::IfThenElse(older_won, hn::Min(second, sum), second);
         second = hn::IfThenElse(stays, rest, older);
         cost_above = hn::IfThenElse(older_won, cost_above, sum);
