@@ -80,7 +80,7 @@ std::optional<Row> project(
     if (v0 - kHalf - kBefore < 0 || v0 + kHalf + kTaps - kBefore > right.height) return {};
     const auto down = taps_at(warp.rows_px - std::floor(warp.rows_px));
     const int first = u0 - kReach - kBefore;  // column of strip[0]
-    std::array<double, kWide> strip{};        // one row of the window, settled between rows
+    std::array<double, kWide> strip{};        // one window row, interpolated between rows
     Row sum = Row::Zero();
     std::size_t i = 0;
     for (int y = -kHalf; y <= kHalf; ++y) {
