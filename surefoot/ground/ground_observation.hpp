@@ -40,10 +40,10 @@ struct GroundSighting {
 
 /// Finds the ground (RANSAC within the cone of allowed normals; Lange 2016, 4.3.1). Of all
 /// supported planes the lowest wins, even if a table top has more points. If the sensor's height is
-/// known (`expected_height_m`), the plane that fits it wins instead, for example a platform above a
-/// lower floor. Where two planes cross between their points (a ramp and the floor before it), or
-/// lie at most a high step apart (a kerb, a landing over treads), the plane that begins nearer to
-/// the sensor wins.
+/// known (`expected_height_m`), the plane that fits it wins, for example a platform above a lower
+/// floor. Two planes may cross between their points (a ramp and the floor before it) or lie at most
+/// a high step apart (a kerb, a landing over treads). Of these the plane that begins nearer to the
+/// sensor wins.
 ///
 /// `points`: in any frame; not finite = left out. `up_hint`: roughly up, in that frame.
 /// `sensor_origin`: in that frame; heights are distances from it. The same input and seed give the

@@ -12,14 +12,14 @@ namespace surefoot::ground {
 /// `search_roll_deg`, at any allowed height. Points are in camera body axes: x along the optical
 /// axis, y left, z up when the axis is level. No `up_hint` is needed.
 ///
-/// Candidate planes pass through three points near each other: a floor that fills a tenth of
-/// the image holds only one random triple in a thousand. Points near the best plane refine it
-/// by their noise (`refine_plane`) and are removed; then the search continues. A plane is the
-/// ground when * it fills `min_image_share` of the image, * it is a surface: few points lie
-/// just beyond its roughness (`max_search_rms_m`), * nothing lies more than a high step below
-/// it. Below table tops, beds, seats and tilted backs something lies wherever their edge is in
-/// view. Of several the lowest wins; of those a step apart, the one that fills more of the
-/// image.
+/// Planes are drawn through three points near each other, because a floor on a tenth of the image
+/// holds only one random triple in a thousand. Points near the best plane refine it
+/// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
+/// * it fills `min_image_share` of the image,
+/// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
+/// * nothing lies more than a high step below it. Below table tops, beds, seats and tilted backs
+/// some points do, wherever the edge of the object is in view.
+/// * Of several such planes the lowest wins; of those a step apart, the one with the larger share.
 ///
 /// A table that fills the whole view cannot be distinguished from a floor. The same input and seed
 /// give the same bytes.

@@ -23,10 +23,10 @@ struct NearSide {
 };
 
 /// Detects a plane that was fitted across a step. Two levels 75 mm apart lie within 19 mm of a
-/// slope between them, hardly more than the noise of one pixel, and more points agree with it than
-/// with either level. All points together reveal the step. The function splits the points within
-/// `band_m` by a line across or along the view where two planes fit best. If two planes fit clearly
-/// better than one, it returns the plane on the side of the sensor (the origin).
+/// slope between them, hardly more than the noise of one pixel. More points agree with this slope
+/// than with either level, but all points together reveal the step. The function splits the points
+/// within `band_m` by a line across or along the view where two planes fit best. If two planes fit
+/// clearly better than one, it returns the plane on the side of the sensor (the origin).
 ///
 /// Points and sigmas as for `refine_plane`. Returns nothing if one plane is enough.
 [[nodiscard]] std::optional<NearSide> near_side(std::span<const Eigen::Vector3d> points,

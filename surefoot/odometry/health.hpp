@@ -38,11 +38,11 @@ struct HealthVerdict {
     HealthReason reason = HealthReason::few_tracks;
 };
 
-/// Decides the health of a frame. LOST: no pose, fewer than `min_inliers`, points that
-/// agree in one direction only, a right image with content but no measured depth, or
-/// swapped cameras. DEGRADED: the first frame after that and half a second after too few
-/// depths, because refound points may lie elsewhere than the poses meanwhile said (by the
-/// baseline after swapped cameras); also one second after a torn image, because more may
+/// Decides the health of a frame. LOST: no pose, fewer than `min_inliers`, points that agree
+/// in one direction only, a right image with content but no measured depth, or swapped
+/// cameras. DEGRADED: the first frame after that, and half a second after too few depths.
+/// Points found again then may lie elsewhere than the poses meanwhile said (by the baseline
+/// after swapped cameras). DEGRADED too: one second after a torn image, because more may
 /// follow. The reason names the cause if known: first a time gap, then blur, then the
 /// points. An IMU gap costs no accuracy while enough points are seen: health OK, reason
 /// imu_gap.
