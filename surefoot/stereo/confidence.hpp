@@ -16,7 +16,7 @@ struct MatchEvidence {
     float unknown_share = 0.0F;     ///< of the 9x9 neighbours, [0, 1]
 };
 
-/// One sigma [px] of the disparity of a correct match. The squares of four terms add up: errors
+/// One sigma [px] of the disparity of a correct match. The squares of five terms add up: errors
 /// that texture does not show (interpolation, curved surfaces, rows that do not match exactly),
 /// grey noise over texture slope, a share of the applied correction, and jumps and holes nearby:
 ///   sigma^2 = floor^2 + (gain residual / gradient)^2 + (share shift)^2 + (jump nearness)^2

@@ -46,7 +46,7 @@ class Claims {
 
   private:
     static constexpr std::uint16_t kNoClaim = 0xffff;
-    /// Places left of the right row, which disparities can reach. Nothing reads them.
+    /// Places left of the right row, which disparities can reach. Their results are never used.
     static constexpr std::size_t kOutside = 256;
     std::size_t width_;
     std::vector<std::int32_t> place_;
