@@ -9,8 +9,8 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr double kSearchSigmas = 3.0;        ///< a point so far off may be on the plane ...
-constexpr double kLeastTolerance_m = 0.005;  ///< ... and one so near always is
+constexpr double kSearchSigmas = 3.0;        ///< a point this far off may be on the plane ...
+constexpr double kLeastTolerance_m = 0.005;  ///< ... and a point this near always is
 
 }  // namespace
 

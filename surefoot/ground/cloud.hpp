@@ -10,17 +10,17 @@
 
 namespace surefoot::ground {
 
-/// Points about the sensor.
+/// Points relative to the sensor.
 struct Cloud {
     std::vector<Eigen::Vector3d> points;
     std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;                 ///< of each point, see `judge_noise`, or empty
-    double band_m = 0.0;                             ///< what is farther off is not on a plane
-    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< whose height over the ground is asked
+    std::vector<double> tolerance_m;                 ///< per point, see `judge_noise`; may be empty
+    double band_m = 0.0;                             ///< points farther off a plane are not on it
+    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is asked for
 
     [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
 
-    /// Leaves out the points for which `wanted(index)` is false.
+    /// Removes the points for which `wanted(index)` is false.
     template <typename Wanted>
     void keep_if(const Wanted& wanted) {
         std::size_t kept = 0;
@@ -37,15 +37,15 @@ struct Cloud {
     }
 };
 
-/// The chosen points as seen from `sensor`, with their sigmas where there are any.
+/// The chosen points relative to `sensor`, with their sigmas if there are any.
 [[nodiscard]] Cloud cloud_of(std::span<const Eigen::Vector3d> points,
                              std::span<const double> inverse_range_sigma,
                              const Eigen::Vector3d& sensor,
                              std::span<const std::size_t> chosen);
 
-/// Sets the band, and how far off a level plane each point may be. Where the sensor allows, levels
-/// half of the tolerance apart are told apart: points that are too noisy for that are left out.
-/// For clouds whose noise is known.
+/// Sets the band, and for each point its tolerance to a level plane. Where the sensor allows,
+/// levels half a tolerance apart are separated: points that are too noisy for this are removed.
+/// Only for clouds with known noise.
 void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud);
 
 }  // namespace surefoot::ground

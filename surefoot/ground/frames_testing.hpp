@@ -9,10 +9,10 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/sample_points.hpp"
 
-/// What a stereo camera over level surfaces sees.
+/// Simulated points of a stereo camera over level surfaces.
 namespace surefoot::ground::test {
 
-/// Level rectangle in base_link, whose z axis is up; or a ramp, that rises along x.
+/// Level rectangle in base_link, whose z axis is up; or a ramp that rises along x.
 struct Surface {
     double z_m = 0.0;  ///< at x = 0 of a ramp
     double min_x_m = -10.0;
@@ -23,13 +23,13 @@ struct Surface {
 };
 
 struct FrameOptions {
-    double camera_height_m = 1.0;  ///< of base_link and of the camera in it
+    double camera_height_m = 1.0;  ///< of base_link and camera; they have the same origin
     double pitch_deg = 32.0;
-    double noise_px = 0.4;  ///< of the disparity, as the real ZED's
+    double noise_px = 0.4;  ///< 1 sigma of the disparity, as of the real ZED
     std::uint64_t seed = 1;
 };
 
-/// Every fourth pixel of a ZED's 672x376; base_link at the camera, level.
+/// Every fourth pixel of a ZED at 672x376. base_link is level, at the camera.
 inline FramePoints seen(const std::vector<Surface>& surfaces, const FrameOptions& options = {}) {
     constexpr double kFocal_px = 350.0;
     constexpr double kBaseline_m = 0.12;

@@ -42,7 +42,7 @@ Eigen::Quaterniond tilt_rotation(const Eigen::Vector3d& normal_body) {
     const Eigen::Vector3d axis = normal_body.cross(Eigen::Vector3d::UnitZ());
     const double w = 1.0 + normal_body.z();
     constexpr double kUpsideDown = 1e-12;
-    if (w < kUpsideDown) return {0.0, 1.0, 0.0, 0.0};  // half a turn: about x, as good as any
+    if (w < kUpsideDown) return {0.0, 1.0, 0.0, 0.0};  // half a turn, about x: any axis is correct
     return Eigen::Quaterniond(w, axis.x(), axis.y(), axis.z()).normalized();
 }
 
@@ -54,8 +54,8 @@ void GroundCalibration::add(const GroundSighting& sighting_body) {
 }
 
 bool GroundCalibration::agree(const GroundSighting& a, const GroundSighting& b) const {
-    // What both state as two sigma, but no more than twice the limit: far and rough ground is seen
-    // less well than the limits ask, and no better by being left out.
+    // Two sigma of both observations, but at most twice the limit. Far and rough ground is observed
+    // less precisely than the limits require, and leaving it out would not help.
     constexpr double kSigmas = 2.0;
     const auto within = [](double off, double sigma, double limit) {
         return off <= std::clamp(kSigmas * sigma, limit, 2.0 * limit);
@@ -75,7 +75,7 @@ GroundAlignment GroundCalibration::alignment() const {
     GroundAlignment result;
     if (window_.empty()) return result;
 
-    // The sighting with which most others agree stands for its group; the newest wins a tie.
+    // The observation with which most others agree represents its group. The newest wins a tie.
     std::vector<const GroundSighting*> group;
     for (const auto& candidate : window_) {
         std::vector<const GroundSighting*> others;
@@ -91,7 +91,7 @@ GroundAlignment GroundCalibration::alignment() const {
         result.height_m += sighting->observation.height_m;
     }
     result.height_m /= static_cast<double>(group.size());
-    // Unique: the rotations lie within twice the allowed disagreement of each other.
+    // The mean is unique: the rotations lie within twice the allowed disagreement of each other.
     const Eigen::Quaterniond mean = geometry::quaternion_mean(rotations).value_or(rotations.back());
     result.T_ground_body = {mean, Eigen::Vector3d(0.0, 0.0, result.height_m)};
     result.normal_body = mean.conjugate() * Eigen::Vector3d::UnitZ();

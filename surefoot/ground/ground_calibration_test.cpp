@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// What a body sees that leans by `roll_deg`, `pitch_deg` at a height.
+/// Observation of a body that is tilted by `roll_deg` and `pitch_deg`, at a height.
 GroundSighting sighting(double roll_deg, double pitch_deg, double height_m, bool accepted = true) {
     const Eigen::Quaterniond R_world_body =
         exp_so3({0.0, pitch_deg * kRadPerDeg, 0.0}) * exp_so3({roll_deg * kRadPerDeg, 0.0, 0.0});
@@ -99,7 +99,7 @@ TEST(GroundCalibration, NoiseAveragesOut) {
 
 TEST(GroundCalibration, DisagreeingSingleShotsAreLeftOut) {
     GroundCalibration calibration{GroundConfig{}};
-    calibration.add(sighting(0.0, 8.0, 1.0));  // warped by over-exposure
+    calibration.add(sighting(0.0, 8.0, 1.0));  // distorted by over-exposure
     for (int i = 0; i < 7; ++i) calibration.add(sighting(0.0, 1.0, 1.0));
     calibration.add(sighting(0.0, 1.0, 0.3));  // a table top
     const GroundAlignment alignment = calibration.alignment();

@@ -5,12 +5,12 @@
 
 namespace surefoot::ground {
 
-/// When a plane counts as the ground, and when several sightings of it count as calibrated.
+/// Limits for accepting a plane as the ground, and for accepting a calibration.
 struct GroundConfig {
-    double voxel_m = 0.05;           ///< one point per cube: support by area, not by pixels
-    int max_points = 4000;           ///< evenly picked from those that remain
+    double voxel_m = 0.05;           ///< one point per cube: weight by area, not by pixels
+    int max_points = 4000;           ///< evenly picked from the remaining points
     double max_range_m = 8.0;        ///< stereo noise tilts far ground
-    double tolerance_m = 0.05;       ///< inliers of the search; the refit then narrows to the noise
+    double tolerance_m = 0.05;       ///< inliers of the search; the refit narrows to the noise
     double max_tilt_deg = 20.0;      ///< from the hint; must cover mount error plus slope
     double min_inlier_ratio = 0.15;  ///< floor between walls and furniture
     double min_area_m2 = 0.3;        ///< of occupied squares; two soles cover 0.14
@@ -21,18 +21,18 @@ struct GroundConfig {
     double expected_height_m =
         0.0;  ///< of base_link over its own ground (machine file); 0 = unknown
 
-    /// Where nobody says how the camera is mounted (ground_search.hpp): optical axis above and
-    /// below the horizon, and roll. Steeper down a wall is hardly told from a floor.
+    /// Search without a known camera mount (ground_search.hpp): limits of the optical axis above
+    /// and below the horizon, and of roll. At steeper angles a wall resembles a floor.
     double search_up_deg = 10.0;
     double search_down_deg = 65.0;
     double search_roll_deg = 20.0;
-    double min_image_share = 0.04;  ///< pixels on the ground; half of a floor may not be matched
-    double max_search_sigma_deg = 1.2;  ///< of the tilt: a strip fixes one axis alone
+    double min_image_share = 0.04;      ///< pixels on the ground; half of a floor may lack depth
+    double max_search_sigma_deg = 1.2;  ///< of the tilt: a strip fixes only one axis
     double max_search_rms_m = 0.045;    ///< boulders of 0.1 m scatter by 0.04
 
-    int window = 10;                    ///< last sightings that are averaged
+    int window = 10;                    ///< number of last observations that are averaged
     int min_agreeing = 5;               ///< of them, to be accepted
-    double max_disagreement_deg = 1.5;  ///< a sighting farther from the others is left out
+    double max_disagreement_deg = 1.5;  ///< an observation farther from the others is left out
     double max_disagreement_m = 0.03;
 
     void describe(ConfigVisitor& visitor);

@@ -21,27 +21,27 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr int kMaxPlanes = 5;  // floor, ramp, table, seat, step: more are not the ground
-constexpr int kMaxLevels = 3;  // across which one plane may lie: pavement, kerb stone, road
+constexpr int kMaxPlanes = 5;  // floor, ramp, table, seat, step: later planes are not the ground
+constexpr int kMaxLevels = 3;  // a plane may cross this many: pavement, kerb stone, road
 constexpr std::size_t kMinPoints = 20;
-/// Levels this far apart are kerbs, treads, platforms; tables are higher. ASSUMPTION.
+/// Levels up to this far apart are kerbs, treads, platforms; tables are higher. ASSUMPTION.
 constexpr double kHighestStep_m = 0.35;
 
 /// A plane that might be the ground. Points are relative to the sensor.
 struct Candidate {
     geometry::Plane plane;        ///< normal up
-    std::vector<NearSide> sides;  ///< where it is
+    std::vector<NearSide> sides;  ///< the parts of the plane in use
     geometry::PlaneFit extent;    ///< of the points within the tolerance
     double inlier_ratio = 0.0;
     double area_m2 = 0.0;
-    double begin_m = 0.0;   ///< horizontal distance of the nearest inliers
-    double contrast = 0.0;  ///< points within the tolerance per point within it and twice it
+    double begin_m = 0.0;   ///< horizontal distance to the nearest inliers
+    double contrast = 0.0;  ///< points within the tolerance over points between it and twice it
     double height_m = 0.0;  ///< of the base
     GroundReason reason = GroundReason::accepted;
 };
 
-/// Narrows the inliers to the measured noise: a ramp or a kerb that begins within the search
-/// tolerance would tilt the plane otherwise.
+/// Narrows the inliers to the measured noise. Otherwise a ramp or a kerb that begins within the
+/// search tolerance would tilt the plane.
 geometry::Plane narrowed(const Points& points, const geometry::Plane& start, double tolerance_m) {
     constexpr double kSigmas = 3.0;
     constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
@@ -74,10 +74,10 @@ geometry::Plane narrowed(const Points& points, const geometry::Plane& start, dou
     return plane;
 }
 
-/// The plane with the most inliers. A point's noise says how far off it may be. Where that is not
-/// known a search with the wide tolerance lays one plane across the floor and the ramp that follows
-/// it; a second one with a third of it, among the points near that plane, settles on one of the
-/// two.
+/// The plane with the most inliers. The noise of a point, if known, gives its tolerance. With
+/// unknown noise, a search with the wide tolerance puts one plane across the floor and a following
+/// ramp. A second search with a third of the tolerance, among the points near that plane, then
+/// selects one of the two.
 std::optional<geometry::Plane> search(const Cloud& cloud,
                                       geometry::RansacPlaneOptions options,
                                       Rng& rng) {
@@ -95,7 +95,7 @@ std::optional<geometry::Plane> search(const Cloud& cloud,
     return sharp ? sharp->fit.plane : wide->fit.plane;
 }
 
-/// Horizontal distance from the sensor within which the nearest twentieth of the points lies.
+/// Horizontal distance from the sensor that the nearest 5 % of the points do not exceed.
 double begin_of(const Points& inliers, const Eigen::Vector3d& up) {
     std::vector<double> distances_m;
     distances_m.reserve(inliers.size());
@@ -109,14 +109,14 @@ GroundReason judge(const GroundConfig& config, const Candidate& candidate) {
     if (candidate.inlier_ratio < config.min_inlier_ratio) return GroundReason::few_inliers;
     if (candidate.area_m2 < config.min_area_m2) return GroundReason::small;
     if (candidate.extent.narrow_sigma_m < config.min_extent_m) return GroundReason::small;
-    // A slab cut out of gravel or clutter goes on beyond its tolerance; a surface ends.
+    // A slab cut out of gravel or clutter continues beyond its tolerance; a surface ends there.
     constexpr double kMinContrast = 3.0;  // an even slab has at most 2
     if (candidate.extent.rms_m > config.max_rms_m) return GroundReason::rough;
     if (candidate.contrast < kMinContrast) return GroundReason::rough;
     return GroundReason::accepted;
 }
 
-/// Leaves out what lies on the other side.
+/// Removes the points on the other side.
 void keep(const NearSide& side, Cloud& cloud) {
     cloud.keep_if([&](std::size_t i) { return side.contains(cloud.points[i]); });
 }
@@ -126,8 +126,8 @@ geometry::Plane refine(const Cloud& cloud, const geometry::Plane& start) {
         .value_or(start);
 }
 
-/// The plane at the points about it, by what is known of their noise. Where it lies across several
-/// levels, the nearest one: `sides` says where that is, and the other points are left out.
+/// Refines the plane with the points near it and their noise. If it crosses several levels, the
+/// nearest level is kept: `sides` says where it lies, and the other points are left out.
 geometry::Plane refined(const GroundConfig& config,
                         const geometry::Plane& found,
                         Cloud& cloud,
@@ -177,26 +177,26 @@ bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candid
     if (config.expected_height_m > 0.0) {
         const double a_off_m = std::abs(a.height_m - config.expected_height_m);
         const double b_off_m = std::abs(b.height_m - config.expected_height_m);
-        // Planes that fit about equally well (a ramp that begins at the feet) differ by the rules
-        // below.
+        // Planes that fit about equally well (a ramp that begins at the feet) are decided by the
+        // rules below.
         if (std::abs(a_off_m - b_off_m) > config.max_disagreement_m) return a_off_m < b_off_m;
     }
     const double a_at_b = -a.plane.signed_distance_m(b.extent.centroid_m);  // a above b's points
     const double b_at_a = -b.plane.signed_distance_m(a.extent.centroid_m);
-    const bool a_below = a_at_b < 0.0 && b_at_a > 0.0;  // a passes below b wherever points are
+    const bool a_below = a_at_b < 0.0 && b_at_a > 0.0;  // a is below b wherever there are points
     const bool b_below = a_at_b > 0.0 && b_at_a < 0.0;
-    // The upper one of two that lie a step apart is what the machine stands on if it begins nearer.
+    // Of two planes a step apart, the machine stands on the upper one if it begins nearer.
     if ((a_below || b_below) && std::abs(a.height_m - b.height_m) > kHighestStep_m) return a_below;
     return a.begin_m < b.begin_m;
 }
 
-/// An accepted plane wins over a rejected one; of two rejected ones the first (largest) stays.
+/// An accepted plane wins over a rejected one. Of two rejected ones the first (larger) stays.
 bool is_better(const GroundConfig& config, const Candidate& a, const Candidate& b) {
     if (a.reason != GroundReason::accepted) return false;
     return b.reason != GroundReason::accepted || is_more_ground(config, a, b);
 }
 
-/// Takes away what lies on a plane; twice the tolerance takes its noisy fringe, too.
+/// Removes the points on a plane; twice the tolerance also removes the noisy points around it.
 void erase_near(const geometry::Plane& plane, double tolerance_m, Cloud& cloud) {
     cloud.keep_if([&](std::size_t i) {
         const double own_m = cloud.knows_noise() ? cloud.tolerance_m[i] : tolerance_m;
@@ -204,7 +204,7 @@ void erase_near(const geometry::Plane& plane, double tolerance_m, Cloud& cloud) 
     });
 }
 
-/// One plane after the other, largest first, each without the points of those before it.
+/// Finds planes one after the other, largest first, each without the points of the earlier planes.
 std::optional<Candidate> best_plane(const GroundConfig& config,
                                     const Cloud& cloud,
                                     const Eigen::Vector3d& up,
@@ -214,7 +214,7 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
     options.cone = geometry::NormalCone{up, config.max_tilt_deg * std::numbers::pi / 180.0};
     std::optional<Candidate> best;
     Cloud rest = cloud;
-    // Fewer than this are no plane that would be accepted.
+    // A plane with fewer points would not be accepted.
     const auto least = std::max(kMinPoints,
                                 // in range: GroundConfig::describe() keeps the ratio in [0, 1]
                                 static_cast<std::size_t>(config.min_inlier_ratio *
@@ -225,8 +225,8 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
                                      static_cast<double>(rest.points.size());
         const auto found = search(rest, options, rng);
         if (!found) break;
-        // Where the noise is known what lies on another level is told apart and speaks against
-        // none.
+        // With known noise, points on another level are separated and do not count against any
+        // plane.
         const Candidate candidate =
             measured(config, cloud.knows_noise() ? rest : cloud, cloud.points.size(), *found, up);
         const bool height_fits = candidate.plane.offset_m >= config.min_height_m &&
@@ -237,7 +237,7 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
     return best;
 }
 
-/// See `sight_ground` and `observe_ground`; without sigmas the noise is not known.
+/// Implements `sight_ground` and `observe_ground`; empty sigmas mean unknown noise.
 GroundSighting sight(const GroundConfig& config,
                      const FramePoints& seen,
                      const Eigen::Vector3d& base,
@@ -271,7 +271,7 @@ GroundSighting sight(const GroundConfig& config,
         return sighting;
     }
     if (cloud.knows_noise()) {
-        // All points, not one of each cube: their noise averages out.
+        // Uses all points, not one per cube, because their noise averages out.
         std::vector<std::size_t> all(points.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         Cloud whole = cloud_of(points, inverse_range_sigma, sensor, all);

@@ -12,41 +12,41 @@
 
 namespace surefoot::ground {
 
-/// Why a sighting of the ground is accepted or not; the first that applies.
+/// Whether an observation of the ground is accepted, and if not, the first reason that applies.
 enum class GroundReason : std::uint8_t {
     accepted,
     no_hint,      ///< the expected up direction is zero or not finite
     few_points,   ///< not enough points in range for any plane
-    no_plane,     ///< no plane within the tilt limit, below the sensor at an allowed height
+    no_plane,     ///< no plane within the tilt limit at an allowed height below the sensor
     few_inliers,  ///< inlier ratio below its limit
     small,        ///< area or extent below its limit
-    not_lowest,   ///< more than a high step below it there is something else
-    rough,  ///< scatter of the inliers above its limit, or no surface that ends above and below
+    not_lowest,   ///< something lies more than a high step below it
+    rough,        ///< inlier scatter above its limit, or points just above and below
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
 
-/// The best ground plane in a set of points. If none was found, `observation` is not accepted and
-/// has its default values; a plane that fails a limit is given for diagnosis with accepted = false.
+/// The best ground plane in a set of points. Without a plane, `observation` is not accepted and has
+/// default values. A plane that fails a limit is given for diagnosis with accepted = false.
 struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
     double tilt_rad = 0.0;  ///< between normal and hint
-    double area_m2 = 0.0;   ///< occupied squares of two voxel sides, seen along the normal
-    /// Pixels on it among those that were looked at; 0 where the points are not those of an image.
+    double area_m2 = 0.0;   ///< occupied squares of two voxel sides, projected along the normal
+    /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
     double image_share = 0.0;
-    /// Zero where the noise of the points is not known.
+    /// Zero if the noise of the points is unknown.
     PlaneUncertainty uncertainty;
 };
 
-/// Finds the ground (RANSAC within the cone of allowed normals, thesis 4.3.1). The ground is
-/// *below*: every supported plane is considered, and the lowest wins even if a table top has more
-/// points, unless the height of the sensor is known (`expected_height_m`): then the plane that fits
-/// it wins, a platform over a lower floor. Where two planes cross between their points (a ramp and
-/// the floor before it), or lie no more than a high step apart (a kerb, a landing over treads), the
-/// one that begins nearer to the sensor wins.
+/// Finds the ground (RANSAC within the cone of allowed normals; Lange 2016, 4.3.1). Of all
+/// supported planes the lowest wins, even if a table top has more points. If the sensor's height is
+/// known (`expected_height_m`), the plane that fits it wins, for example a platform above a lower
+/// floor. Two planes may cross between their points (a ramp and the floor before it) or lie at most
+/// a high step apart (a kerb, a landing over treads). Of these the plane that begins nearer to the
+/// sensor wins.
 ///
-/// `points` in any frame (not finite = left out), `up_hint` roughly up in that frame,
-/// `sensor_origin` in that frame: heights are distances from it. The same input and seed give the
+/// `points`: in any frame; not finite = left out. `up_hint`: roughly up, in that frame.
+/// `sensor_origin`: in that frame; heights are distances from it. The same input and seed give the
 /// same bytes.
 [[nodiscard]] GroundSighting sight_ground(const GroundConfig& config,
                                           std::span<const Eigen::Vector3d> points,
@@ -54,9 +54,9 @@ struct GroundSighting {
                                           const Eigen::Vector3d& sensor_origin,
                                           std::uint64_t seed);
 
-/// The same for what a frame saw, with the height of base_link. The noise of the points is known:
-/// levels closer together than `tolerance_m` are told apart, and the plane is as true as all points
-/// together (`refine_plane`).
+/// The same for the points of one frame, with the height of base_link. Their noise is known: levels
+/// closer than `tolerance_m` are separated, and the plane is fitted to all points together
+/// (`refine_plane`).
 [[nodiscard]] GroundSighting observe_ground(const GroundConfig& config,
                                             const FramePoints& seen,
                                             const Eigen::Vector3d& up_hint_body,

@@ -20,9 +20,9 @@ namespace {
 using Points = std::vector<Eigen::Vector3d>;
 constexpr double kNoise_m = 0.005;
 constexpr double kSensorHeight_m = 1.0;
-// The plane's one-sigma tilt is noise / (sqrt(n) extent) < 0.01 deg here; the voxel choice and the
-// cut at three sigma add to it.
-constexpr double kTiltLimit_rad = 0.15 * kRadPerDeg;
+// The plane's one-sigma tilt is noise / (sqrt(n) extent) < 0.01 deg here. The choice per voxel and
+// the limit at three sigma add to it.
+constexpr double kTiltLimit_rad = 0.15 * kDeg;
 constexpr double kHeightLimit_m = 0.004;
 
 /// A world with the sensor at the origin and the floor 1 m below it.
@@ -54,7 +54,7 @@ class Scene {
         }
         return *this;
     }
-    /// All points as seen from a body that is turned by `rotation` against this world.
+    /// All points in the frame of a body that is rotated by `rotation` in this world.
     [[nodiscard]] Points seen_by(const Eigen::Quaterniond& rotation) const {
         Points seen;
         for (const auto& p : points_) seen.push_back(rotation.conjugate() * p);
@@ -109,9 +109,9 @@ TEST(GroundObservation, FloorAloneIsFound) {
 
 TEST(GroundObservation, TiltIsMeasured) {
     for (const double tilt_deg : {2.0, 5.0, 10.0}) {
-        // The body leans forward by the tilt and to its side by half of it.
-        const Eigen::Quaterniond R_world_body = exp_so3({0.0, tilt_deg * kRadPerDeg, 0.0}) *
-                                                exp_so3({0.5 * tilt_deg * kRadPerDeg, 0.0, 0.0});
+        // The body is tilted forward by the tilt and to its side by half of it.
+        const Eigen::Quaterniond R_world_body =
+            exp_so3({0.0, tilt_deg * kDeg, 0.0}) * exp_so3({0.5 * tilt_deg * kDeg, 0.0, 0.0});
         const Points points = Scene(3).floor(2000).wall(1000).seen_by(R_world_body);
         const GroundSighting sighting = sight(points);
         ASSERT_TRUE(sighting.observation.accepted) << tilt_deg << ' ' << to_string(sighting.reason);
@@ -149,7 +149,7 @@ TEST(GroundObservation, FloorIsFoundBesideLargerWalls) {
 
 TEST(GroundObservation, FloorWinsOverATableTopWithMorePoints) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        // The floor shows only behind and beside the table.
+        // The floor is visible only behind and beside the table.
         const Points points = Scene(seed)
                                   .table(6000)
                                   .patch({2.6, -1.2, -1.0}, {0.9, 0, 0}, {0, 2.4, 0}, 400)
@@ -162,7 +162,7 @@ TEST(GroundObservation, FloorWinsOverATableTopWithMorePoints) {
 }
 
 TEST(GroundObservation, OfTwoFloorsTheOneThatFitsTheKnownHeightWins) {
-    // The machine stands on a platform over the floor ahead; the floor has more points.
+    // The machine stands on a platform above the floor ahead; the floor has more points.
     for (const double rise_m : {0.17, 0.6}) {
         const Points points =
             Scene(31)
@@ -174,15 +174,15 @@ TEST(GroundObservation, OfTwoFloorsTheOneThatFitsTheKnownHeightWins) {
         EXPECT_NEAR(sight(points, config).observation.height_m,
                     kSensorHeight_m + (is_step ? 0.0 : rise_m),
                     kHeightLimit_m)
-            << "the lowest plane; a step lower, it is not what the machine stands on";
-        config.expected_height_m = kSensorHeight_m + 0.04;  // as far as a mount is known
+            << "the lowest plane; a step lower, it is not the machine's ground";
+        config.expected_height_m = kSensorHeight_m + 0.04;  // as precisely as a mount is known
         const auto known = sight(points, config).observation;
         ASSERT_TRUE(known.accepted);
         EXPECT_NEAR(known.height_m, kSensorHeight_m, kHeightLimit_m);
     }
 }
 
-/// Frames of a camera whose noise is known, after the limits.
+/// Frames of a camera with known noise.
 void expect_ground(const std::vector<test::Surface>& surfaces,
                    double tilt_limit_deg,
                    double height_limit_m) {
@@ -221,7 +221,7 @@ TEST(GroundObservation, StairsAndATableBeforeANoisyCamera) {
     }
     expect_ground(up, 0.3, 0.005);
     expect_ground(down, 0.3, 0.005);
-    // Its top fills more of the view than the floor does.
+    // The table top fills more of the view than the floor.
     expect_ground(
         {{}, {.z_m = 0.55, .min_x_m = 0.45, .max_x_m = 1.2, .min_y_m = -0.35, .max_y_m = 0.8}},
         0.3,
@@ -229,7 +229,8 @@ TEST(GroundObservation, StairsAndATableBeforeANoisyCamera) {
 }
 
 TEST(GroundObservation, FramesOfANoisyCameraAgreeOnTheFloorBeforeARamp) {
-    // The ramp's first decimetre lies within the noise: a single frame may lay its plane across.
+    // The first decimetre of the ramp lies within the noise: the plane of a single frame may cross
+    // it.
     for (const double rise : {1.0 / 12.0, -1.0 / 12.0, 0.125, -0.125}) {
         SCOPED_TRACE(rise);
         GroundCalibration calibration({});
@@ -266,9 +267,8 @@ TEST(GroundObservation, FloorWinsOverTheRampThatStartsAhead) {
                          std::to_string(share));
             const GroundSighting sighting = sight(points);
             EXPECT_TRUE(sighting.observation.accepted);
-            // 15 mm (three sigma) of the ramp pass for floor: its first 85 mm, next to 1 m of
-            // floor.
-            EXPECT_LE(sighting.tilt_rad, 1.0 * kRadPerDeg);
+            // 15 mm (three sigma) of the ramp count as floor: its first 85 mm, beside 1 m of floor.
+            EXPECT_LE(sighting.tilt_rad, 1.0 * kDeg);
             EXPECT_NEAR(sighting.observation.height_m, kSensorHeight_m, 0.015);
         }
     }
@@ -279,7 +279,7 @@ TEST(GroundObservation, HalfOutliersDoNotMatter) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const GroundSighting sighting = sight(Scene(seed).floor(2000).clutter(2000).points());
         EXPECT_TRUE(sighting.observation.accepted) << to_string(sighting.reason);
-        // Clutter within three sigma of the plane is below 1 % of its inliers.
+        // Clutter within three sigma of the plane is less than 1 % of its inliers.
         EXPECT_LE(angle_rad(sighting.observation.normal, Eigen::Vector3d::UnitZ()),
                   2.0 * kTiltLimit_rad);
         EXPECT_NEAR(sighting.observation.height_m, kSensorHeight_m, kHeightLimit_m);

@@ -27,26 +27,26 @@ namespace {
 using geometry::Plane;
 
 constexpr int kMaxPlanes = 10;
-constexpr int kMaxLevels = 3;  ///< across which one plane may lie, see near_side.hpp
+constexpr int kMaxLevels = 3;  ///< a plane may cross this many levels, see near_side.hpp
 constexpr int kDraws = 500;
 constexpr std::size_t kLeastPoints = 40;
-/// Sizes are those for a camera one metre above the ground. They shrink with the distance of what
-/// is seen, and do not grow.
+/// Sizes are for a camera one metre above the ground. They shrink at a smaller distance of the
+/// scene and never grow.
 constexpr double kLeastScale = 0.3;
-/// Farther below is no step that the machine stands on: it is what a table stands on. ASSUMPTION.
+/// More than this below a plane is no step but the floor under a table. ASSUMPTION.
 constexpr double kHighestStep_m = 0.35;
-/// What fills little of the image is a shelf or a box sooner than the ground. ASSUMPTION.
+/// A plane with a smaller share of the image is probably a shelf or a box. ASSUMPTION.
 constexpr double kSmallShare = 0.15;
 constexpr double kHighestStepOfFew_m = 0.15;
 
-/// The points of a frame about the sensor.
+/// The points of a frame, relative to the sensor.
 struct View {
     std::vector<Eigen::Vector3d> points;
     std::vector<double> inverse_range_sigma;
-    double scale = 1.0;  ///< of all sizes
+    double scale = 1.0;  ///< factor of all sizes
 };
 
-/// Points that the planes of a view are drawn through: a cube of points is one entry in `begin`.
+/// Points from which candidate planes are drawn. Each cube of points is one entry in `begin`.
 struct Drawable {
     View view;
     std::vector<std::pair<std::size_t, std::size_t>> cube_of;  ///< of each point: its cube's range
@@ -62,7 +62,7 @@ struct Candidate {
     double inlier_ratio = 0.0;
     double rms_m = 0.0;
     double area_m2 = 0.0;
-    double support = 0.0;  ///< of its points: compares the bands of one plane
+    double support = 0.0;  ///< of its points; compares the bands of one plane
     Eigen::Matrix3d covariance_of_m = Eigen::Matrix3d::Zero();
     double tilt_sigma_rad = 0.0;
 
@@ -72,7 +72,7 @@ struct Candidate {
     }
 };
 
-/// What is searched.
+/// The data of a search.
 struct Scene {
     const View& all;
     std::size_t pixels;
@@ -110,7 +110,7 @@ View view_of(const GroundConfig& config, const FramePoints& seen) {
     return view;
 }
 
-/// Of a point on a plane at its height: how far off the plane its noise may put it.
+/// How far a point on the plane may lie off it because of its noise, 1 sigma, along the normal.
 double noise_of(const View& view, std::size_t i, const Plane& plane) {
     return plane.offset_m * view.points[i].norm() * view.inverse_range_sigma[i];
 }
@@ -124,7 +124,7 @@ bool is_possible(const GroundConfig& config, const Plane& plane) {
            std::abs(n.y()) <= std::sin(config.search_roll_deg * kRadPerDeg);
 }
 
-/// Points that are spread by surface, sorted by cubes in which planes are drawn.
+/// Points spread by surface and sorted by the cubes in which planes are drawn.
 Drawable drawable(const GroundConfig& config, const View& view) {
     const auto thinned = thin(view.points,
                               Eigen::Vector3d::Zero(),
@@ -165,15 +165,16 @@ std::optional<Plane> draw(const Drawable& from, Rng& rng) {
     const Eigen::Vector3d ab = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d ac = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d normal = ab.cross(ac);
-    constexpr double kLeastSine = 0.1;  // flatter triangles say nothing of one direction
+    constexpr double kLeastSine = 0.1;  // flatter triangles do not determine one direction
     if (!(normal.norm() > kLeastSine * ab.norm() * ac.norm())) return std::nullopt;
     const Eigen::Vector3d unit = normal.normalized();
     const double offset_m = -unit.dot(pa);
-    // The ground is seen from above.
+    // Orients the plane so that the sensor is above it.
     return offset_m < 0.0 ? Plane{-unit, -offset_m} : Plane{unit, offset_m};
 }
 
-/// The plane that most points are near (MSAC, Torr and Zisserman 2000); `used` points do not count.
+/// The plane with the most points near it (MSAC, Torr and Zisserman 2000); `used` points do not
+/// count.
 std::optional<Plane> most_supported(const GroundConfig& config,
                                     const Drawable& from,
                                     const std::vector<char>& used,
@@ -201,19 +202,19 @@ std::optional<Plane> most_supported(const GroundConfig& config,
     return best;
 }
 
-/// Where the points of a view lie about a plane.
+/// Distribution of the points of a view about a plane.
 struct Census {
     std::vector<Eigen::Vector3d> inliers;
     std::size_t fringe = 0;  ///< within twice the band
     double square_sum_m2 = 0.0;
-    double noise_sum_m2 = 0.0;  ///< what the noise of the points makes of it
+    double noise_sum_m2 = 0.0;  ///< expected from the noise of the points
 };
 
 Census census_of(const View& view, const Candidate& candidate) {
     Census census;
     for (std::size_t i = 0; i < view.points.size(); ++i) {
         if (!candidate.holds(view.points[i])) continue;
-        // Of a point that is noisier than the band nothing can be said.
+        // A point noisier than the band cannot be classified.
         if (noise_of(view, i, candidate.plane) > kNoisiest * candidate.band_m) continue;
         const double off_m = candidate.plane.signed_distance_m(view.points[i]);
         if (std::abs(off_m) <= candidate.band_m) {
@@ -228,25 +229,25 @@ Census census_of(const View& view, const Candidate& candidate) {
     return census;
 }
 
-/// Scatter of the ground itself about the plane.
+/// Scatter of the ground itself about the plane, without the noise.
 double roughness_m(const Census& census) {
     const auto count = static_cast<double>(std::max<std::size_t>(census.inliers.size(), 1));
     return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
 }
 
-/// Whether a point surely lies deeper below a plane than `step_m`.
+/// Whether a point certainly lies more than `step_m` below a plane.
 bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m) {
     if (-plane.signed_distance_m(all.points[i]) <= step_m) return false;
-    // First order in the inverse range, as `Sighting::off_m`: a far point that noise threw behind
-    // the plane is not below it.
+    // First order in the inverse range, as `Sighting::off_m`: a far point that only noise puts
+    // behind the plane does not count as below it.
     const Sighting seen = sighting_of(beam_to(all.points[i]), all.inverse_range_sigma[i], plane);
     constexpr double kSure = 5.0;
     return !(seen.expected_inverse_range > 0.0) ||
            seen.expected_inverse_range - seen.inverse_range > kSure * all.inverse_range_sigma[i];
 }
 
-/// Points deeper below a plane than a step, where they are a surface: among the points that are
-/// seen beside each other every fourth at least. Wrong matches lie below it too, one by one.
+/// Number of points more than a step below a plane that form a surface: at least every fourth of
+/// the points seen beside each other. Wrong matches also lie below the plane, but singly.
 std::size_t count_below(const View& all, const Candidate& candidate) {
     constexpr double kTile_rad = 0.1;
     constexpr std::size_t kSurface = 4;
@@ -291,7 +292,7 @@ GroundReason judge(const GroundConfig& config,
     return GroundReason::accepted;
 }
 
-/// Mean squared distance of the points that a plane was settled on.
+/// Mean squared distance of the points to which a plane was fitted.
 double scatter_m2(const View& view, const Plane& plane, double band_m) {
     double sum_m2 = 0.0;
     double count = 0.0;
@@ -305,11 +306,11 @@ double scatter_m2(const View& view, const Plane& plane, double band_m) {
     return count > 0.0 ? sum_m2 / count : 0.0;
 }
 
-/// Log-likelihood that a plane as rough as this gains over points that lie anywhere: a band that
-/// leaves out half of a mulch floor gains less than one that holds it, one that takes in the foot
-/// of a wall hardly more.
+/// Log-likelihood of a plane with this roughness, relative to points at random places. A band that
+/// excludes half of a mulch floor gains less than one that includes it. A band that includes the
+/// foot of a wall gains hardly more.
 double support_of(const View& view, const Candidate& candidate, double roughness_m) {
-    constexpr double kAnywhere_m = 2.0;  // across which other points lie
+    constexpr double kAnywhere_m = 2.0;  // range over which the random points lie
     constexpr double kLeastRoughness_m = 0.001;
     double sum = 0.0;
     for (std::size_t i = 0; i < view.points.size(); ++i) {
@@ -324,7 +325,7 @@ double support_of(const View& view, const Candidate& candidate, double roughness
     return sum;
 }
 
-/// The plane settled within a band, and what speaks for it.
+/// Fits the plane within a band and computes the evidence for it.
 std::optional<Candidate> within_band(const GroundConfig& config,
                                      const Scene& scene,
                                      const View& rest,
@@ -346,7 +347,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
         const View near = select(view, kept);
         const auto nearer =
             refine_plane(near.points, near.inverse_range_sigma, side->plane, band_m);
-        // Rough ground is as rough on one side as on the whole.
+        // Rough ground is equally rough on one side and on the whole.
         constexpr double kMostOfScatter = 0.6;
         if (!nearer ||
             scatter_m2(near, *nearer, band_m) > kMostOfScatter * scatter_m2(view, *plane, band_m))
@@ -375,7 +376,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
     return candidate;
 }
 
-/// A tenth of the points on a plane are less noisy.
+/// The noise that 10 % of the points on a plane do not exceed.
 double least_noise_m(const View& view, const Plane& plane) {
     std::vector<double> noise_m;
     for (std::size_t i = 0; i < view.points.size(); ++i) {
@@ -390,8 +391,8 @@ double least_noise_m(const View& view, const Plane& plane) {
     return *tenth;
 }
 
-/// In the band that explains most: mulch and boulders need a wider one than a parquet, and a strip
-/// of floor before a wall one that leaves out the foot of the wall.
+/// Chooses the band that explains most. Mulch and boulders need a wider band than parquet. A strip
+/// of floor before a wall needs a band without the foot of the wall.
 std::optional<Candidate> measured(const GroundConfig& config,
                                   const Scene& scene,
                                   const View& rest,
@@ -413,7 +414,7 @@ bool is_better(const Candidate& a, const Candidate& b) {
     return a.image_share > b.image_share;
 }
 
-/// Marks the points of a plane.
+/// Marks the points of a plane as used.
 void take(const View& view, const Plane& plane, double band_m, std::vector<char>& used) {
     for (std::size_t k = 0; k < used.size(); ++k) {
         const double within_m = std::max(band_m, 3.0 * noise_of(view, k, plane));
@@ -428,8 +429,8 @@ View without(const View& view, const std::vector<char>& used) {
     return select(view, kept);
 }
 
-/// One plane after the other, largest first and of any direction: a strip of floor before a wall is
-/// looked at when the wall is gone.
+/// Finds planes of any direction one after the other, largest first. A strip of floor before a wall
+/// is found after the wall has been removed.
 std::optional<Candidate> best_of(const GroundConfig& config, const Scene& scene, Rng& rng) {
     const View& all = scene.all;
     const Drawable from = drawable(config, all);

@@ -37,7 +37,7 @@ TEST(GroundSearch, FindsTheFloorAtAnyTiltAndHeight) {
             const GroundSighting found = find(view);
             ASSERT_TRUE(found.observation.accepted) << to_string(found.reason);
             const double sigma_deg = kDegPerRad * found.uncertainty.tilt_sigma_rad();
-            constexpr double kSigmas = 3.7;  // of two angles one in a thousand is farther off
+            constexpr double kSigmas = 3.7;  // one of 1000 pairs of angles is farther off
             EXPECT_LT(tilt_error_deg(found, view.up), kSigmas * sigma_deg);
             EXPECT_LT(sigma_deg, 0.6);
             EXPECT_NEAR(found.observation.height_m, height_m, 0.03 * height_m);
@@ -72,7 +72,7 @@ TEST(GroundSearch, FindsGroundAsRoughAsMulch) {
     }
 }
 
-/// The floor beside it is the ground, or nothing is.
+/// The result must be the floor beside it, or nothing.
 TEST(GroundSearch, ATableOrABedIsNotTheGround) {
     struct Decoy {
         double top_m;
@@ -95,7 +95,7 @@ TEST(GroundSearch, ATableOrABedIsNotTheGround) {
     }
 }
 
-/// Wrong matches lie below a small floor one by one; what a table stands on lies there in one
+/// Wrong matches lie below a small floor one by one. The floor under a table lies there in one
 /// piece.
 TEST(GroundSearch, WrongMatchesAreNotLowerGround) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {

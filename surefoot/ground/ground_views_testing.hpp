@@ -13,18 +13,18 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/sample_points.hpp"
 
-/// Depth of boxes on a floor for a camera of any mount, with the errors of a real matcher. Shared
+/// Depth images of boxes on a floor for any camera mount, with the errors of a real matcher. Shared
 /// by the unit tests and lab/ground_search/main.cpp.
 namespace surefoot::ground::test {
 
-/// Upright block, turned about the vertical.
+/// Upright block, rotated about the vertical.
 struct Block {
     Eigen::Vector3d middle_m;  ///< world, z up
     Eigen::Vector3d size_m;
     double yaw_rad = 0.0;
 };
 
-/// Smooth noise: normal numbers on a lattice, bilinear between them.
+/// Smooth noise: normal random numbers on a lattice with bilinear interpolation.
 class Lattice {
   public:
     explicit Lattice(std::uint64_t seed) : seed_(seed) {}
@@ -57,14 +57,14 @@ struct Camera {
     double roll_deg = 0.0;
 };
 
-/// Errors of disparities.
+/// Errors of the simulated disparities.
 struct Errors {
-    double white_px = 0.15;        ///< of each pixel by itself
-    double together_px = 0.15;     ///< of neighbours, over some 40 px
-    double calibration_px = 0.05;  ///< constant, and at the rims of the image
+    double white_px = 0.15;        ///< independent for each pixel
+    double together_px = 0.15;     ///< correlated over about 40 px
+    double calibration_px = 0.05;  ///< constant, and growing toward the image border
     double matched_share = 0.8;    ///< of the pixels, in patches
-    double wrong_share = 0.01;     ///< of these, anywhere
-    double relief_m = 0.0;         ///< roughness of the floor, over some 0.15 m
+    double wrong_share = 0.01;     ///< of these, with a random disparity
+    double relief_m = 0.0;         ///< roughness of the floor, over about 0.15 m
 };
 
 struct View {
@@ -74,8 +74,8 @@ struct View {
         Eigen::Vector3d::UnitZ();  ///< in camera body axes: x along the optical axis
 };
 
-/// Depth along the optical axis of the nearest block on a ray, or of the floor z = 0 where there is
-/// one. Infinity where there is nothing.
+/// Depth along the optical axis of the nearest block on a ray, or of the floor z = 0 if there is
+/// one. Infinity if the ray hits nothing.
 struct Hit {
     double depth_m = std::numeric_limits<double>::infinity();
     bool is_floor = false;
@@ -105,7 +105,7 @@ inline Hit cast(const std::vector<Block>& blocks,
     return hit;
 }
 
-/// What a camera above the origin sees that looks along world x. `step_px`: every so many pixels.
+/// View of a camera above the origin that looks along world x. `step_px`: spacing of the pixels.
 inline View view_of(const std::vector<Block>& blocks,
                     bool has_floor,
                     const Camera& camera,
@@ -178,7 +178,7 @@ inline View view_of(const std::vector<Block>& blocks,
     return view;
 }
 
-/// Walls of a room about the origin, as thick blocks.
+/// Walls of a room around the origin, as thick blocks.
 inline void add_room(double ahead_m, double side_m, std::vector<Block>& blocks) {
     blocks.push_back({{ahead_m + 0.5, 0.0, 1.3}, {1.0, 4.0 * side_m, 2.6}});
     blocks.push_back({{0.0, side_m + 0.5, 1.3}, {4.0 * ahead_m, 1.0, 2.6}});

@@ -14,15 +14,16 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr int kStrips = 32;             ///< places where the points may be split
-constexpr double kRim = 0.02;           ///< share of the points outside of the first and last strip
+constexpr int kStrips = 32;             ///< number of positions at which the points may be split
+constexpr double kRim = 0.02;           ///< share of the points outside the first and last position
 constexpr int kLeastPoints = 100;       ///< on either side
-constexpr double kLeastLength_m = 0.3;  ///< of the side that is kept
-/// Two planes leave so much less of the squared noise than one, to count as two. A step of four
-/// times the noise of a point leaves a third; what the lens bends leaves less. ASSUMPTION.
+constexpr double kLeastLength_m = 0.3;  ///< of the side that is returned
+/// Two planes count as two if they reduce the squared noise by this share. A step of four times a
+/// point's noise leaves a third; the distortion of a lens reduces less. ASSUMPTION.
 constexpr double kLeastGain = 0.25;
 
-/// Least squares of m in w = m . r about a plane, see `refine_plane`: its normal equations.
+/// Normal equations of the least squares problem for m in w = m . r about a plane, see
+/// `refine_plane`.
 struct Sums {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -42,7 +43,7 @@ struct Sums {
         points -= other.points;
     }
     [[nodiscard]] Eigen::Vector3d solution() const { return information.ldlt().solve(right); }
-    /// What remains of the squares.
+    /// Sum of the squared residuals.
     [[nodiscard]] double rest() const { return square - right.dot(solution()); }
 };
 
@@ -53,9 +54,9 @@ struct Sample {
 
 struct Split {
     double rest = 0.0;
-    double from_m = 0.0;  ///< the side of the sensor: [from, to] of the coordinate
+    double from_m = 0.0;  ///< side of the sensor: range [from, to] of the coordinate
     double to_m = 0.0;
-    Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< added to the plane's
+    Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< correction of the plane's m
 };
 
 struct Samples {
@@ -91,8 +92,8 @@ Samples samples_of(std::span<const Eigen::Vector3d> points,
     return samples;
 }
 
-/// The best of all splits along one coordinate whose side of the sensor is long enough; a rest of 0
-/// means none.
+/// The best split along one coordinate, among those that leave a long enough side at the sensor. A
+/// rest of 0 means no split.
 Split best_split(const std::vector<Sample>& samples, int axis) {
     std::vector<double> at_m;
     at_m.reserve(samples.size());
@@ -117,7 +118,7 @@ Split best_split(const std::vector<Sample>& samples, int axis) {
         before += strips[static_cast<std::size_t>(i)];
         after -= strips[static_cast<std::size_t>(i)];
         const double at = first_m + (i + 1) * strip_m;
-        // Straight down, where the machine stands, both coordinates are 0.
+        // Both coordinates are 0 straight below the sensor.
         const bool keeps_before = at > 0.0;
         const double length_m = keeps_before ? at - at_m.front() : at_m.back() - at;
         if (std::min(before.points, after.points) < kLeastPoints || length_m < kLeastLength_m)

@@ -11,7 +11,7 @@ namespace surefoot::ground {
 
 /// The part of a plane that is nearer to the sensor.
 struct NearSide {
-    geometry::Plane plane;  ///< of the points there that were near the whole plane
+    geometry::Plane plane;  ///< fitted to the points of this part near the whole plane
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, along the plane
     double from_m = 0.0;                              ///< along the axis
     double to_m = 0.0;
@@ -22,13 +22,13 @@ struct NearSide {
     }
 };
 
-/// A plane laid across a step: two levels 75 mm apart lie within 19 mm of a slope between them,
-/// hardly more than the noise of one pixel, and more points agree with it than with either level.
-/// All points together tell: this splits those within `band_m` of the plane by a line across the
-/// view or along it, where two planes fit them best, and returns the one on the side of the sensor
-/// (the origin), if two are clearly better than one.
+/// Detects a plane that was fitted across a step. Two levels 75 mm apart lie within 19 mm of a
+/// slope between them, hardly more than the noise of one pixel. More points agree with this slope
+/// than with either level, but all points together reveal the step. The function splits the points
+/// within `band_m` by a line across or along the view where two planes fit best. If two planes fit
+/// clearly better than one, it returns the plane on the side of the sensor (the origin).
 ///
-/// Points and sigmas as for `refine_plane`. Nothing where the plane is one.
+/// Points and sigmas as for `refine_plane`. Returns nothing if one plane is enough.
 [[nodiscard]] std::optional<NearSide> near_side(std::span<const Eigen::Vector3d> points,
                                                 std::span<const double> inverse_range_sigma,
                                                 const geometry::Plane& plane,

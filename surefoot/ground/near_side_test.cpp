@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBand_m = 0.04;
 
-/// The one plane that all points agree with best.
+/// The single plane that fits all points best.
 geometry::Plane across(const FramePoints& frame, double height_m) {
     return refine_plane(frame.points_body_m,
                         frame.inverse_range_sigma,

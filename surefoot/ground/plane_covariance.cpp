@@ -16,10 +16,10 @@ namespace surefoot::ground {
 namespace {
 
 constexpr double kTile_rad = 0.2;  ///< 70 px of a ZED
-constexpr double kBump_m = 0.2;    ///< one bump of uneven ground; from near it fills more ...
+constexpr double kBump_m = 0.2;    ///< one bump of uneven ground; at short range it fills more ...
 constexpr double kLargestTile_rad = 0.6;  ///< ... but no more than this
-constexpr double kPriorShare = 0.6;       ///< of the stated sigma that a tile may be off as a whole
-constexpr double kPriorTiles = 4.0;       ///< what that assumption weighs
+constexpr double kPriorShare = 0.6;       ///< of the stated sigma: error of a whole tile
+constexpr double kPriorTiles = 4.0;       ///< weight of that assumption, in tiles
 constexpr double kUnknowns = 3.0;
 
 struct Member {
@@ -65,7 +65,7 @@ Eigen::Matrix3d covariance_of_m(std::span<const Eigen::Vector3d> points,
     for (auto first = members.begin(); first != members.end();) {
         const auto last = std::find_if(
             first, members.end(), [&](const Member& m) { return m.tile != first->tile; });
-        Eigen::Vector3d pull = Eigen::Vector3d::Zero();  // if the whole tile is off by one sigma
+        Eigen::Vector3d pull = Eigen::Vector3d::Zero();  // effect of one sigma on the whole tile
         double residual = 0.0;
         for (auto it = first; it != last; ++it) {
             information += it->ray * it->ray.transpose() / (it->sigma * it->sigma);

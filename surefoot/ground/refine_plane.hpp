@@ -10,48 +10,48 @@
 
 namespace surefoot::ground {
 
-/// The plane near `start` through points seen from the origin, each with one sigma of its inverse
-/// range [1/m].
+/// Fits the plane near `start` to points seen from the origin; each point has one sigma of its
+/// inverse range [1/m].
 ///
-/// A plane n . p + h = 0 is seen along the unit ray r at the inverse range w = -(n . r) / h: linear
-/// in m = -n / h, as v-disparity is (Labayrade et al. 2002). Stereo errs in w, alike at all
-/// distances, so that this least squares problem has no bias by distance and weights far points as
-/// little as they deserve; three unknowns, solved again with weights after Tukey (biweight) until
-/// they settle. Points farther than `band_m` from the plane take no part, nor do those whose noise
-/// across it is too large to tell.
+/// Along the unit ray r, a plane n . p + h = 0 appears at the inverse range w = -(n . r) / h. This
+/// is linear in m = -n / h, as in v-disparity (Labayrade et al. 2002). The noise of stereo in w
+/// does not depend on the distance, so this least squares problem has no bias by distance and gives
+/// far points their correct small weight. The three unknowns are solved repeatedly with Tukey's
+/// biweight until they converge. Points farther than `band_m` from the plane, or too noisy to
+/// decide this, are left out.
 ///
-/// Nothing if too few points are near or they do not fix a plane in front of the camera.
+/// Nothing if too few points are near or they do not determine a plane in front of the camera.
 [[nodiscard]] std::optional<geometry::Plane> refine_plane(
     std::span<const Eigen::Vector3d> points,
     std::span<const double> inverse_range_sigma,
     const geometry::Plane& start,
     double band_m);
 
-/// The plane n . p + h = 0 in front of the camera with -n / h = m; nothing where m is none.
+/// The plane n . p + h = 0 in front of the camera with -n / h = m; nothing if m is not valid.
 [[nodiscard]] std::optional<geometry::Plane> plane_of(const Eigen::Vector3d& m);
 
-/// A band that cuts the noise of a point holds the plane in place: points with a sigma of more than
-/// this share of it take no part.
+/// A band that cuts off the noise of a point pulls the plane back to its start. Points whose sigma
+/// exceeds this share of the band are therefore left out.
 inline constexpr double kNoisiest = 0.67;
 
-/// A point seen from the origin, beside the place where its ray meets a plane.
+/// A point seen from the origin, compared with the place where its ray meets a plane.
 struct Sighting {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]
     double expected_inverse_range = 0.0;            ///< of the plane; 0 = the ray does not meet it
-    /// Distance from the plane and its one sigma, to first order in the inverse range: symmetric in
-    /// the noise, so that what is left out by them pulls to neither side.
+    /// Distance from the plane and its one sigma, to first order in the inverse range. It is
+    /// symmetric in the noise, so a limit on it causes no bias.
     double off_m = 0.0;
     double sigma_m = 0.0;
 
-    /// Its noise is small enough to say whether it lies within a band, and it does.
+    /// Whether the point lies within the band and has small enough noise to decide this.
     [[nodiscard]] bool is_within(double band_m) const {
         return expected_inverse_range > 0.0 && std::abs(off_m) <= band_m &&
                sigma_m <= kNoisiest * band_m;
     }
 };
 
-/// Where a point lies, seen from the origin; no beam leads to the origin or to what is not finite.
+/// Direction and inverse range of a point from the origin; zero at the origin or if not finite.
 struct Beam {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]

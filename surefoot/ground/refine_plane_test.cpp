@@ -34,8 +34,8 @@ TEST(RefinePlane, IsExactWithoutNoiseFromAnyStartWithinTheBand) {
 }
 
 TEST(RefinePlane, NoiseAveragesOutWithoutABias) {
-    // The mean over many frames is as much better as there are frames: nothing pulls one way. A
-    // least squares plane of the same points, all alike, is tilted by their far noise.
+    // The mean over many frames improves with their number, so there is no bias. An unweighted
+    // least squares plane of the same points is tilted by the noise of far points.
     constexpr int kFrames = 40;
     double height_m = 0.0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -53,7 +53,7 @@ TEST(RefinePlane, NoiseAveragesOutWithoutABias) {
 }
 
 TEST(RefinePlane, WhatLiesOnItOrMayBeAnywhereTakesNoPart) {
-    // A kerb, a mat of 40 mm over a tenth of the view, and points that know nothing.
+    // A kerb, a mat of 40 mm on a tenth of the view, and points too noisy to use.
     FramePoints frame =
         test::seen({{}, {.z_m = 0.04, .min_x_m = 0.9, .max_x_m = 1.2, .min_y_m = 0.1}});
     Rng rng(3);

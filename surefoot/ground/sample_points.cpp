@@ -9,12 +9,13 @@ namespace surefoot::ground {
 
 namespace {
 
-/// Disparities of a calibrated rig err by so much alike, and by so much more at the side and at the
-/// upper or lower rim of the image. ASSUMPTION: what is left after boards and self-calibration.
+/// Remaining disparity error of a calibrated rig: this much constant, and this much more at the
+/// side and at the upper or lower border of the image. ASSUMPTION: after boards and
+/// self-calibration.
 constexpr double kCalibrationSigma_px = 0.05;
 
-/// d = f b m . (x, y, 1) over the image plane: a constant error of d is one of m along the optical
-/// axis, one that grows along the image is one across it.
+/// d = f b m . (x, y, 1) over the image plane. A constant error of d is an error of m along the
+/// optical axis. An error that grows along the image is an error across the axis.
 Eigen::Matrix3d calibration_covariance(const camera::RectifiedRig& rig) {
     const double fb_px_m = rig.depth_to_disparity_px_m();
     const Eigen::Vector3d sigma =

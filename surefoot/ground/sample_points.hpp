@@ -10,22 +10,22 @@
 
 namespace surefoot::ground {
 
-/// What one frame of a depth camera saw, in base_link.
+/// Points that a depth camera measured in one frame, in base_link.
 struct FramePoints {
     Eigen::Vector3d camera_body_m = Eigen::Vector3d::Zero();  ///< optical centre
     std::vector<Eigen::Vector3d> points_body_m;
-    /// One sigma [1/m] of the inverse of the distance between each point and the camera. In it the
-    /// disparity's noise is linear, and so is a plane (`refine_plane`).
+    /// One sigma [1/m] of the inverse distance between each point and the camera. Disparity noise
+    /// and planes are both linear in the inverse distance (`refine_plane`).
     std::vector<double> inverse_range_sigma;
-    std::size_t pixels = 0;  ///< looked at, with and without depth
-    /// What an imperfect calibration does to every plane alike: covariance of m = -n / h
-    /// (`refine_plane`) [1/m^2]. An error of all disparities that grows by the place in the image
-    /// adds a constant to m.
+    std::size_t pixels = 0;  ///< number of pixels examined, with and without depth
+    /// Effect of an imperfect calibration on every plane alike: covariance of m = -n / h
+    /// (`refine_plane`) [1/m^2]. A disparity error that is linear in the pixel position adds a
+    /// constant to m.
     Eigen::Matrix3d calibration_covariance = Eigen::Matrix3d::Zero();
 };
 
-/// Replaces `seen` by every `step_px`-th pixel of every `step_px`-th row whose disparity and its
-/// sigma are known and whose outlier probability is at most `max_outlier_probability`.
+/// Replaces `seen` by the pixels of a grid with spacing `step_px`. Uses only pixels with known
+/// disparity and sigma and an outlier probability of at most `max_outlier_probability`.
 void sample_points(const camera::RectifiedRig& rig,
                    const DepthImage& depth,
                    int step_px,

@@ -59,7 +59,7 @@ TEST(SamplePoints, FloorPixelsLieOnTheFloorOfTheBody) {
     EXPECT_EQ(seen.camera_body_m, rig.T_body_camera.translation_m);
     ASSERT_GT(seen.points_body_m.size(), 500U);
     for (const auto& p : seen.points_body_m) {
-        // Float disparities: a relative error of 6e-8 of up to 20 m.
+        // Float disparities: a relative error of 6e-8 at up to 20 m.
         EXPECT_NEAR(p.z(), 0.0, 5e-6) << p.transpose();
         EXPECT_GT(p.x(), 0.4);
     }
@@ -90,7 +90,7 @@ TEST(SamplePoints, FeedsTheGroundObservation) {
     FramePoints seen;
     sample_points(rig, floor_depth(rig), 2, seen);
     GroundConfig config;
-    config.min_height_m = 0.0;  // base_link is at the floor
+    config.min_height_m = 0.0;  // base_link is on the floor
     const auto ground = observe_ground(config, seen, Eigen::Vector3d::UnitZ(), 1).observation;
     ASSERT_TRUE(ground.accepted);
     EXPECT_NEAR(ground.height_m, 0.0, 1e-5) << "of base_link";

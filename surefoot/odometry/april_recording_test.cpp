@@ -16,7 +16,7 @@
 namespace surefoot::odometry::testing {
 namespace {
 
-/// By stamp [ns] and id.
+/// Observed corners by stamp [ns] and id.
 using Corners = std::map<std::int64_t, std::map<std::int64_t, Eigen::Vector2d>>;
 
 std::string output_of(const std::string& command) {
@@ -31,7 +31,7 @@ std::string output_of(const std::string& command) {
     return text;
 }
 
-/// Of all files cam0/STAMP.csv; those of frames without a corner have no rows.
+/// Reads all files cam0/STAMP.csv. Files of frames without a corner have no rows.
 std::set<std::int64_t> frame_stamps(const std::string& archive) {
     std::set<std::int64_t> stamps;
     std::istringstream names(output_of("tar -tJf '" + archive + "' cam0"));
@@ -41,7 +41,7 @@ std::set<std::int64_t> frame_stamps(const std::string& archive) {
 }
 
 /// Rows of ts, tag_rows, tag_cols, tag_size, tag_spacing, kp_x, kp_y, p_x, p_y, p_z, tag_id,
-/// corner_idx. The points' places on the grid (p) are none of our business.
+/// corner_idx. The points' positions on the grid (p) are not used.
 Corners read_corners(const std::string& archive, const char* camera) {
     Corners corners;
     std::istringstream rows(output_of("tar -xJOf '" + archive + "' " + camera));
@@ -61,7 +61,7 @@ Corners read_corners(const std::string& archive, const char* camera) {
     return corners;
 }
 
-/// The pose within half a millisecond: the file's stamps are rounded.
+/// The pose within half a millisecond, because the stamps of the file are rounded.
 std::optional<Pose> pose_at(const Trajectory& truth, std::int64_t time_ns) {
     constexpr std::int64_t kTolerance_ns = 500'000;
     const auto it =

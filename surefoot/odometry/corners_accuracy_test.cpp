@@ -15,8 +15,8 @@ namespace {
 
 using testing::PointRecording;
 
-/// PnP leaves 0.46 px in the left eye and, carried over, 0.50 px in the right one: both axes
-/// together, so 0.33-0.36 px on each.
+/// PnP leaves 0.46 px in the left camera and, transferred, 0.50 px in the right one. This is for
+/// both axes together, so 0.33-0.36 px per axis.
 constexpr double kCornerNoise_px = 0.35;
 
 /// Row 1115 of the truth is the last one before the grid leaves the view, 1116 the first after it.
@@ -48,7 +48,7 @@ Followed follow(const PointRecording& recording,
     return run;
 }
 
-/// Of the frames of `run` whose true pose is known, aligned on their own.
+/// Errors of the frames of `run` with a known true pose, after their own alignment.
 double ate_m(const PointRecording& recording, const Followed& run) {
     std::vector<Eigen::Vector3d> estimate;
     std::vector<Eigen::Vector3d> truth;
@@ -64,7 +64,7 @@ double ate_m(const PointRecording& recording, const Followed& run) {
     return testing::aligned_rmse_m(estimate, truth);
 }
 
-/// Nothing, and a line that says so, when the recording is not there.
+/// Returns nothing and prints a line when the recording is missing.
 const std::optional<PointRecording>& april() {
     static const std::optional<PointRecording> recording = testing::euroc_april();
     if (!recording) std::printf("skipped 1 check: recording sequences/euroc_april is not there\n");
@@ -85,8 +85,8 @@ TEST(EurocApril, CornersFollowTheTruthInBothPartsWithAndWithoutImu) {
                         with_imu ? "with" : "without",
                         1e3 * found_m);
             EXPECT_LT(found_m, 0.010);  // required 20 mm
-            // At first the right eye does not see the grid: landmarks are there from the third
-            // frame on.
+            // At first the right camera does not see the grid; landmarks exist from the third frame
+            // on.
             for (std::size_t i = 3; i < run.motions.size(); ++i)
                 EXPECT_NE(run.motions[i].health, Health::lost)
                     << i << " " << to_string(run.motions[i].reason);

@@ -8,16 +8,16 @@
 namespace surefoot::odometry {
 namespace {
 
-constexpr double kBlurred = 0.3;       ///< sharpness ratio; the mean square falls fast with blur
+constexpr double kBlurred = 0.3;       ///< sharpness ratio; blur reduces the mean square quickly
 constexpr double kMinAgreeing = 0.35;  ///< share of the tracks that must agree on one motion
 constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma relative to the scene's depth
 constexpr double kDegradedRotation_rad = 0.01;
-constexpr double kGapPeriods = 3.5;  ///< a gap is longer than so many usual ones
-/// A second motion is one when so many points have it, and so many for each that has the first:
-/// mismatches are fewer, and agree on nothing.
+constexpr double kGapPeriods = 3.5;  ///< a gap is longer than this many usual periods
+/// A second motion counts from this many points on, and from this many per point of the first
+/// motion. Mismatches are fewer and do not agree with each other.
 constexpr int kOtherMotion = 15;
 constexpr double kOtherMotionShare = 0.2;
-constexpr double kLostFactor = 10.0;  ///< times these: no usable pose
+constexpr double kLostFactor = 10.0;  ///< beyond this factor times the limits above: no usable pose
 
 }  // namespace
 

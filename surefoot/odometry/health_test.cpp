@@ -61,7 +61,7 @@ TEST(Health, EveryReasonHasItsCause) {
     e.imu_disagrees = false;
     e.machine_disagrees = true;
     expect(e, Health::degraded, HealthReason::machine_disagreement);
-    e.residual_px = 2.0;  // what vision says of itself comes first
+    e.residual_px = 2.0;  // the reason of vision comes first
     expect(e, Health::degraded, HealthReason::large_residual);
     e = good();
     e.beyond_machine = true;

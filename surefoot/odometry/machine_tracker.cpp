@@ -6,9 +6,9 @@
 namespace surefoot::odometry {
 namespace {
 
-/// 99.9 % of a chi-square variable with six degrees of freedom lies below.
+/// 99.9 % quantile of a chi-square variable with six degrees of freedom.
 constexpr double kChi2Limit = 22.46;
-/// So many frames in a row beyond the limit are a contradiction, not an accident.
+/// This many frames in a row beyond the limit are a contradiction, not chance.
 constexpr int kContradictions = 3;
 
 bool is_usable(const MachineMotion& motion) {
@@ -42,7 +42,7 @@ CameraFix MachineTracker::improved(const CameraFix& seen) {
     if (!known) return seen;
     const Vector6 off = difference(seen.T_odom_camera, known->T_odom_camera);
     const auto expected = Matrix6(seen.covariance + known->covariance).ldlt();
-    if (!(off.dot(expected.solve(off)) <= kChi2Limit)) {  // not so for NaN
+    if (!(off.dot(expected.solve(off)) <= kChi2Limit)) {  // true for NaN
         ++contradictions_;
         return seen;
     }

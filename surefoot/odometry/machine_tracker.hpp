@@ -8,24 +8,24 @@
 
 namespace surefoot::odometry {
 
-/// What the machine says about its own motion, beside visual odometry: it carries the pose while
-/// nothing is seen, weighs in where it is surer than the eyes, and is left out where it contradicts
-/// them (a foot that slips, a wheel that spins). Order of a frame: `advance`, then `improved` or
-/// `reckoned`; `place` once it was seen.
+/// Combines the motion that the machine reports with visual odometry. It carries the pose while the
+/// cameras see nothing and improves the visual pose by its covariance. It is ignored in frames
+/// where it contradicts vision (a foot slips, a wheel spins). Order of calls in a frame: `advance`,
+/// then `improved` or `reckoned`, then `place` if the frame has a pose.
 class MachineTracker {
   public:
     explicit MachineTracker(const Pose& T_body_camera) : T_body_camera_(T_body_camera) {}
 
-    /// The motion up to the present frame. Without it nothing is known until `place`.
+    /// Adds the motion up to the present frame. Without it no pose is known until the next `place`.
     void advance(const std::optional<MachineMotion>& motion);
-    /// The camera as the machine alone has it, with the covariance of the motion since `place`.
+    /// Camera pose from the machine alone, with the covariance of the motion since `place`.
     [[nodiscard]] std::optional<CameraFix> reckoned() const;
-    /// The pose that was seen, and the machine's, by their covariances; as it was where there is
-    /// only one or they contradict each other.
+    /// Combines the visual pose `seen` with the machine's pose, weighted by their covariances.
+    /// Returns `seen` unchanged if the machine has no pose or contradicts it.
     [[nodiscard]] CameraFix improved(const CameraFix& seen);
-    /// The present frame was seen here.
+    /// Sets the camera pose of the present frame, from which the next motion continues.
     void place(const Pose& T_odom_camera);
-    /// Contradictions for some frames in a row.
+    /// The machine contradicted vision in several frames in a row.
     [[nodiscard]] bool disagrees() const noexcept;
 
   private:

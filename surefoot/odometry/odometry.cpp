@@ -21,18 +21,18 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr std::uint64_t kSeed = 0x5afef007;
-constexpr double kCoastTime_s = 0.15;   ///< the predicted velocity of a lost camera decays with it
-constexpr double kKeyframeShare = 0.7;  ///< keyframe when fewer of the last one's points are seen
+constexpr double kCoastTime_s = 0.15;   ///< decay time of the predicted velocity of a lost camera
+constexpr double kKeyframeShare = 0.7;  ///< keyframe if fewer of the last keyframe's points remain
 constexpr double kKeyframeParallax =
     0.035;                                ///< or when they moved by this share of the image width
-constexpr int kKeyframePeriod = 12;       ///< or after so many frames of motion
-constexpr double kLeastNewErrors = 1e-3;  ///< of poses a moment apart
-/// After a torn image the next ones are suspect: of those torn one after the other only the first
-/// is known by its rows, the others lack what never came.
+constexpr int kKeyframePeriod = 12;       ///< or after this many frames of motion
+constexpr double kLeastNewErrors = 1e-3;  ///< least share of new errors between two poses
+/// After a torn image the next images are suspect. Of several torn images in a row, the check of
+/// rows detects only the first; the others lack data that never arrived.
 constexpr double kTearing_s = 1.0;
-/// Too little depth may be exchanged eyes, of which now and then enough wrong points agree.
+/// Too little depth may come from swapped cameras, where enough wrong points agree now and then.
 constexpr double kDepthAgain_s = 0.5;
-constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
+constexpr double kFewFollowed = 0.5;  ///< below this share, points are tracked a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -56,7 +56,7 @@ bool is_shortly_after(const std::optional<std::int64_t>& event_ns, std::int64_t 
     return event_ns && std::abs(seconds_from_ns(now_ns - *event_ns)) <= s;
 }
 
-/// One sigma in the weakest direction.
+/// One sigma in the least certain direction.
 double largest_sigma(const Eigen::Matrix3d& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
     return std::sqrt(std::max(eigen.eigenvalues().maxCoeff(), 0.0));
@@ -82,7 +82,7 @@ struct Odometry::Impl {
     }
 
     void feed_by(Tracks& source);
-    /// The frame is loaded into `front`.
+    /// Processes the frame that is loaded into `front`.
     MotionEstimate update(std::int64_t now_ns, std::span<const ImuSample> imu, Executor& executor);
     MotionEstimate follow(std::int64_t now_ns, Executor& executor);
     MotionEstimate begin(std::int64_t now_ns, Executor& executor);
@@ -95,10 +95,10 @@ struct Odometry::Impl {
     PoseSolution solve(std::int64_t now_ns, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
     void learn_noise(const Pose& T_odom_camera_seen);
-    /// What the IMU makes of the pose that vision found; the tracks are its inliers.
+    /// Combines the visual pose with the IMU; the tracks must be the inliers of the pose.
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
     [[nodiscard]] HealthEvidence examine(std::int64_t now_ns, const PoseSolution& pose) const;
-    /// How many points agree on another motion than `pose`.
+    /// Number of points that agree on a motion other than `pose`.
     [[nodiscard]] int other_motion(const PoseSolution& pose);
     [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
     [[nodiscard]] bool is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const;
@@ -122,7 +122,7 @@ struct Odometry::Impl {
     camera::FrameIntegrityCheck watch;
     FrontEnd images;
     PointFrontEnd points;
-    Tracks* front = nullptr;  ///< the one of these two that the odometry is fed by
+    Tracks* front = nullptr;  ///< the one of these two that receives the frames
     LandmarkMap map;
     StillDetector still;
     MeasuredNoise noise;
@@ -130,19 +130,19 @@ struct Odometry::Impl {
     MachineTracker machine;
     PoseSolverConfig solver;
 
-    Pose T_odom_camera;                           ///< as published last
-    Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera, the landmarks given
+    Pose T_odom_camera;                           ///< as in the last estimate
+    Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera, given the landmarks
     Matrix6 lost_body = Matrix6::Zero();          ///< of the motion since the last good frame
     Vector6 velocity = Vector6::Zero();           ///< per second, camera frame
     std::int64_t time_ns = 0;                     ///< of the previous frame
     std::int64_t good_time_ns = 0;                ///< of the last frame with a pose
-    Pose T_odom_good;                             ///< camera pose then
-    double sharpness = 0.0;                       ///< of the image then
+    Pose T_odom_good;                             ///< camera pose at that time
+    double sharpness = 0.0;                       ///< of the image at that time
     double usual_gap_s = 0.0;                     ///< between the two frames before the present one
     bool was_unsure = false;                      ///< the previous frame gave no pose
-    bool without_depth = false;                   ///< the present frame measured too little
-    std::optional<std::int64_t> torn_ns;          ///< the last torn image
-    std::optional<std::int64_t> shallow_ns;       ///< the last frame that measured too little depth
+    bool without_depth = false;                   ///< the present frame measured too little depth
+    std::optional<std::int64_t> torn_ns;          ///< stamp of the last torn image
+    std::optional<std::int64_t> shallow_ns;       ///< stamp of the last frame with too little depth
     MotionEstimate last;
     bool started = false;
     int frames = 0;
@@ -190,7 +190,7 @@ void Odometry::skip(const StereoFrame& frame, const FrameStatus& frame_status) {
     if (frame_status.torn) impl_->torn_ns = frame.time_ns;
 }
 
-/// The landmarks of another source mean nothing to this one.
+/// Switches the source. The landmarks of one source are unknown to the other.
 void Odometry::Impl::feed_by(Tracks& source) {
     if (front == &source) return;
     front = &source;
@@ -228,7 +228,7 @@ MotionEstimate Odometry::Impl::follow(std::int64_t now_ns, Executor& executor) {
     return found(now_ns, pose, evidence, executor);
 }
 
-/// The first frame: its pose is given, its landmarks are new.
+/// Processes the first frame: its pose is given, its landmarks are new.
 MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     started = true;
     T_odom_good = T_odom_camera;
@@ -247,7 +247,7 @@ MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     return estimate;
 }
 
-/// Starts a new map at the present pose; false when the image does not give enough landmarks.
+/// Starts a new map at the present pose. False when the image does not give enough landmarks.
 bool Odometry::Impl::seed_landmarks(Executor& executor) {
     map.clear();
     front->clear();
@@ -284,7 +284,7 @@ PoseSolution Odometry::Impl::solve(std::int64_t now_ns, Executor& executor) {
     front->move(felt.value_or(velocity));
     PoseSolution pose = rough_pose(predict(seconds_from_ns(now_ns - time_ns)), executor);
     if (pose.found && pose.inliers < kFewFollowed * front->kept())
-        pose = rough_pose(pose.T_world_camera, executor);  // better starts find more
+        pose = rough_pose(pose.T_world_camera, executor);  // a better start finds more points
     if (!pose.found) return pose;
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     if (!felt && dt_s > 0.0) front->move(difference(T_odom_good, pose.T_world_camera) / dt_s);
@@ -331,8 +331,8 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     return evidence;
 }
 
-/// base_link is farther from the last good frame than the machine can have moved, beyond three
-/// sigma.
+/// Whether base_link is farther from the last good frame than the machine can have moved, beyond
+/// three sigma.
 bool Odometry::Impl::is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const {
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     const Vector6 motion = difference(body_from(T_odom_good), body_from(pose.T_world_camera));
@@ -366,8 +366,8 @@ int Odometry::Impl::other_motion(const PoseSolution& pose) {
     return other.found ? other.inliers : 0;
 }
 
-/// What a slightly wrong calibration does to a motion: a share of it, and a turn mistaken for a
-/// shift of the scene.
+/// Effect of a small calibration error on a motion: a share of the motion, and a rotation that
+/// looks like a translation of the scene.
 Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
                                               const Pose& T_after,
                                               double depth_m) const {
@@ -394,7 +394,8 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
                           still.update(front->tracks(), map, T, covariance, pose.residual_px);
     if (standing) {
         T = still.T_odom_camera();
-        // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.
+        // The error of a held pose is one error for all frames, not one per frame: the sum of 1/n^2
+        // is 1.64.
         covariance /= static_cast<double>(still.held()) * still.held();
         if (inertial) inertial->stand({T, pose.covariance});
     } else {
@@ -438,7 +439,7 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
     return estimate;
 }
 
-/// From all tracks of the frame, before those that disagree are dropped; for the next one.
+/// Learns the noise for the next frame from all tracks, before outliers are dropped.
 void Odometry::Impl::learn_noise(const Pose& T_odom_camera_seen) {
     noise.listen(rectifier.rig(), solver, front->matches(map), T_odom_camera_seen);
 }
@@ -466,7 +467,7 @@ MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
     const Pose T = reckoned ? reckoned->T_odom_camera : predict(dt_s);
     if (reckoned && dt_s > 0.0) {
         velocity = difference(T_odom_camera, T) / dt_s;
-    } else {  // coast: the velocity decays, the pose comes to a halt
+    } else {  // coast: the velocity decays until the pose stops
         velocity *= std::exp(-dt_s / kCoastTime_s);
     }
     covariance_camera.setZero();
@@ -482,8 +483,8 @@ MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
     return estimate;
 }
 
-/// What the last frame's motion adds to `lost_body` when the motion since the last good frame is as
-/// sure as `reckoned` says.
+/// Covariance that the last frame's motion adds to `lost_body`, if `reckoned` states the covariance
+/// of the motion since the last good frame.
 Matrix6 Odometry::Impl::unseen_since_last(const CameraFix& reckoned) const {
     return positive_part(
         camera_to_body_covariance(reckoned.covariance, rectifier.rig().T_body_camera) - lost_body);
@@ -504,7 +505,7 @@ bool Odometry::Impl::wants_keyframe() const {
     return middle != parallax.end() && *middle > kKeyframeParallax * rectifier.rig().width;
 }
 
-/// Makes the present frame a keyframe and adjusts the map; its pose afterwards.
+/// Makes the present frame a keyframe and adjusts the map. Returns the adjusted pose.
 Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     map.add_keyframe(T);
     for (const Track& track : front->tracks())
@@ -519,9 +520,9 @@ Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     return map.newest().T_odom_camera;
 }
 
-/// The estimate of a frame at `T_camera`, which becomes the previous one. `share` of what both
-/// poses err is an error of the motion between them; `extra` is added to its covariance, in body
-/// axes.
+/// Returns the estimate of a frame at `T_camera`, which becomes the previous frame. `share`: part
+/// of the poses' errors that is an error of the motion between them. `extra`: added to the motion's
+/// covariance, in body axes.
 MotionEstimate Odometry::Impl::publish(const Pose& T_camera,
                                        const Matrix6& covariance,
                                        const Matrix6& extra,

@@ -27,49 +27,49 @@ struct OdometryConfig {
     int min_inliers = 10;
     double ok_residual_px = 1.2;
     double calibration_share = 0.0025;
-    /// Poses err by what their landmarks and pixels err, and share most of both with the pose
-    /// before. After this time they are taken as independent, so that motions over some seconds,
-    /// which the map composes of those between frames, state the error that they have
+    /// Two poses share most errors of their landmarks and pixels. After this time their
+    /// errors count as independent. Motions over several seconds, which the map composes from
+    /// motions between frames, then state the error that they really have
     /// (docs/evidence/accuracy.md).
     double landmark_s = 1.3;
     double lost_speed_m_s = 0.5;
     double lost_turn_rad_s = 0.5;
-    /// What the machine can do, from its file; 0 = unknown. Faster motion is not believed.
+    /// Largest speed and turn rate of the machine; 0 = unknown. Faster motion is rejected.
     double machine_speed_m_s = 0.0;
     double machine_turn_deg_s = 0.0;
     InertialConfig imu;
     void describe(ConfigVisitor& visitor);
 };
 
-/// Stereo (or RGB-D) visual odometry, every frame, on the raw images of both eyes; points are
-/// undistorted as points. Order of a frame: follow the landmarks by Lucas-Kanade from the predicted
-/// motion, find the pose (P3P consensus), align the landmarks' patches in both eyes, refine the
-/// pose; at keyframes add landmarks and adjust the last keyframes together.
+/// Stereo (or RGB-D) visual odometry on the raw images of both cameras; only points are
+/// undistorted. Order of a frame: track the landmarks by Lucas-Kanade from the predicted motion,
+/// find the pose (P3P and RANSAC), align the landmarks' patches in both cameras, refine the pose.
+/// At keyframes add landmarks and adjust the last keyframes together (bundle adjustment).
 ///
-/// Standing still is held exactly: a frame that statistics cannot tell from the pose where the
-/// camera stopped keeps that pose. While lost the pose coasts to a halt with growing covariance,
-/// and the landmarks are kept for `bridge_s` to find the way back; then they are seeded anew.
+/// Standing still causes no drift: a frame whose pose does not differ significantly from the pose
+/// at the stop keeps that pose. While lost, the pose coasts to a halt with growing covariance.
+/// Landmarks are kept for `bridge_s` to recover the pose; then new landmarks are seeded.
 ///
-/// Where the rig says how long its rolling shutter reads an image, points are brought to the stamp
-/// by the motion of the frame: that of the IMU, else the mean one since the frame before. The first
-/// frame is taken for one of a camera at rest.
+/// If the rig states the readout time of its rolling shutter, the motion of the frame moves points
+/// to the frame's stamp: the IMU's motion, else the mean motion since the previous frame. The first
+/// frame is treated as a frame of a camera at rest.
 ///
-/// With an IMU the frames' samples predict the motion, and every pose comes from the points and the
-/// preintegrated readings together (`inertial_solver`), the first second apart, from which gravity,
-/// velocity and the gyroscope's bias are found. Odom is not turned by what the IMU says about
-/// gravity. While lost the IMU carries the pose for `imu.dead_reckoning_s`. When it contradicts
-/// vision for some time, vision goes on alone and the health is degraded. When samples are missing
-/// vision goes on alone too, until the IMU has started anew; from the second such frame on the
-/// reason is `imu_gap`, the health stays ok.
+/// With an IMU, the samples of a frame predict the motion, and points and preintegrated readings
+/// together give the pose (`inertial_solver`). The first second of vision only serves to find
+/// gravity, velocity and gyroscope bias. The IMU's gravity never rotates odom. While lost, the IMU
+/// carries the pose for `imu.dead_reckoning_s`. If the IMU contradicts vision for some time, vision
+/// continues alone and the health is DEGRADED. If samples are missing, vision also continues alone
+/// until the IMU has started again; from the second such frame on the reason is `imu_gap` and the
+/// health stays OK.
 ///
-/// Where the frames bring what the machine says of its own motion (`machine_motion`), that predicts
-/// when there is no IMU, weighs in by its covariance, and carries the pose while lost. When it
-/// contradicts vision for some time, vision goes on alone and the health is degraded.
+/// Frames may bring the machine's own motion (`machine_motion`). It predicts the motion if there is
+/// no IMU, improves the pose by its covariance, and carries the pose while lost. If it contradicts
+/// vision for some time, vision continues alone and the health is DEGRADED.
 ///
-/// `update` is serial apart from what it gives to the executor; any executor gives the same bytes.
+/// `update` is serial except for the executor's work. Every executor gives the same bytes.
 class Odometry {
   public:
-    /// `rectifier` must outlive the odometry. Without `imu` the frames' samples are not used.
+    /// `rectifier` must outlive the odometry. Without `imu` the samples of the frames are not used.
     Odometry(const OdometryConfig& config,
              const camera::Rectifier& rectifier,
              const std::optional<camera::ImuMount>& imu = std::nullopt);
@@ -77,19 +77,19 @@ class Odometry {
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;
 
-    /// Pose of base_link at the first frame (gravity aligned); call before the first update.
+    /// Sets base_link's pose at the first frame (gravity aligned). Call before the first update.
     void start_at(const Pose& T_odom_body);
-    /// Follows the frame. Never throws, never jumps; health and reason say what happened. A frame
-    /// whose images were there before, or are torn, is LOST and skipped
+    /// Tracks the frame. Never throws, and the pose never jumps; health and reason say what
+    /// happened. A frame with repeated or torn images is LOST and skipped
     /// (camera::FrameIntegrityCheck).
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
-    /// The same for a frame that was found to be new and whole already.
+    /// The same for a frame that has already passed the frame integrity check.
     [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
-    /// The same by points that were found elsewhere: all of them are used, `sigma_px` is their
-    /// noise. A change between images and points costs one LOST frame, which seeds new landmarks.
+    /// The same for points from another source, all of which are used with the noise `sigma_px`. A
+    /// change between images and points costs one LOST frame, which seeds new landmarks.
     [[nodiscard]] MotionEstimate update(const PointFrame& frame);
-    /// Instead of `update_whole` for a frame whose images are not worth it, as its `arrival` says:
-    /// keeps its inertial samples for the next one.
+    /// Replaces `update_whole` for a frame whose images are repeated or torn, as `frame_status`
+    /// says. Keeps the frame's IMU samples for the next frame.
     void skip(const StereoFrame& frame, const FrameStatus& frame_status);
 
   private:

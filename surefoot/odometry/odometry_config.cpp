@@ -4,30 +4,34 @@
 namespace surefoot::odometry {
 
 void OdometryConfig::describe(ConfigVisitor& visitor) {
-    visitor.integer("max_tracks", max_tracks, 40, 2000, "landmarks followed at the same time");
+    visitor.integer("max_tracks", max_tracks, 40, 2000, "landmarks tracked at the same time");
     visitor.integer("grid_columns", grid_columns, 2, 100, "cells over which corners are spread");
     visitor.integer("grid_rows", grid_rows, 2, 100, "cells over which corners are spread");
-    visitor.number(
-        "min_depth_m", min_depth_m, 0.05, 10.0, "nearest point matched between the eyes");
-    visitor.number("sigma_px",
-                   sigma_px,
+    visitor.number("min_depth_m",
+                   min_depth_m,
                    0.05,
-                   3.0,
-                   "noise of an aligned point, per eye and axis; more where it is measured");
-    visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
+                   10.0,
+                   "nearest point that is matched between the cameras");
     visitor.number(
-        "still_parallax_px",
-        still_parallax_px,
-        0.0,
+        "sigma_px",
+        sigma_px,
+        0.05,
         3.0,
-        "median parallax, beside its noise, below which standing still is tested; 0 = never");
+        "noise of an aligned point per camera and axis; a larger measured noise replaces it");
+    visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
+    visitor.number("still_parallax_px",
+                   still_parallax_px,
+                   0.0,
+                   3.0,
+                   "below this median parallax, in addition to its noise, the camera may stand "
+                   "still; 0 = never");
     visitor.number("bridge_s",
                    bridge_s,
                    0.0,
                    5.0,
                    "how long landmarks are kept while lost, before new ones are seeded");
     visitor.number(
-        "max_gap_s", max_gap_s, 0.05, 60.0, "longer pauses between frames are a time gap");
+        "max_gap_s", max_gap_s, 0.05, 60.0, "a longer pause between frames is a time gap");
     visitor.integer("ok_inliers", ok_inliers, 10, 1000, "fewer agreeing points degrade the health");
     visitor.integer("min_inliers", min_inliers, 6, 1000, "fewer agreeing points mean lost");
     visitor.number("ok_residual_px",
@@ -49,12 +53,12 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    machine_speed_m_s,
                    0.0,
                    100.0,
-                   "fastest base_link can move; 0 = unknown; the machine file sets it");
+                   "largest speed of base_link; 0 = unknown; the machine file sets it");
     visitor.number("machine_turn_deg_s",
                    machine_turn_deg_s,
                    0.0,
                    3600.0,
-                   "fastest it can be turned; 0 = unknown; the machine file sets it");
+                   "largest turn rate of base_link; 0 = unknown; the machine file sets it");
     visitor.number(
         "lost_speed_m_s", lost_speed_m_s, 0.01, 100.0, "one sigma of the unseen speed while lost");
     visitor.number("lost_turn_rad_s",
@@ -71,7 +75,7 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    noise.gyro_density_rad_s_sqrt_hz,
                    1e-6,
                    1.0,
-                   "white noise of the gyroscope, with what else is wrong with it on a machine");
+                   "white noise of the gyroscope, including its other errors on a machine");
     visitor.number("accel_density_m_s2_sqrt_hz",
                    noise.accel_density_m_s2_sqrt_hz,
                    1e-5,
@@ -98,18 +102,20 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    1e4,
                    "readings at it are not used; 0 = unknown");
     visitor.number("max_gap_s", limits.max_gap_s, 1e-3, 1.0, "longest time without a sample");
-    visitor.number("gravity_m_s2", gravity_m_s2, 9.7, 9.9, "its magnitude where the machine is");
+    visitor.number(
+        "gravity_m_s2", gravity_m_s2, 9.7, 9.9, "magnitude of gravity at the place of use");
     visitor.number("gyro_bias_sigma_rad_s",
                    gyro_bias_sigma_rad_s,
                    1e-5,
                    1.0,
-                   "what the start leaves open of the gyroscope's bias");
+                   "one sigma of the gyroscope's bias after the initialisation");
     visitor.number("accel_bias_sigma_m_s2",
                    accel_bias_sigma_m_s2,
                    1e-4,
                    5.0,
-                   "bias of the accelerometer when it starts");
-    visitor.number("start_s", start_s, 0.2, 10.0, "time of vision from which the IMU starts");
+                   "one sigma of the accelerometer's bias at the initialisation");
+    visitor.number(
+        "start_s", start_s, 0.2, 10.0, "duration of vision from which the IMU is initialised");
     visitor.number("dead_reckoning_s",
                    dead_reckoning_s,
                    0.0,

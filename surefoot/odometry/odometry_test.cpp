@@ -42,7 +42,7 @@ void expect_valid(const MotionEstimate& m) {
     EXPECT_GE(m.relative_covariance.diagonal().minCoeff(), 0.0);
 }
 
-/// Somebody before the left `share` of the view: a board 0.9 m ahead that keeps pace with the
+/// A person in front of the left `share` of the view: a board 0.9 m ahead that moves with the
 /// camera.
 void step_in_front(const camera::StereoRig& rig, double share, StereoFrame& frame) {
     constexpr double kAway_m = 0.9;
@@ -79,7 +79,7 @@ TEST(Odometry, SomebodyWhoStepsInIsNamedAndNotFollowed) {
             if (i >= 10) step_in_front(run.rig, share, frame);
             const auto m = run.odometry.update(frame, serial);
             expect_valid(m);
-            if (i == 12) {  // two frames later; nothing is known of the board in its first one
+            if (i == 12) {  // two frames later; in its first frame the board is unknown
                 EXPECT_EQ(m.health, Health::degraded) << share;
                 EXPECT_STREQ(to_string(m.reason), "moving_scene") << share;
             }
@@ -87,7 +87,7 @@ TEST(Odometry, SomebodyWhoStepsInIsNamedAndNotFollowed) {
                 std::max(worst_m, (run.left_camera(m).translation_m - truth.translation_m).norm());
         }
         std::printf("worst position error %.2f mm\n", 1e3 * worst_m);
-        EXPECT_LT(worst_m, 0.020) << share;  // the camera went 0.2 m meanwhile
+        EXPECT_LT(worst_m, 0.020) << share;  // the camera moved 0.2 m meanwhile
     }
 }
 
@@ -109,7 +109,7 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
                 EXPECT_STREQ(to_string(m.reason), swapped ? "eyes_exchanged" : "poor_geometry")
                     << i;
             }
-            // A motion that began at a pose that was not sure; depth must come again for some time.
+            // A motion that began at an uncertain pose; depth must be measured again for some time.
             const bool unsure =
                 swapped ? i == 14 : seconds_from_ns(frame.time_ns - last_wrong_ns) <= 0.5;
             if (i >= 14) {
@@ -125,7 +125,7 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
     }
 }
 
-/// Points that seem to agree are found in such images, too, and landmarks made of them are wrong.
+/// Even such images contain points that seem to agree; their landmarks are wrong.
 TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -145,7 +145,7 @@ TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
     }
 }
 
-/// Nobody has looked at the frames before: the odometry sees for itself that a picture is old.
+/// No earlier check of the frames: the odometry itself must detect a repeated image.
 TEST(Odometry, AnImageThatWasThereBeforeIsNoMachineThatStands) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -167,14 +167,14 @@ TEST(Odometry, AnImageThatWasThereBeforeIsNoMachineThatStands) {
                                : "none")
             << i;
         if (old) {
-            EXPECT_GT(m.relative_covariance(0, 0), 0.0) << "motion may have gone unseen";
+            EXPECT_GT(m.relative_covariance(0, 0), 0.0) << "the camera may have moved unseen";
             EXPECT_EQ(m.inliers, 0);
         }
     }
 }
 
-/// The rows tell of the first torn image alone: the later ones lack what never came. All are
-/// DEGRADED or LOST, and so are those of the second after them.
+/// The rows reveal only the first torn image; the later ones lack data that never arrived. All of
+/// them are DEGRADED or LOST, and so are the frames of the following second.
 TEST(Odometry, AfterATornImageTheNextOnesAreSuspect) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -222,13 +222,13 @@ TEST(Odometry, FollowsAHandHeldCurve) {
     EXPECT_LT(worst_m, 0.010);  // 0.3 m path, walls up to 3 m away, 352 px wide images
 }
 
-/// The curve, begun from rest within half a second.
+/// The same curve, started from rest within half a second.
 Pose from_rest(double index) {
     const double t = 0.05 * std::max(index, 0.0);
     return truth_at(20.0 * (t - 0.2 * std::tanh(t / 0.2)));
 }
 
-/// Rms position error on the way of a camera that reads its rows out in 30 ms.
+/// Rms position error along the path of a camera with 30 ms readout.
 double rolling_error_m(const camera::StereoRig& camera_rig, const camera::StereoRig& known_rig) {
     Follower run(known_rig);
     Serial serial;
@@ -251,7 +251,8 @@ TEST(Odometry, RowsOfARollingShutterAreBroughtToTheStamp) {
     const double known_m = rolling_error_m(rolling, rolling);
     const double unknown_m = rolling_error_m(rolling, global);
     std::printf(
-        "rms position error: global shutter %.2f mm, rolling %.2f mm, rolling and not told "
+        "rms position error: global shutter %.2f mm, rolling %.2f mm, rolling with unknown readout "
+        "time "
         "%.2f mm\n",
         1e3 * global_m,
         1e3 * known_m,
@@ -286,7 +287,7 @@ TEST(Odometry, StandingStillIsExact) {
         const auto m = run.odometry.update(render_frame(run.rig, truth_at(0), i, 4.0), serial);
         if (i == 0) start = m.T_odom_body;
         variance += m.relative_covariance(0, 0);
-        // The first frame after the start may settle within its noise; then nothing moves.
+        // The first frame after the start may move within its noise; then nothing moves.
         const double moved_m = (m.T_odom_body.translation_m - start.translation_m).norm();
         EXPECT_LT(moved_m, 0.5e-3) << "frame " << i;
         if (i > 2) {
@@ -333,7 +334,7 @@ TEST(Odometry, BlackFramesAreLostForBlurAndBridged) {
             EXPECT_LT(m.T_previous_body.translation_m.norm(), 0.05) << "jump in frame " << i;
         }
         if (i == 14) {
-            EXPECT_EQ(m.health, Health::degraded) << "found again must be said";
+            EXPECT_EQ(m.health, Health::degraded) << "a recovered pose must be degraded";
             EXPECT_STREQ(to_string(m.reason), "recovered");
         }
         if (i > 14) {
@@ -365,7 +366,7 @@ TEST(Odometry, LongLossStartsANewMapWithoutAJump) {
     EXPECT_LE(recovered, 31);
 }
 
-/// What the joints say of the motion from one frame of the curve to the next.
+/// Motion that the joints report from one frame of the curve to the next.
 MachineMotion known_motion(const Follower& run, int index, double sigma_m, double sigma_rad) {
     const Pose T_left_body = run.rig.body_from_left().inverse();
     MachineMotion motion;
@@ -383,7 +384,7 @@ TEST(Odometry, TheMachineCarriesThePoseInTheDark) {
     for (int i = 0; i < 40; ++i) {
         StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
         frame.machine_motion = known_motion(run, i, 2e-3, 1e-3);
-        const bool black = i >= 8 && i < 28;  // a second, in full motion
+        const bool black = i >= 8 && i < 28;  // one second, in full motion
         if (black) {
             frame.left.fill(0);
             frame.right.fill(0);
@@ -398,7 +399,7 @@ TEST(Odometry, TheMachineCarriesThePoseInTheDark) {
         EXPECT_LT(error_m, 0.01) << i;
         if (black) dark = compose_covariance(dark, m.T_previous_body, m.relative_covariance);
     }
-    // Twenty motions of 2 mm each; what the turns add is the lever arm's.
+    // Twenty motions of 2 mm each; the lever arm adds the effect of the rotations.
     EXPECT_GT(std::sqrt(dark(0, 0)), 2e-3 * std::sqrt(19.0));
     EXPECT_LT(std::sqrt(dark(0, 0)), 0.02);
 }
@@ -432,13 +433,13 @@ TEST(Odometry, WhatNoMachineCanDoIsNotBelieved) {
     Pose before;
     for (int i = 0; i < 20; ++i) {
         Pose T = truth_at(i);
-        if (i >= 10) T.translation_m.x() -= 0.06;  // within a frame, for 25 mm
+        if (i >= 10) T.translation_m.x() -= 0.06;  // within one frame; the real step is 25 mm
         const auto m = run.odometry.update(render_frame(run.rig, T, i, kNoise_grey), serial);
         if (i == 10) {
             EXPECT_EQ(m.health, Health::lost);
             EXPECT_EQ(m.reason, HealthReason::beyond_machine);
             EXPECT_LT((before.inverse() * m.T_odom_body).translation_m.norm(), 0.03);
-        } else if (i > 0 && (i < 10 || i > 14)) {  // it can have come that far by then
+        } else if (i > 0 && (i < 10 || i > 14)) {  // it can have moved that far by then
             EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
             EXPECT_LT((run.left_camera(m).translation_m - T.translation_m).norm(), 0.01) << i;
         }
@@ -507,7 +508,7 @@ TEST(Odometry, StampsThatDoNotGrowAndDroppedFramesAreNamed) {
     }
 }
 
-/// What the images show after one that was skipped is found again, not followed.
+/// After a skipped frame, points are found again instead of tracked.
 TEST(Odometry, AfterSkippedFramesThePoseIsRecovered) {
     Follower run(testing::small_rig());
     Serial serial;

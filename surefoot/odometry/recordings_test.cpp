@@ -198,7 +198,7 @@ std::optional<Recording> rendered_room(const std::string& folder) {
     if (!recording) return recording;
     for (const StampedPose& pose : read_tum(folder + "/groundtruth.tum"))
         recording->T_world_camera.push_back(pose.T_world_body);
-    // Frames are asked for in order.
+    // Frames must be requested in order.
     recording->frame = [frame = recording->frame,
                         imu = read_imu(folder + "/mav0/imu0/data.csv"),
                         before_ns = std::int64_t{0}](int index) mutable {

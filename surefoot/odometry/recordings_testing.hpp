@@ -12,8 +12,8 @@
 
 namespace surefoot::odometry::testing {
 
-/// A recording of the test data, with the calibration written out literally: the readers of `io`
-/// are out of reach from here.
+/// A recording of the test data. Its calibration is a literal in the code, because this module must
+/// not include the readers of `io`.
 struct Recording {
     camera::StereoRig rig;
     int frames = 0;
@@ -21,31 +21,31 @@ struct Recording {
     std::vector<Pose> T_world_camera;  ///< truth of the left camera, one per frame; may be empty
 };
 
-/// A recording of which the images are gone and tracked points are left.
+/// A recording without images: only tracked points remain.
 struct PointRecording {
     camera::StereoRig rig;  ///< with its IMU
     std::vector<PointFrame> frames;
-    /// Truth of the left camera, one per frame; nothing where it is not known.
+    /// Truth of the left camera, one per frame; empty where it is unknown.
     std::vector<std::optional<Pose>> T_world_camera;
 };
 
 /// SUREFOOT_DATA_DIR, else the folder beside the sources.
 [[nodiscard]] std::string data_folder();
 
-// Each gives nothing when its data is not there.
+// Each function returns nothing when its data are not there.
 [[nodiscard]] std::optional<Recording> kitti_city();
 [[nodiscard]] std::optional<Recording> zed_office();
 [[nodiscard]] std::optional<Recording> euroc_still();
-/// A folder written by render_room.py, with its IMU.
+/// A folder that render_room.py has written, with its IMU samples.
 [[nodiscard]] std::optional<Recording> rendered_room(const std::string& folder);
 
-/// Corners of the AprilGrid in front of a hand-held EuRoC rig: 1439 frames, two parts with the grid
-/// in view and 1.2 s between them. Truth by PnP. Nothing when tar cannot unpack it.
+/// Corners of the AprilGrid in front of a hand-held EuRoC rig: 1439 frames in two parts with the
+/// grid in view, 1.2 s apart. Truth by PnP. Returns nothing when tar cannot unpack the data.
 [[nodiscard]] std::optional<PointRecording> euroc_april();
 
-/// The rig of EuRoC's V1 recordings; its IMU is the body.
+/// The rig of EuRoC's V1 recordings; its IMU frame is the body frame.
 [[nodiscard]] camera::StereoRig euroc_rig();
-/// Rows of stamp [ns], x, y, z [rad/s], x, y, z [m/s^2]; empty without the file.
+/// Reads rows of stamp [ns], x, y, z [rad/s], x, y, z [m/s^2]; empty if the file is missing.
 [[nodiscard]] std::vector<ImuSample> read_imu(const std::string& path);
 /// The samples after `after_ns` and up to `until_ns`.
 [[nodiscard]] std::vector<ImuSample> samples_between(const std::vector<ImuSample>& imu,

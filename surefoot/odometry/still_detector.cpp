@@ -11,12 +11,12 @@
 namespace surefoot::odometry {
 namespace {
 
-/// 99.9 % of a chi-square variable with six degrees of freedom lies below.
+/// 99.9 % quantile of a chi-square variable with six degrees of freedom.
 constexpr double kChi2Limit = 22.46;
-/// Median distance of two measurements of a resting point, by the noise of one axis: sqrt(2) of it
-/// for the difference, sqrt(2 ln 2) for the median of a Rayleigh variable.
+/// Median distance of two measurements of a resting point, relative to the noise of one axis: a
+/// factor sqrt(2) for the difference, and sqrt(2 ln 2) for the median of a Rayleigh variable.
 constexpr double kMedianOfNoise = 1.67;
-constexpr std::size_t kMinShared = 20;  ///< points that both frames must see
+constexpr std::size_t kMinShared = 20;  ///< least number of points that both frames see
 
 }  // namespace
 
@@ -25,7 +25,7 @@ bool StillDetector::update(std::span<const Track> tracks,
                            const Pose& T_odom_camera,
                            const Matrix6& covariance,
                            double residual_px) {
-    // Marks and tracks are both few: index the marks by slot.
+    // Both lists are short: index the marks by slot.
     std::vector<const Mark*> by_slot(static_cast<std::size_t>(map.slots()), nullptr);
     for (const Mark& mark : anchor_)
         if (mark.slot < map.slots() && map.at(mark.slot).id == mark.id)

@@ -8,18 +8,18 @@
 
 namespace surefoot::odometry {
 
-/// Decides whether the camera still stands where it stopped. The hypothesis "no motion since the
-/// anchor" is kept when the points have hardly moved in the image (median parallax, beside what
-/// their noise makes of it) and the estimated motion is not significant (Mahalanobis distance).
-/// Comparing with the anchor and not with the previous frame lets slow motion add up until it
-/// shows.
+/// Decides whether the camera still stands where it stopped (the anchor). It stands
+/// while the median parallax of the points, corrected for their noise, is small and the
+/// estimated motion is not significant (Mahalanobis distance). The comparison is with
+/// the anchor, not with the previous frame, so that slow motion adds up until it is
+/// detected.
 class StillDetector {
   public:
     explicit StillDetector(double parallax_px) : parallax_px_(parallax_px) {}
 
     void clear() { anchor_.clear(); }
-    /// True when the frame with these inliers stands at the anchor; else it becomes the anchor.
-    /// `residual_px`: rms of their reprojection errors, each axis.
+    /// True when the frame with these tracks stands at the anchor; otherwise the frame becomes the
+    /// anchor. `residual_px`: rms of the tracks' reprojection errors, per axis.
     [[nodiscard]] bool update(std::span<const Track> tracks,
                               const LandmarkMap& map,
                               const Pose& T_odom_camera,
@@ -27,7 +27,7 @@ class StillDetector {
                               double residual_px);
 
     [[nodiscard]] const Pose& T_odom_camera() const noexcept { return T_odom_camera_; }
-    /// Frames held since the anchor.
+    /// Number of frames that stood at the anchor.
     [[nodiscard]] int held() const noexcept { return held_; }
 
   private:

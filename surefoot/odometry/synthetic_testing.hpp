@@ -15,7 +15,7 @@
 
 namespace surefoot::odometry::testing {
 
-/// A ZED at 672x376, rectified; its camera is the body.
+/// A rectified ZED at 672x376; the camera frame is the body frame.
 inline camera::RectifiedRig rectified_rig() {
     camera::RectifiedRig rig;
     rig.width = 672;
@@ -117,7 +117,7 @@ inline const std::vector<Eigen::Vector3d>& rays_of(const camera::Camera& camera)
     return cache.back().second;
 }
 
-/// `T_world_camera_at_row` of every row; depth, where asked for, is along z of the eye.
+/// Renders an image with one camera pose per row; fills `depth_m` (along z), if given.
 template <typename PoseOfRow>
 GreyImage render_rows(const camera::Camera& camera,
                       const PoseOfRow& T_world_camera_at_row,
@@ -171,8 +171,8 @@ inline StereoFrame render_frame(const camera::StereoRig& rig,
     return frame;
 }
 
-/// Frame of a rig with a rolling shutter; `T_world_left_at` a time in seconds after the stamp. The
-/// middle of the image is exposed at the stamp.
+/// Frame of a rig with a rolling shutter. `T_world_left_at` gives the pose for a time [s] after the
+/// stamp. The middle row is exposed at the stamp.
 template <typename PoseAt>
 StereoFrame render_rolling_frame(const camera::StereoRig& rig,
                                  const PoseAt& T_world_left_at,

@@ -9,8 +9,8 @@
 
 namespace surefoot::odometry::testing {
 
-/// Points in the view of a stereo camera that moved by `T_world_camera` since it stood at the
-/// origin and measured them there.
+/// Points in view of a stereo camera. The camera measured them at the origin and then moved by
+/// `T_world_camera`.
 struct World {
     camera::RectifiedRig rig = rectified_rig();
     PoseSolverConfig config;

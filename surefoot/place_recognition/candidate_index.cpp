@@ -15,13 +15,14 @@ constexpr std::size_t kTables = 8;
 constexpr std::size_t kChunk = 14;
 constexpr std::size_t kKeyBits = 16;
 constexpr std::size_t kBuckets = std::size_t{1} << kKeyBits;
-constexpr std::uint16_t kCrowded = 200;     ///< entries from which on a bucket tells nothing
-constexpr std::int64_t kVoteScale = 50400;  ///< divided by a bucket's size: whole numbers
+constexpr std::uint16_t kCrowded = 200;     ///< from this many entries on, a bucket is ignored
+constexpr std::int64_t kVoteScale = 50400;  ///< divided by a bucket's size; gives whole numbers
 constexpr std::uint64_t kBitSeed = 256;
 
-using Key = std::array<std::uint8_t, kKeyBits>;  ///< numbers of the bits of a descriptor
+using Key = std::array<std::uint8_t, kKeyBits>;  ///< indices of the chosen bits of a descriptor
 
-/// Bits of each table, no bit twice in a table; drawn once, the same on every machine.
+/// Chosen bits of each table, no bit twice in a table. Drawn with a fixed seed: the same on every
+/// machine.
 std::array<Key, kTables> draw_keys() {
     std::array<Key, kTables> keys{};
     Rng rng(kBitSeed);
@@ -36,7 +37,7 @@ std::array<Key, kTables> draw_keys() {
     return keys;
 }
 
-/// Bucket of a descriptor, counted through all tables.
+/// Bucket number of a descriptor, counted through all tables.
 std::size_t bucket_of(std::size_t table, const Descriptor& descriptor) {
     static const std::array<Key, kTables> keys = draw_keys();
     std::size_t bucket = 0;
@@ -73,7 +74,7 @@ std::vector<Candidate> CandidateIndex::find(std::span<const Feature> features, i
             const std::size_t bucket = bucket_of(table, feature.descriptor);
             if (sizes_[bucket] == 0 || sizes_[bucket] == kCrowded) continue;
             const std::int64_t vote = kVoteScale / sizes_[bucket];
-            std::size_t held = (sizes_[bucket] - 1U) % kChunk + 1;  // of the first chunk
+            std::size_t held = (sizes_[bucket] - 1U) % kChunk + 1;  // entries in the first chunk
             for (std::int32_t at = first_[bucket]; at >= 0;) {
                 const Chunk& chunk = chunks_[static_cast<std::size_t>(at)];
                 for (std::size_t i = 0; i < held; ++i) votes[chunk.keyframes[i]] += vote;

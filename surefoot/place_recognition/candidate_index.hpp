@@ -10,31 +10,31 @@
 
 namespace surefoot::place_recognition {
 
-/// A keyframe that may show what a view shows.
+/// A keyframe that may show the same place as a view.
 struct Candidate {
     int keyframe = 0;
-    std::int64_t votes = 0;  ///< more = more alike; comparable within one query only
+    std::int64_t votes = 0;  ///< more = more similar; comparable within one query only
 };
 
-/// Which keyframes have descriptors like those of a view, without comparing with all of them:
-/// descriptors that agree in 16 chosen bits share a bucket, in eight tables (locality sensitive
-/// hashing, Indyk and Motwani 1998). A vote counts less the more descriptors share the bucket;
-/// crowded buckets (what every wall shows) are not asked. 3.1 MB, and at most 256 bytes a feature;
-/// the more features, the fewer.
+/// Finds the keyframes whose descriptors resemble those of a view, without comparing all of them.
+/// Descriptors that agree in 16 chosen bits share a bucket, in eight tables (locality sensitive
+/// hashing, Indyk and Motwani 1998). The more descriptors share a bucket, the less one vote counts;
+/// crowded buckets (texture of any wall) are ignored. Memory: 3.1 MB plus at most 256 bytes per
+/// feature, fewer per feature as features increase.
 class CandidateIndex {
   public:
     CandidateIndex();
-    /// `keyframe` is below kMostKeyframes.
+    /// Adds a keyframe; its number must be below kMostKeyframes.
     void add(int keyframe, std::span<const Feature> features);
-    /// The keyframes below `end` by falling votes, of equal ones the older first.
+    /// The keyframes below `end` with the most votes first; of equal ones the older comes first.
     [[nodiscard]] std::vector<Candidate> find(std::span<const Feature> features, int end) const;
 
   private:
-    /// Part of a bucket, half a cache line: entries one by one, all over the memory, were two
-    /// thirds of a query's time.
+    /// Part of a bucket, half a cache line long. With single entries spread over the memory,
+    /// reading them took two thirds of a query's time.
     struct Chunk {
         std::array<std::uint16_t, 14> keyframes{};
-        std::int32_t next = -1;  ///< a full one, -1 = none
+        std::int32_t next = -1;  ///< next full chunk, -1 = none
     };
     static_assert(sizeof(Chunk) == 32);
 

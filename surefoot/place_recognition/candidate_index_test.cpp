@@ -37,7 +37,7 @@ TEST(CandidateIndex, AsksNoKeyframeFromTheEndOn) {
     EXPECT_TRUE(index.find(features_of(7, 0), 0).empty());
 }
 
-/// Of a bucket that is shared by `count`, which are stored by fourteen.
+/// Votes of a bucket that `count` entries share, stored in chunks of fourteen.
 TEST(CandidateIndex, EveryKeyframeOfABucketHasOneVoteInEachTable) {
     for (const int count : {1, 13, 14, 15, 28, 29, 199}) {
         CandidateIndex index;

@@ -13,10 +13,10 @@ namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kScale = 1.2;  ///< between two levels of the pyramid
-constexpr int kBorder_px = 31;  ///< half of what a descriptor looks at, and its blur
+constexpr int kBorder_px = 31;  ///< half the area that a descriptor and its blur use
 constexpr int kPatch_px = 31;
 
-/// Disparity of a corner; NaN where it is unknown or not to be trusted.
+/// Disparity of a corner; NaN where it is unknown or unreliable.
 float disparity_at(const DescribeConfig& config, const DepthImage& depth, float u, float v) {
     const Image<float>& disparity_px = depth.disparity_px;
     const auto nearest = nearest_pixel(static_cast<double>(u),
@@ -31,14 +31,14 @@ float disparity_at(const DescribeConfig& config, const DepthImage& depth, float 
     return sure ? d : std::nanf("");
 }
 
-/// The strongest ones first; equal ones in image order.
+/// Order: the strongest first, equal ones in image order.
 bool stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
     if (a.response != b.response) return a.response > b.response;
     if (a.octave != b.octave) return a.octave < b.octave;
     return a.pt.y != b.pt.y ? a.pt.y < b.pt.y : a.pt.x < b.pt.x;
 }
 
-/// The strongest corners of each cell of the grid, so that one rich spot does not take all.
+/// Keeps the strongest corners of each grid cell, so that one rich area does not use up the limit.
 void spread(const DescribeConfig& config, cv::Size size, std::vector<cv::KeyPoint>& corners) {
     std::sort(corners.begin(), corners.end(), stronger);
     std::vector<int> count(static_cast<std::size_t>(config.grid_columns * config.grid_rows));
@@ -89,7 +89,7 @@ std::vector<Feature> describe(const DescribeConfig& config,
         const cv::Point2f& at = corners[i].pt;
         features[i].pixel_px = {at.x, at.y, at.x - disparity_at(config, depth, at.x, at.y)};
         const std::uint8_t* bytes = rows.ptr<std::uint8_t>(static_cast<int>(i));
-        for (std::size_t k = 0; k < 32; ++k)  // the first byte lowest, on every machine
+        for (std::size_t k = 0; k < 32; ++k)  // the first byte is the lowest, on every machine
             features[i].descriptor.bits[k / 8] |= std::uint64_t{bytes[k]} << (8 * (k % 8));
     }
     return features;

@@ -10,26 +10,26 @@
 namespace surefoot::place_recognition {
 
 struct DescribeConfig {
-    int fast_threshold = 7;  ///< grey steps; low, because walls have little contrast
-    int pyramid_levels = 6;  ///< each 1.2 times smaller: found again from 0.4 to 2.5 times as far
-    /// Looked at before those without depth are left out: so many that a rich floor does not take
-    /// them all.
+    int fast_threshold = 7;  ///< grey levels; low, because walls have little contrast
+    int pyramid_levels = 6;  ///< each 1.2 times smaller: matches at 0.4 to 2.5 times the distance
+    /// Corners kept before those without depth are removed. Large, so that a floor with much
+    /// texture does not use up all of them.
     int corners = 6000;
-    int grid_columns = 12;  ///< features are spread over this grid
+    int grid_columns = 12;  ///< features are spread over this grid of cells
     int grid_rows = 8;
-    /// Of a cell; the cells of a floor alone (some two thirds of the image) cannot fill the list,
-    /// so that walls, doors and what stands about always have a voice.
+    /// Limit per cell. The cells of a floor (about two thirds of the image) cannot fill the list
+    /// alone, so that walls, doors and objects always contribute.
     int cell_features = 6;
     double max_outlier_probability = 0.3;  ///< of a feature's disparity
-    double min_disparity_px = 2.0;         ///< nearer than some 20 m of a ZED
+    double min_disparity_px = 2.0;         ///< excludes points beyond about 20 m of a ZED
 };
 
-/// Corners of the rectified left image that have depth, spread over the image, with their
-/// descriptors; at most kMostFeatures, in an order that depends on the image alone.
+/// Detects corners of the rectified left image that have depth, spread over the image, and
+/// describes them. At most kMostFeatures, in an order that depends on the image alone.
 ///
-/// Oriented BRIEF (Rublee et al. 2011, ORB) with the orientation left out: the machine stands
-/// upright, so that up is known, and what is turned in the image is another thing. Turns of the
-/// camera about its axis up to some 15 deg are borne.
+/// Oriented BRIEF (Rublee et al. 2011, ORB) without the orientation. The machine stands upright, so
+/// a rotated pattern in the image is another object. Rotations of the camera about its axis up to
+/// about 15 deg are tolerated.
 [[nodiscard]] std::vector<Feature> describe(const DescribeConfig& config,
                                             ImageView<const std::uint8_t> left,
                                             const DepthImage& depth);

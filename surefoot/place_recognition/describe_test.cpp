@@ -17,7 +17,7 @@ constexpr int kHeight = 240;
 /// Corners of the coarsest level lie on a lattice of 1.2^5 px, along both axes.
 constexpr float kQuantum_px = 2.49F * 1.42F;
 
-/// Blocks of random grey, seen `shift_px` further to the right.
+/// Blocks of random grey, moved right by `shift_px`.
 GreyImage blocks(int shift_px) {
     GreyImage image(kWidth, kHeight);
     for (int v = 0; v < kHeight; ++v)
@@ -76,8 +76,7 @@ TEST(Describe, SpreadsFeaturesOverTheImage) {
     for (const int count : quarter) EXPECT_GT(count, 25);
 }
 
-/// Three fifths of the image are a floor that is rich in corners, the rest a wall of little
-/// contrast.
+/// Three fifths of the image are a floor with many corners, the rest is a wall with low contrast.
 TEST(Describe, ARichFloorLeavesRoomForAFaintWall) {
     constexpr int kEdge = kHeight * 2 / 5;
     GreyImage image = blocks(0);
@@ -87,7 +86,7 @@ TEST(Describe, ARichFloorLeavesRoomForAFaintWall) {
     const auto features = describe({}, image.view(), even_depth(10.0F));
     const auto on_wall = std::count_if(
         features.begin(), features.end(), [](const Feature& f) { return f.pixel_px.y() < kEdge; });
-    // Two fifths of the image: at least a quarter of what is described.
+    // Two fifths of the image must have at least a quarter of the features.
     EXPECT_GT(4 * static_cast<std::size_t>(on_wall), features.size());
     EXPECT_GT(features.size() - static_cast<std::size_t>(on_wall), 150U);
 }

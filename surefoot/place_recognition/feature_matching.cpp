@@ -6,9 +6,9 @@
 namespace surefoot::place_recognition {
 namespace {
 
-constexpr int kNone = 257;  ///< more than any distance
+constexpr int kNone = 257;  ///< larger than any distance
 
-/// Best of a row or column of distances; -1 unless it stands out.
+/// Index of the best of a row or column of distances; -1 if it is not clearly the best.
 int best_of(const MatchConfig& config,
             std::span<const Feature> others,
             std::span<const std::uint16_t> distances,

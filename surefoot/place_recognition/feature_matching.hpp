@@ -8,22 +8,22 @@
 
 namespace surefoot::place_recognition {
 
-/// Two features that look like one corner, by their numbers.
+/// Indices of two features that probably show the same corner.
 struct FeatureMatch {
     int candidate = 0;
     int query = 0;
 };
 
 struct MatchConfig {
-    int max_distance = 64;  ///< of two descriptors of one corner; half of what chance gives
-    /// The best must have at most this share of the distance of the best one elsewhere in the
-    /// image, in both images: what is there twice tells nothing.
+    int max_distance = 64;  ///< for two descriptors of one corner; half of the mean by chance
+    /// Largest ratio of the best distance to the best distance elsewhere in the image, in both
+    /// images. A corner that occurs twice in an image is not unique.
     double ratio = 0.85;
-    double elsewhere_px = 12.0;  ///< nearer features may be the same corner once more
+    double elsewhere_px = 12.0;  ///< nearer features may show the same corner
 };
 
-/// Features that are each other's best, without regard to where they are. Every pair is compared;
-/// the result depends on the order of the features only where distances are equal.
+/// Matches features that are each other's best, wherever they are in the image. Compares every
+/// pair. The result depends on the order of the features only where distances are equal.
 [[nodiscard]] std::vector<FeatureMatch> match_features(const MatchConfig& config,
                                                        std::span<const Feature> candidate,
                                                        std::span<const Feature> query);

@@ -13,15 +13,15 @@
 
 namespace surefoot::place_recognition {
 
-/// How the surroundings of a corner look: 256 comparisons of two grey values each.
+/// Descriptor of a corner's surroundings: 256 comparisons of two grey values each.
 struct Descriptor {
     std::array<std::uint64_t, 4> bits{};
     friend bool operator==(const Descriptor&, const Descriptor&) = default;
 };
 
-/// Comparisons that came out differently (Hamming distance), 0 to 256; about 128 by chance.
-/// Inline and without a processor's own counter, which not all have: this is what a query does
-/// most. Sums of ever wider fields (Warren, Hacker's Delight, chapter 5).
+/// Hamming distance: the number of comparisons that differ, 0 to 256; about 128 by chance. A query
+/// spends most of its time here. The function is inline and uses no population-count instruction,
+/// because not all processors have it. Method: Warren, Hacker's Delight, chapter 5.
 [[nodiscard]] inline int distance(const Descriptor& a, const Descriptor& b) noexcept {
     constexpr std::uint64_t kPairs = 0x5555555555555555ULL;
     constexpr std::uint64_t kNibbles = 0x3333333333333333ULL;
@@ -45,30 +45,30 @@ struct Feature {
     Descriptor descriptor;
 };
 
-/// What a rig saw at one instant.
+/// Features that a rig saw at one instant.
 struct View {
     std::int64_t time_ns = 0;
     camera::RectifiedRig rig;
     std::vector<Feature> features;
 };
 
-/// A view and where base_link was. The map frame has z up, so that gravity can be compared.
+/// A view with the pose of base_link. The map frame has z up, so that gravity can be compared.
 struct Keyframe {
     View view;
     Pose T_map_body;
 };
 
-/// What is remembered of a place (home, clinic); its map frame is the odom of the first run there.
+/// Stored keyframes of a place (home, clinic). The map frame is the odom of its first run.
 struct Place {
     std::vector<Keyframe> keyframes;
 
-    /// First reason why it cannot be used, with the value; or nothing.
+    /// The first reason why the place is invalid, with the value in words; or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Bounds of what a place may hold, and so of the time of a query.
+/// Limits of a place. They also bound the time of a query.
 inline constexpr int kMostKeyframes = 500;
-inline constexpr int kMostFeatures = 400;  ///< of a view
+inline constexpr int kMostFeatures = 400;  ///< per view
 inline constexpr double kMostImage_px = 16384.0;
 inline constexpr double kMostDistance_m = 1e4;  ///< of a keyframe from the origin
 

@@ -9,14 +9,14 @@
 namespace surefoot::place_recognition {
 namespace {
 
-/// A keyframe's opinion: where the view was taken in the map, and how many corners say so.
+/// Result for one keyframe: pose of the view in the map, and the number of corners that support it.
 struct Opinion {
     int keyframe = 0;
     Pose T_map_query;
     Comparison comparison;
 };
 
-/// More corners are better; a refused one is worse than any that is not.
+/// More inliers are better; a refused result is worse than any accepted one.
 bool better(const Opinion& a, const Opinion& b) {
     const bool a_good = a.comparison.refusal == Refusal::none;
     const bool b_good = b.comparison.refusal == Refusal::none;
@@ -86,7 +86,7 @@ Answer PlaceMemory::recognise(const View& view, const Eigen::Vector3d& up_body, 
     answer.refusal = best.comparison.refusal;
     if (answer.refusal != Refusal::none) return answer;
     for (const Opinion& other : opinions) {
-        // Of a view without a pose the inliers tell nothing, and without inliers it is no rival.
+        // Without a pose the inliers mean nothing, and without inliers there is no rival.
         if (is_near(
                 best.T_map_query, other.T_map_query, config_.same_m, config_.same_deg * kRadPerDeg))
             continue;

@@ -14,12 +14,12 @@ using testing::view_of;
 constexpr double kNoise_px = 0.3;
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-/// Place number k lies 20 m from the one before.
+/// Place number k lies 20 m from the previous one.
 Pose T_map_place(int k) {
     return {Eigen::Quaterniond::Identity(), {20.0 * k, 0.0, 0.0}};
 }
 
-/// A keyframe at the middle of place `k`, which looks as `look` says.
+/// A keyframe in the middle of place `k`, with the appearance `look`.
 Keyframe keyframe_of(int k, std::uint64_t look) {
     return {view_of(random_corners(500, look), {}, kNoise_px, 100 + look), T_map_place(k)};
 }
@@ -35,7 +35,8 @@ TEST(PlaceMemory, NamesTheKeyframeAmongMany) {
         EXPECT_EQ(answer.refusal, Refusal::none) << k;
         EXPECT_EQ(answer.keyframe, k);
         EXPECT_EQ(answer.rival, 0.0);
-        EXPECT_NE(memory.recognise(view, kUp, k).refusal, Refusal::none) << "it was not asked";
+        EXPECT_NE(memory.recognise(view, kUp, k).refusal, Refusal::none)
+            << "the keyframe was not compared";
     }
 }
 
@@ -48,7 +49,7 @@ TEST(PlaceMemory, TwoPlacesThatLookAlikeAreRefused) {
     const Answer answer = memory.recognise(view, kUp, 3);
     EXPECT_EQ(answer.refusal, Refusal::ambiguous);
     EXPECT_GT(answer.rival, 0.8);
-    // The twin that is not asked is no rival.
+    // A twin that is not compared is no rival.
     EXPECT_EQ(memory.recognise(view, kUp, 2).refusal, Refusal::none);
 }
 

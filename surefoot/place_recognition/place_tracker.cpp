@@ -10,7 +10,7 @@
 namespace surefoot::place_recognition {
 namespace {
 
-/// While odometry was lost the motion is a guess: the pose graph must not be held by it.
+/// While odometry is lost, its motion is a guess, which must not constrain the pose graph.
 constexpr double kLostSigma_m = 2.0;
 constexpr double kLostSigma_rad = 1.0;
 
@@ -55,7 +55,7 @@ void PlaceTracker::forget_pending() {
 void PlaceTracker::add_node() {
     if (lost_) {
         add_sigmas(covariance_, kLostSigma_m, kLostSigma_rad);
-        forget_pending();  // what was seen before belongs to another odom
+        forget_pending();  // earlier recognitions belong to another odom
     }
     if (graph_.nodes() == 0)
         graph_.add_first(last_.T_odom_body);
@@ -122,7 +122,8 @@ Refusal PlaceTracker::confirm(const Answer& answer, int node) {
                 {}};
     add_sigmas(now.covariance, config_.extra_sigma_m, config_.extra_sigma_deg * kRadPerDeg);
     now.T_map_odom = keyframe.T_map_body * now.T_keyframe_node * last_.T_odom_body.inverse();
-    // Compared where the machine is: far from the origin of odom a turn would look like a way.
+    // Compared at the machine's position. Far from the origin of odom, a rotation would look like a
+    // translation.
     const auto agrees = [&](const Pending& other) {
         return is_near(other.T_map_odom * last_.T_odom_body,
                        now.T_map_odom * last_.T_odom_body,
@@ -173,7 +174,7 @@ bool PlaceTracker::commit() {
 void PlaceTracker::remember(View view, int node) {
     if (memory_.keyframes().size() >= static_cast<std::size_t>(kMostKeyframes)) return;
     const Pose& T_map_body = graph_.T_map_body(node);
-    // Of a place that is known already, only new views are worth the room.
+    // For a known place, only new views are worth the memory.
     if (located_ && memory_.covers(T_map_body, config_.keyframe_m, config_.keyframe_deg)) return;
     own_.push_back({static_cast<int>(memory_.keyframes().size()), node});
     memory_.add({std::move(view), T_map_body});
@@ -181,7 +182,7 @@ void PlaceTracker::remember(View view, int node) {
 
 std::optional<Pose> PlaceTracker::T_map_odom() const {
     if (!located_) return std::nullopt;
-    // Not a product that is nearly the identity: nothing was corrected.
+    // Exactly the identity, because nothing was corrected.
     if (graph_.recognitions() == 0) return Pose{};
     return graph_.T_map_body(graph_.nodes() - 1) * T_odom_keyframe_.inverse();
 }

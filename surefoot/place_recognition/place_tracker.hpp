@@ -16,64 +16,64 @@ namespace surefoot::place_recognition {
 struct TrackerConfig {
     DescribeConfig describe;
     MemoryConfig memory;
-    /// A keyframe is made after this way or turn.
+    /// A new keyframe is made after this distance or rotation.
     double keyframe_m = 0.25;
     double keyframe_deg = 12.0;
-    /// The last keyframes show what the present one shows; recognising them tells nothing.
+    /// The last keyframes show the same as the present one and are therefore not recognised.
     int recent_keyframes = 10;
-    /// Keyframes after each other that must name the same T_map_odom before it is believed.
+    /// Successive keyframes that must agree on T_map_odom before it is accepted.
     int confirmations = 2;
-    int max_misses = 1;  ///< keyframes in a row, in between, that may say nothing
+    int max_misses = 1;  ///< keyframes without a result allowed in a row in between
     double agree_m = 0.15;
     double agree_deg = 2.5;
-    /// What a recognition errs beyond its own covariance: landmarks of one view err together.
+    /// Error of a recognition beyond its covariance: landmarks of one view share their errors.
     double extra_sigma_m = 0.01;
     double extra_sigma_deg = 0.2;
     double max_chi2 = 40.0;  ///< of a recognition against the whole graph, 6 degrees of freedom
 };
 
-/// What became of a keyframe that was looked for.
+/// Result of the recognition of one keyframe.
 struct Sighting {
     std::int64_t time_ns = 0;
     Refusal refusal = Refusal::none;
-    int keyframe = -1;   ///< the remembered one that was nearest
+    int keyframe = -1;   ///< the best stored keyframe
     bool saved = false;  ///< it belongs to the saved place, not to this run
     Comparison comparison;
-    std::optional<Pose> T_map_odom;  ///< where the refusal is none
+    std::optional<Pose> T_map_odom;  ///< set if the refusal is none
 };
 
-/// Recognises places along a run and says where its odom lies in the map. Odom itself is never
-/// touched: it does not jump, and the elevation map lives in it.
+/// Recognises places along a run and computes the pose of its odom in the map. Odom itself never
+/// changes: it does not jump, because the elevation map is stored in it.
 ///
-/// Without a saved place the map is this run's odom and T_map_odom is the identity until the run
-/// comes back to where it was. With one, nothing is known of T_map_odom until the place was
-/// recognised in `confirmations` keyframes after each other.
+/// Without a saved place, the map is this run's odom: T_map_odom is the identity until the run
+/// returns to a place that it has seen. With a saved place, T_map_odom is unknown until
+/// `confirmations` successive keyframes recognise the place.
 ///
-/// Call `follow` with every frame's motion, then `see` with those that have depth. Not for several
-/// threads. Same calls, same results, bit by bit on one machine.
+/// Call `follow` with the motion of every frame, then `see` with every frame that has depth. Not
+/// thread-safe. The same calls give the same results, bit by bit on one machine.
 class PlaceTracker {
   public:
-    /// `saved` has no problem().
+    /// `saved` must have no problem().
     explicit PlaceTracker(const TrackerConfig& config, Place saved = {});
 
     void follow(const MotionEstimate& motion);
-    /// Where the frame makes a keyframe: what became of it. Left image and depth are rectified.
+    /// Recognises rectified images as a new keyframe, if one is due; otherwise nothing.
     std::optional<Sighting> see(const camera::RectifiedRig& rig,
                                 ImageView<const std::uint8_t> left,
                                 const DepthImage& depth);
 
-    /// Of the last frame; nothing until the saved place is recognised.
+    /// T_map_odom of the last frame; nothing until the saved place is recognised.
     [[nodiscard]] std::optional<Pose> T_map_odom() const;
     [[nodiscard]] bool located() const noexcept { return located_; }
-    /// Keyframes of this run.
+    /// Number of keyframes of this run.
     [[nodiscard]] int keyframes() const noexcept { return graph_.nodes(); }
     [[nodiscard]] const std::vector<Sighting>& sightings() const noexcept { return sightings_; }
-    /// The saved place and the keyframes of this run that show more of it. Without a saved place
-    /// all of this run; with one that was not recognised the saved place as it was.
+    /// The saved place plus the keyframes of this run that add to it. Without a saved place: all
+    /// keyframes of this run. If the saved place was not recognised: that place, unchanged.
     [[nodiscard]] Place place() const;
 
   private:
-    /// A recognition that waits for others to agree.
+    /// A recognition that waits for confirmation.
     struct Pending {
         int node = 0;
         int keyframe = 0;
@@ -81,7 +81,7 @@ class PlaceTracker {
         Matrix6 covariance = Matrix6::Zero();
         Pose T_map_odom;
     };
-    /// A keyframe of this run that is remembered.
+    /// A keyframe of this run that is in the memory.
     struct Own {
         int keyframe = 0;
         int node = 0;
@@ -99,12 +99,12 @@ class PlaceTracker {
 
     TrackerConfig config_;
     PlaceMemory memory_;
-    int saved_ = 0;  ///< keyframes of the saved place, which come first in the memory
+    int saved_ = 0;  ///< number of saved keyframes, which come first in the memory
     std::vector<Own> own_;
     PoseGraph graph_;
     bool located_ = false;
     std::vector<Pending> pending_;
-    std::size_t committed_ = 0;  ///< of the pending ones
+    std::size_t committed_ = 0;  ///< number of pending ones already in the graph
     int misses_ = 0;             ///< keyframes in a row since the last pending one
     std::vector<Sighting> sightings_;
 
@@ -112,7 +112,7 @@ class PlaceTracker {
     Pose T_odom_keyframe_;                  ///< the last keyframe
     Pose T_keyframe_body_;                  ///< motion since then
     Matrix6 covariance_ = Matrix6::Zero();  ///< of it
-    bool lost_ = false;                     ///< in between
+    bool lost_ = false;                     ///< odometry was lost since the last keyframe
 };
 
 }  // namespace surefoot::place_recognition

@@ -16,7 +16,7 @@ using odometry::testing::render_camera;
 constexpr double kNoise_grey = 1.0;
 constexpr double kStep_m = 0.26;
 
-/// A lens without distortion, whose images are rectified.
+/// A lens without distortion, so that its images are already rectified.
 camera::Camera camera() {
     camera::PinholeRadTan lens;
     lens.fx_px = lens.fy_px = 220.0;
@@ -37,13 +37,13 @@ camera::RectifiedRig rectified() {
     return rig;
 }
 
-/// Shows a tracker what is seen from poses of the body in the map. `T_odom_of(i, T_map_body)` is
-/// what odometry says.
+/// Shows a tracker the view from poses of the body in the map. `T_odom_of(i, T_map_body)` is the
+/// odometry's pose.
 class Walker {
   public:
     explicit Walker(Place saved = {}) : tracker_({}, std::move(saved)) {}
 
-    /// `negative`: a place of the same shape that looks like the photographic negative.
+    /// `negative`: a place of the same shape with the appearance of its photographic negative.
     std::optional<Sighting> step(const Pose& T_map_body,
                                  const Pose& T_odom_body,
                                  bool negative = false) {
@@ -79,7 +79,7 @@ class Walker {
     Pose T_odom_previous_;
 };
 
-/// `steps` to the left of the origin.
+/// `steps` poses to the left of the origin.
 Pose sideways(double steps) {
     return {Eigen::Quaterniond::Identity(), {0.0, kStep_m * steps, 0.0}};
 }
@@ -134,13 +134,13 @@ TEST(PlaceTracker, DoesNotTakeAnotherPlaceForTheSavedOne) {
     }
     EXPECT_FALSE(walker.tracker().T_map_odom());
     EXPECT_EQ(walker.tracker().place().keyframes.size(), saved.keyframes.size())
-        << "what cannot be placed is not added";
+        << "keyframes with unknown pose in the map are not added";
 }
 
 TEST(PlaceTracker, AnswersThatDisagreeAreNotBelieved) {
     Walker walker(first_run());
     for (int i = 0; i < 6; ++i) {
-        // Odometry says that the machine stepped to the right while it stepped to the left.
+        // Odometry reports a step to the right, but the machine stepped to the left.
         const auto seen = walker.step(sideways(0.4 + i), sideways(-2.0 * i));
         ASSERT_TRUE(seen);
         EXPECT_EQ(seen->refusal, Refusal::unconfirmed) << i;
@@ -156,7 +156,8 @@ TEST(PlaceTracker, WhatIsSeenAnewIsAddedToThePlaceWhereItBelongs) {
         walker.step(sideways(0.4 + i), T_map_odom.inverse() * sideways(0.4 + i));
     const Place grown = walker.tracker().place();
     EXPECT_GT(grown.keyframes.size(), saved.keyframes.size() + 3);
-    EXPECT_LT(grown.keyframes.size(), saved.keyframes.size() + 12) << "what was known is left out";
+    EXPECT_LT(grown.keyframes.size(), saved.keyframes.size() + 12)
+        << "known views are not added again";
     const Pose& T_map_last = grown.keyframes.back().T_map_body;
     EXPECT_LT(difference(sideways(11.4), T_map_last).head<3>().norm(), 0.1);
 }
@@ -178,9 +179,9 @@ TEST(PlaceTracker, ARunThatComesBackCorrectsItsDriftAndLeavesOdomAlone) {
     ASSERT_TRUE(seen);
     EXPECT_EQ(seen->refusal, Refusal::none);
     EXPECT_FALSE(seen->saved);
-    // The first keyframe's bias is the map's.
+    // The bias of the first keyframe is that of the map.
     EXPECT_LT(std::abs(T_map_body.translation_m.x() - 0.01), 0.04);
-    EXPECT_GT(bias_m, 0.18) << "and odom is off by that";
+    EXPECT_GT(bias_m, 0.18) << "and odom has this error";
 }
 
 TEST(PlaceTracker, WhileOdometryIsLostNothingIsRemembered) {

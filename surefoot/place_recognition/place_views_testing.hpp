@@ -11,7 +11,7 @@
 
 namespace surefoot::place_recognition::testing {
 
-/// A corner of a made-up place.
+/// A corner of a synthetic place.
 struct Corner {
     Eigen::Vector3d p_map_m;
     Descriptor descriptor;
@@ -29,7 +29,7 @@ inline Descriptor random_descriptor(Rng& rng) {
     return descriptor;
 }
 
-/// The descriptor as noise changes it: `flips` bits, some of them twice.
+/// Simulates noise: flips `flips` bits at random places, some of them twice.
 inline Descriptor with_flips(Descriptor descriptor, int flips, Rng& rng) {
     for (int i = 0; i < flips; ++i) {
         const std::uint64_t bit = rng.below(256);
@@ -38,7 +38,7 @@ inline Descriptor with_flips(Descriptor descriptor, int flips, Rng& rng) {
     return descriptor;
 }
 
-/// Corners all over a space of 3 x 8 x 3 m that begins 2 m ahead of the map's origin.
+/// Random corners in a space of 3 x 8 x 3 m that begins 2 m ahead of the map's origin.
 inline std::vector<Corner> random_corners(int count, std::uint64_t seed) {
     Rng rng(seed);
     std::vector<Corner> corners;
@@ -50,8 +50,8 @@ inline std::vector<Corner> random_corners(int count, std::uint64_t seed) {
     return corners;
 }
 
-/// What the test rig sees of the corners, with `noise_px` on every component of a pixel and 20
-/// flipped bits in every descriptor.
+/// The corners as the test rig sees them, with `noise_px` on each pixel component and 20 flipped
+/// bits in each descriptor.
 inline View view_of(const std::vector<Corner>& corners,
                     const Pose& T_map_body,
                     double noise_px,

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kIterations = 20;
 constexpr double kConverged = 1e-7;   ///< largest step [m, rad]
-constexpr double kCauchy2 = 16.0;     ///< chi2 at which a recognition counts half; 6 is true
-constexpr double kLeastSigma = 1e-5;  ///< [m, rad]: what stood still is not known exactly
+constexpr double kCauchy2 = 16.0;     ///< chi2 at which a recognition counts half; the mean is 6
+constexpr double kLeastSigma = 1e-5;  ///< [m, rad]: even a standing machine has an uncertainty
 
 Matrix6 information_of(const Matrix6& covariance) {
     Matrix6 known = covariance;
@@ -22,13 +22,13 @@ Matrix6 information_of(const Matrix6& covariance) {
     return known.ldlt().solve(Matrix6::Identity());
 }
 
-/// Inverse of the right Jacobian of the rotation group to first order, which is what is needed:
-/// errors of rotation are degrees at most.
+/// Inverse of the right Jacobian of SO(3) to first order. This is enough, because rotation errors
+/// are at most a few degrees.
 Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& theta_rad) {
     return Eigen::Matrix3d::Identity() + 0.5 * skew(theta_rad);
 }
 
-/// Derivatives of error = difference(T_from_to, X_from^-1 X_to) by perturbations of both.
+/// Derivatives of error = difference(T_from_to, X_from^-1 X_to) with respect to both poses.
 struct Jacobians {
     Matrix6 from = Matrix6::Zero();
     Matrix6 to = Matrix6::Zero();
@@ -48,7 +48,7 @@ Jacobians jacobians_of(const Pose& T_from_to, const Pose& T_now) {
     return out;
 }
 
-/// Adds a block of 6 x 6 to the lower half of a symmetric matrix.
+/// Adds a 6 x 6 block to the lower half of a symmetric matrix.
 void add_block(std::vector<Eigen::Triplet<double>>& H, int row, int column, const Matrix6& block) {
     if (row < column) return;
     for (int i = 0; i < 6; ++i)
@@ -176,7 +176,7 @@ bool PoseGraph::solve() {
         return false;
     }
     if (cost() <= cost_before * (1.0 + 1e-9) + 1e-9) return true;
-    poses_ = before;  // diverged: what was known is better
+    poses_ = before;  // diverged: keep the previous poses
     return false;
 }
 

@@ -7,30 +7,30 @@
 
 namespace surefoot::place_recognition {
 
-/// Where the keyframes of a run were in the map: odometry between neighbours, recognitions between
-/// any two or with a place whose keyframes do not move. Gauss-Newton over all poses at once
-/// (Grisetti et al. 2010) with sparse Cholesky; recognitions count after Cauchy, so that a wrong
-/// one among right ones is outvoted. Pose and covariance conventions are those of pose.hpp.
+/// Estimates the poses of a run's keyframes in the map. Edges: odometry between neighbours, and
+/// recognitions between two nodes or of a place with fixed keyframes. Gauss-Newton over all poses
+/// (Grisetti et al. 2010) with sparse Cholesky. Recognitions have Cauchy weights, so that correct
+/// ones outvote a wrong one. Pose and covariance conventions: see pose.hpp.
 class PoseGraph {
   public:
-    /// The first node. Without `hold_first` and any `recognise_fixed` the graph floats, and `solve`
-    /// leaves it where it is.
+    /// Adds the first node. Without `hold_first` or `recognise_fixed` nothing fixes the graph, and
+    /// `solve` leaves it unchanged.
     int add_first(const Pose& T_map_body);
-    /// A node after the last one.
+    /// Adds a node after the last one.
     int add_next(const Pose& T_previous_body, const Matrix6& covariance);
-    /// The first node stays where it is: the map is that run's odom.
+    /// Fixes the first node at its pose: the map is that run's odom.
     void hold_first() { first_held_ = true; }
-    /// A node was seen from a pose that is known. Returns the number of the recognition.
+    /// Adds a recognition of a node from a fixed pose. Returns the number of the recognition.
     int recognise_fixed(int node, const Pose& T_map_body, const Matrix6& covariance);
-    /// `to` was seen from `from`.
+    /// Adds a recognition of node `to` from node `from`.
     int recognise(int from, int to, const Pose& T_from_to, const Matrix6& covariance);
-    /// Takes back the recognitions from a number on.
+    /// Removes the recognitions from this number on.
     void forget_from(int recognition);
-    /// Moves all poses together, that of a node becoming `T_map_body`: the start of `solve` where
-    /// nothing is known of the map yet.
+    /// Moves all poses rigidly so that the pose of one node becomes `T_map_body`. It is the start
+    /// value of `solve` as long as the pose in the map is unknown.
     void place(int node, const Pose& T_map_body);
-    /// Best poses of all nodes. False where nothing holds them or the equations cannot be solved;
-    /// the poses are then as before.
+    /// Computes the best poses of all nodes. Returns false, with unchanged poses, when nothing
+    /// fixes the graph or the equations cannot be solved.
     bool solve();
 
     [[nodiscard]] int nodes() const noexcept { return static_cast<int>(poses_.size()); }
@@ -40,7 +40,7 @@ class PoseGraph {
     [[nodiscard]] const Pose& T_map_body(int node) const {
         return poses_[static_cast<std::size_t>(node)];
     }
-    /// Squared Mahalanobis distance of a recognition from the present poses; 6 on average.
+    /// Squared Mahalanobis distance of a recognition from the present poses; its mean is 6.
     [[nodiscard]] double chi2(int recognition) const;
 
   private:

@@ -29,7 +29,7 @@ Vector6 noise(double sigma_m, double sigma_rad, Rng& rng) {
     return v;
 }
 
-/// Poses once round a square of 4 m, level, looking ahead.
+/// Poses once around a square of 4 m, level, facing ahead.
 std::vector<Pose> round_walk() {
     std::vector<Pose> poses{Pose{}};
     for (int side = 0; side < 4; ++side) {
@@ -78,9 +78,9 @@ TEST(PoseGraph, ALoopThatClosesTakesTheDriftOut) {
 TEST(PoseGraph, ASavedPlaceSaysWhereTheWholeRunWas) {
     const auto truth = round_walk();
     Rng rng(1);
-    // This run's odom began anywhere in the map.
+    // This run's odom began at an arbitrary pose in the map.
     PoseGraph graph = drifting(truth, Pose{exp_so3({0.0, 0.0, 2.0}), {7.0, -3.0, 0.1}}, rng);
-    EXPECT_FALSE(graph.solve()) << "nothing holds it";
+    EXPECT_FALSE(graph.solve()) << "nothing fixes the graph";
     graph.place(5, truth[5]);
     for (const int node : {5, 6, 7, 40})
         graph.recognise_fixed(node, truth[static_cast<std::size_t>(node)], kSure);
@@ -112,8 +112,8 @@ TEST(PoseGraph, AWrongRecognitionAmongRightOnesIsOutvoted) {
     EXPECT_LT(end_error_m(graph, truth), 0.02);
 }
 
-/// The oracle: at the solution no small move of any pose lowers the sum of squares. The sum is
-/// written out here anew.
+/// Check: at the solution no small change of any pose lowers the sum of squares, which is computed
+/// here independently.
 TEST(PoseGraph, TheSolutionIsTheLowestPlace) {
     const auto truth = round_walk();
     Rng rng(5);
@@ -130,7 +130,7 @@ TEST(PoseGraph, TheSolutionIsTheLowestPlace) {
     ASSERT_TRUE(graph.solve());
     std::vector<Pose> poses;
     for (int i = 0; i < graph.nodes(); ++i) poses.push_back(graph.T_map_body(i));
-    // 1e-5 squared: what the graph adds to every covariance.
+    // 1e-5 squared: the graph adds this to every covariance.
     const Matrix6 information = (covariance_of(0.03, 0.02) + 1e-10 * Matrix6::Identity()).inverse();
     const auto cost = [&] {
         double sum = 0.0;

@@ -5,21 +5,21 @@
 
 namespace surefoot::place_recognition {
 
-/// Why a view was not taken for a place that is remembered; the first that applies.
+/// Why a view was not recognised as a stored place; the first reason that applies.
 enum class Refusal : std::uint8_t {
     none,          ///< recognised
-    few_features,  ///< too little structure with depth in the image
-    no_candidate,  ///< no keyframe has descriptors like these
+    few_features,  ///< the image has too little structure with depth
+    no_candidate,  ///< no keyframe has similar descriptors
     few_matches,   ///< too few descriptors are each other's best
-    few_inliers,   ///< too few of them agree on one pose
-    poor_spread,   ///< those that agree cover too little of the image
-    imprecise,     ///< they leave the pose open
-    tilted,        ///< gravity would point elsewhere
-    contradicted,  ///< parts of the image show something else than the place does
-    floor_only,    ///< what agrees is one level surface; a printed floor lies elsewhere too
+    few_inliers,   ///< too few of the matches agree on one pose
+    poor_spread,   ///< the inliers cover too little of the image
+    imprecise,     ///< the inliers do not determine the pose well enough
+    tilted,        ///< gravity would have another direction
+    contradicted,  ///< parts of the image show something else than the stored place
+    floor_only,    ///< the inliers lie on one level surface; a printed floor may repeat
     ambiguous,     ///< another place explains the view nearly as well
-    unconfirmed,   ///< right so far, but the views after it have not said so yet
-    inconsistent,  ///< does not fit what odometry and the places before it say
+    unconfirmed,   ///< accepted so far, but later views have not confirmed it yet
+    inconsistent,  ///< contradicts odometry or earlier recognitions
 };
 inline constexpr int kRefusals = 13;
 [[nodiscard]] const char* to_string(Refusal refusal) noexcept;

@@ -16,8 +16,8 @@ using odometry::PointMatch;
 using odometry::PoseSolution;
 using odometry::StereoPixel;
 
-constexpr std::uint64_t kSeed = 1;  ///< the same views always give the same pose
-constexpr int kBorder_px = 32;      ///< nearer to the border there are no features
+constexpr std::uint64_t kSeed = 1;  ///< fixed, so that the same views always give the same pose
+constexpr int kBorder_px = 32;      ///< no features exist nearer to the border
 
 StereoPixel pixel_of(const Feature& feature) {
     return feature.pixel_px.cast<double>();
@@ -47,15 +47,15 @@ std::vector<PointMatch> point_matches(const ComparisonConfig& config,
     return points;
 }
 
-/// What the features of one view say when they are looked for in the other.
+/// Result of searching the features of one view in the other.
 struct Answers {
-    std::vector<int> who;                ///< features asked
-    std::vector<FeatureMatch> agreeing;  ///< (feature asked, feature found)
-    std::vector<int> asked;              ///< features of each part of the image of those found
+    std::vector<int> who;                ///< checked features
+    std::vector<FeatureMatch> agreeing;  ///< (checked feature, found feature)
+    std::vector<int> asked;              ///< checked features per part of the other image
     std::vector<int> found;
 };
 
-/// The feature nearest in look among those where `pixel` says, or -1.
+/// The feature with the most similar descriptor near `pixel`, or -1.
 int find_at(const ComparisonConfig& config,
             const std::vector<Feature>& features,
             const StereoPixel& pixel,
@@ -125,23 +125,23 @@ void judge_parts(const ComparisonConfig& config, const Answers& answers, Compari
     }
 }
 
-/// A level surface as the camera of the candidate sees it.
+/// A level surface in the candidate's camera frame.
 struct Level {
     Eigen::Vector3d up;     ///< unit vector
     double height_m = 0.0;  ///< above the camera
 
-    /// Could a point of this view lie on it, as far as its disparity can tell?
+    /// Whether a point of this view can lie on it, within the uncertainty of its disparity.
     [[nodiscard]] bool holds(const ComparisonConfig& config,
                              const Eigen::Vector3d& p_m,
                              double point_disparity_px) const {
         const double off_m = up.dot(p_m) - height_m;
-        // Along the line of sight a point moves by its range times this share.
+        // Along its ray a point moves by its range times this share.
         const double share = config.disparity_px / point_disparity_px;
         return std::abs(off_m) <= share * std::abs(up.dot(p_m)) + config.level_m;
     }
 };
 
-/// The level surface that holds the most of the corners that agree on the pose.
+/// The level surface that contains the most inliers of the pose.
 Level floor_of(const ComparisonConfig& config,
                const camera::RectifiedRig& rig,
                const std::vector<PointMatch>& points,
@@ -166,7 +166,7 @@ Level floor_of(const ComparisonConfig& config,
     return best;
 }
 
-/// Counts what was asked of a view and does not lie on the floor.
+/// Counts the checked features of a view that do not lie on the floor.
 void judge_off_floor(const ComparisonConfig& config,
                      const Level& floor,
                      const View& view,
@@ -186,7 +186,7 @@ void judge_off_floor(const ComparisonConfig& config,
         }));
 }
 
-/// What stands about must say that it is there; what is not seen says nothing.
+/// Objects that stand on the floor must agree; features that are not visible do not count.
 bool more_than_a_floor(const ComparisonConfig& config, const Comparison& found) {
     return found.asked_off_floor >= config.min_asked_off_floor &&
            found.agreeing_off_floor >= config.min_agreeing_off_floor * found.asked_off_floor;
@@ -234,7 +234,8 @@ Comparison compare(const ComparisonConfig& config,
         out.inliers = solution.inliers;
         return out;
     }
-    // The pose says where each corner should be: far more are found than by their look alone.
+    // The pose predicts where each corner should be. This finds far more corners than descriptors
+    // alone.
     const auto guided = ask(config, candidate, query, solution.T_world_camera.inverse()).agreeing;
     points = point_matches(config, candidate, query, guided);
     solution = odometry::refine_pose(query.rig, solver, points, solution.T_world_camera);

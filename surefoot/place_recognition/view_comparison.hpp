@@ -11,59 +11,59 @@ namespace surefoot::place_recognition {
 struct ComparisonConfig {
     MatchConfig matching;
     int min_matches = 15;
-    int min_inliers = 25;   ///< after the pose has said where to look
-    double sigma_px = 1.0;  ///< of a corner found again; corners of higher levels are coarse
+    int min_inliers = 25;   ///< after the search at the known pose
+    double sigma_px = 1.0;  ///< of a matched corner; corners of higher levels are coarse
     int ransac_rounds = 300;
     double ransac_threshold_px = 4.0;
-    // Where the pose is known, every feature says yes or no.
-    double search_px = 6.0;     ///< how far from where it should be a corner may be found
-    double disparity_px = 1.5;  ///< how far off its disparity may be
-    int max_distance = 72;      ///< of its descriptor
-    double min_scale = 0.6;     ///< seen from nearer or farther than this it is not asked
-    int part_columns = 4;       ///< parts of the image that are asked one by one
+    // Check at the known pose: every feature is searched and agrees or contradicts.
+    double search_px = 6.0;     ///< largest distance of a corner from its expected position
+    double disparity_px = 1.5;  ///< largest error of its disparity
+    int max_distance = 72;      ///< largest error of its descriptor
+    double min_scale = 0.6;     ///< beyond this change of distance a feature is not checked
+    int part_columns = 4;       ///< parts of the image that are checked separately
     int part_rows = 3;
-    int min_asked = 8;               ///< features of a part that can say anything
-    double min_agreeing = 0.25;      ///< share of a part's features, below which it says no
-    double min_agreeing_all = 0.35;  ///< the same of all features asked
-    double max_parts_against = 0.2;  ///< share of the parts asked that may say no
-    // Features off the level surface on which most agree (the floor) must agree on their own.
-    int min_asked_off_floor = 15;          ///< fewer cannot say yes
-    double min_agreeing_off_floor = 0.15;  ///< share of them; where the floor has moved: hardly any
-    double level_m = 0.01;                 ///< beside disparity_px: how uneven a floor may be
-    int min_parts = 5;                     ///< parts that hold an inlier
+    int min_asked = 8;               ///< checked features that a part needs to count
+    double min_agreeing = 0.25;      ///< share of a part's features; below it the part contradicts
+    double min_agreeing_all = 0.35;  ///< the same for all checked features
+    double max_parts_against = 0.2;  ///< largest share of the parts that may contradict
+    // Features off the level surface on which most features agree (the floor) must agree too.
+    int min_asked_off_floor = 15;          ///< fewer do not suffice
+    double min_agreeing_off_floor = 0.15;  ///< least share that agrees; near 0 if the floor moved
+    double level_m = 0.01;                 ///< unevenness of a floor, in addition to disparity_px
+    int min_parts = 5;                     ///< least number of parts with an inlier
     double max_sigma_m = 0.05;             ///< of the position
     double max_sigma_deg = 1.5;
-    double max_tilt_deg = 3.0;  ///< between up here and there
+    double max_tilt_deg = 3.0;  ///< between the up directions of the two views
 };
 
-/// What a keyframe and a view say about each other.
+/// Result of comparing a keyframe (candidate) with a view (query).
 struct Comparison {
     Refusal refusal = Refusal::few_matches;
-    Pose T_candidate_query;                ///< base_link of the view in that of the keyframe
-    Matrix6 covariance = Matrix6::Zero();  ///< of it; valid where the refusal is none
+    Pose T_candidate_query;                ///< base_link of the query in base_link of the candidate
+    Matrix6 covariance = Matrix6::Zero();  ///< of T_candidate_query; valid if the refusal is none
     int matches = 0;
     int inliers = 0;
     double tilt_deg = 0.0;
-    int asked = 0;               ///< features of both views that should be seen in the other
-    int agreeing = 0;            ///< of these, those that are
-    int parts = 0;               ///< parts of the image where enough were asked
-    int parts_against = 0;       ///< of these, those where too few agree
-    int asked_off_floor = 0;     ///< features asked that do not lie on the floor
+    int asked = 0;               ///< features of both views that should be visible in the other
+    int agreeing = 0;            ///< of these, those that are found
+    int parts = 0;               ///< parts of the image with enough checked features
+    int parts_against = 0;       ///< of these, those with too few agreeing features
+    int asked_off_floor = 0;     ///< checked features that do not lie on the floor
     int agreeing_off_floor = 0;  ///< of these, those that agree
     [[nodiscard]] double agreeing_share() const noexcept {
         return asked > 0 ? static_cast<double>(agreeing) / asked : 0.0;
     }
 };
 
-/// Where a view was taken from as seen by a keyframe, and whether that may be believed: matches of
-/// descriptors, pose by consensus, then every feature of either view is looked for where the other
-/// should show it. Look-alikes are told by that: a door that stands in every corridor agrees, the
-/// floor before it says no. A floor alone proves nothing: printed and woven patterns repeat, so
-/// that what stands on it must agree by itself where the floor says it is. `up_candidate`,
-/// `up_query`: unit vectors in base_link of each.
+/// Computes the pose of a view relative to a keyframe and whether it is credible. Steps: match
+/// descriptors, find the pose by consensus, then search every feature of either view where the
+/// other view should show it. This rejects look-alikes: a door that exists in every corridor
+/// agrees, but the floor before it does not. A floor alone proves nothing, because printed and
+/// woven patterns repeat: objects on the floor must agree as well. `up_candidate`, `up_query`: unit
+/// vectors in each view's base_link.
 ///
-/// Limit: a place that is a true twin, floor included, cannot be told by one view, nor one whose
-/// floor lies a few centimetres beside where it lay in the other.
+/// Limit: one view cannot distinguish a place from its true twin, floor included, nor from a twin
+/// whose floor pattern is displaced by only a few centimetres.
 [[nodiscard]] Comparison compare(const ComparisonConfig& config,
                                  const View& candidate,
                                  const Eigen::Vector3d& up_candidate,

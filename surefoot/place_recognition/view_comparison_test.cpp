@@ -48,7 +48,7 @@ TEST(ViewComparison, RefusesALookAlikeOfWhichAPartIsTheSame) {
     auto there = random_corners(kCorners, 2);
     int same = 0;
     for (std::size_t i = 0; i < here.size(); ++i) {
-        if (here[i].p_map_m.y() < -0.2) continue;  // what lies to the right is another thing
+        if (here[i].p_map_m.y() < -0.2) continue;  // everything to the right differs
         there[i] = here[i];
         ++same;
     }
@@ -61,7 +61,7 @@ TEST(ViewComparison, RefusesALookAlikeOfWhichAPartIsTheSame) {
     EXPECT_GT(c.parts_against, c.parts / 5);
 }
 
-/// The floor's look alone differs, all over the image.
+/// Only the texture of the floor differs, all over the image.
 TEST(ViewComparison, RefusesALookAlikeOfWhichOnlyEveryThirdCornerIsTheSame) {
     const auto here = random_corners(kCorners, 1);
     auto there = random_corners(kCorners, 2);
@@ -72,10 +72,10 @@ TEST(ViewComparison, RefusesALookAlikeOfWhichOnlyEveryThirdCornerIsTheSame) {
     EXPECT_LT(c.agreeing_share(), 0.4);
 }
 
-constexpr double kFloor_m = -0.95;  ///< height of it in the map
+constexpr double kFloor_m = -0.95;  ///< its height in the map
 const Pose kLookingDown{exp_so3({0.0, 0.5, 0.0}), {0.0, 0.0, 0.0}};
 
-/// A floor before the machine, and then `things` corners that stand on it.
+/// A floor before the machine, and `things` corners of objects that stand on it.
 std::vector<Corner> room(int things, std::uint64_t seed) {
     Rng rng(seed);
     std::vector<Corner> corners;
@@ -90,14 +90,14 @@ std::vector<Corner> room(int things, std::uint64_t seed) {
     return corners;
 }
 
-/// The same with all things moved on the floor.
+/// The same with all objects moved on the floor.
 std::vector<Corner> moved(std::vector<Corner> corners, const Eigen::Vector3d& way_m) {
     for (Corner& corner : corners)
         if (corner.p_map_m.z() > kFloor_m) corner.p_map_m += way_m;
     return corners;
 }
 
-/// Both seen with the head bowed, the second one from elsewhere.
+/// Both views with a pitched camera, the second one from another position.
 Comparison compare_floors(const std::vector<Corner>& here, const std::vector<Corner>& there) {
     const Pose T_map_query = kElsewhere * kLookingDown;
     const auto up = [](const Pose& T_map_body) -> Eigen::Vector3d {
@@ -118,7 +118,7 @@ TEST(ViewComparison, AFloorAndWhatStandsOnItAreRecognised) {
     EXPECT_GT(c.agreeing_off_floor, c.asked_off_floor / 2);
 }
 
-/// The floor of one house is printed everywhere alike, but lies elsewhere under the doors.
+/// All floors of one house have the same print, but it lies elsewhere under the doors.
 TEST(ViewComparison, RefusesAFloorUnderOtherThings) {
     const auto here = room(60, 1);
     const auto c = compare_floors(here, moved(here, {0.1, 0.3, 0.0}));
@@ -131,7 +131,7 @@ TEST(ViewComparison, RefusesAFloorUnderOtherThings) {
     EXPECT_LT(c.agreeing_off_floor, c.asked_off_floor / 10);
 }
 
-/// Where nothing else is seen nobody knows.
+/// Without other visible objects the comparison cannot decide.
 TEST(ViewComparison, RefusesAFloorThatStandsAlone) {
     const auto c = compare_floors(room(0, 1), room(0, 1));
     EXPECT_EQ(c.refusal, Refusal::floor_only);
@@ -157,7 +157,7 @@ TEST(ViewComparison, RefusesAPoseAgainstGravity) {
     const auto c = compare({}, view, up, again, leaning);
     EXPECT_EQ(c.refusal, Refusal::tilted);
     EXPECT_NEAR(c.tilt_deg, 4.0, 0.3);
-    // Where the odom of the first run leans likewise, nothing is wrong.
+    // If the odom of the first run is tilted in the same way, the comparison is correct.
     EXPECT_EQ(compare({}, view, leaning, again, kElsewhere.rotation.conjugate() * leaning).refusal,
               Refusal::none);
 }

@@ -15,17 +15,17 @@
 
 namespace surefoot::specular::testing {
 
-/// Grey value of a level floor at a place in odom [m].
+/// Grey value of a level floor at a position in odom [m].
 using FakeFloor = std::function<double(double x_m, double y_m)>;
 
-/// A number between 0 and 1 for each place of a lattice, the same for the same seed.
+/// A number between 0 and 1 for each lattice point, the same for the same seed.
 inline double lattice_value(std::int64_t i, std::int64_t j, std::uint64_t seed) {
     const std::uint64_t mixed =
         mix_seed(mix_seed(seed, static_cast<std::uint64_t>(i)), static_cast<std::uint64_t>(j));
     return static_cast<double>(mixed >> 11U) * 0x1p-53;
 }
 
-/// Blotches of two sizes without any order, between grey 60 and 180.
+/// Irregular blotches of two sizes, between grey 60 and 180.
 inline FakeFloor carpet(std::uint64_t seed) {
     return [seed](double x_m, double y_m) {
         double grey = 60.0;
@@ -46,7 +46,7 @@ inline FakeFloor carpet(std::uint64_t seed) {
     };
 }
 
-/// The same, in square tiles with dark joints, all tiles alike or each with a pattern of its own.
+/// A carpet in square tiles with dark joints; all tiles are equal or each has its own pattern.
 inline FakeFloor tiles(std::uint64_t seed, double side_m, bool alike) {
     return [seed, side_m, alike, one = carpet(seed)](double x_m, double y_m) {
         const double i = std::floor(x_m / side_m);
@@ -58,7 +58,7 @@ inline FakeFloor tiles(std::uint64_t seed, double side_m, bool alike) {
     };
 }
 
-/// Bright and dark stripes across the way, over a carpet.
+/// Bright and dark stripes across the walking direction, over a carpet.
 inline FakeFloor stripes(std::uint64_t seed, double width_m) {
     return [width_m, floor = carpet(seed)](double x_m, double y_m) {
         const double x = x_m / (2.0 * width_m);
@@ -66,8 +66,8 @@ inline FakeFloor stripes(std::uint64_t seed, double width_m) {
     };
 }
 
-/// An upright mirror on a floor: normal (cos, sin) . p = offset; behind it lies what it shows.
-/// `share`: of the light that it reflects; the rest comes from the floor behind it, as in glass.
+/// An upright mirror on a floor: normal (cos, sin) . p = offset. Its reflection appears behind the
+/// line. `share`: reflected part of the light; the rest comes from the floor behind, as in glass.
 inline FakeFloor with_mirror(FakeFloor floor, double angle_rad, double offset_m, double share) {
     const double nx = std::cos(angle_rad);
     const double ny = std::sin(angle_rad);
@@ -79,7 +79,7 @@ inline FakeFloor with_mirror(FakeFloor floor, double angle_rad, double offset_m,
     };
 }
 
-/// A camera 1 m over the floor, 32 deg down.
+/// A camera 1 m above the floor, 32 deg down.
 inline camera::RectifiedRig fake_rig() {
     camera::RectifiedRig rig{480, 300, 260.0, 260.0, 240.0, 150.0, 0.12, {}};
     rig.T_body_camera = T_body_optical();
@@ -89,7 +89,7 @@ inline camera::RectifiedRig fake_rig() {
     return rig;
 }
 
-/// base_link 1 m over the floor z = 0, level.
+/// base_link 1 m above the floor z = 0, level.
 inline Pose fake_body(double x_m, double y_m, double yaw_rad = 0.0) {
     Pose T_odom_body;
     T_odom_body.rotation = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
@@ -102,8 +102,8 @@ struct FakeView {
     Image<float> disparity_px;
 };
 
-/// What the camera sees of the floor z = 0, with a few grey values of noise; no disparity above the
-/// horizon.
+/// Image of the floor z = 0 with a few grey values of noise, and its disparity. No disparity above
+/// the horizon.
 inline FakeView look_at(const FakeFloor& floor,
                         const camera::RectifiedRig& rig,
                         const Pose& T_odom_body,

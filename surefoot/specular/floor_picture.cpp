@@ -11,16 +11,17 @@ namespace {
 
 constexpr double kWindow_m = 5.12;
 constexpr double kAhead_m = 1.0;     ///< from the body to the middle of the window
-constexpr double kSlack_m = 0.25;    ///< the window moves when its middle is off by more
+constexpr double kSlack_m = 0.25;    ///< the window moves when its centre is off by more
 constexpr double kNearest_m = 0.25;  ///< depth along the optical axis
 constexpr unsigned kRowPhases = 4;
-/// A measured point this far above or below the plane is not the plane.
+/// A measured point farther than this above or below the plane does not belong to it.
 constexpr double kHeightTolerance_m = 0.06;
-/// A cell's mean follows a change of the floor within so many frames at one metre.
+/// A cell's mean follows a change of the floor within this many frames, at one metre.
 constexpr float kMostWeight = 8.0F;
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
-/// Where in a cell the picture is taken, frame by frame: the mean over them is that over the cell.
+/// Sample position in a cell, different in each frame: the mean over frames is the mean over the
+/// cell.
 struct InCell {
     double x;
     double y;
@@ -30,7 +31,7 @@ constexpr std::array<InCell, 4> kInCell = {
 
 }  // namespace
 
-/// One frame, as the rows of the picture need it.
+/// Data of one frame for filling the rows of the picture.
 struct FloorPicture::View {
     const camera::RectifiedRig& rig;
     ImageView<const std::uint8_t> left;
@@ -103,7 +104,7 @@ void FloorPicture::add(const camera::RectifiedRig& rig,
                     cell(low.x(), g.nx),
                     cell(high.x(), g.nx)};
     for (int iy = cell(low.y(), g.ny); iy <= cell(high.y(), g.ny); ++iy) {
-        // Rows take turns by their number in odom, which the window does not change.
+        // Rows take turns by their number in odom, which does not change when the window moves.
         const auto row = static_cast<std::uint64_t>(window_.first_iy() + iy);
         if (row % kRowPhases != phase) continue;
         add_row(view, iy, g.origin_m.y() + g.resolution_m * (iy + in_cell.y));
@@ -133,7 +134,7 @@ void FloorPicture::add_row(const View& view, int iy, double y_m) {
         const int top = static_cast<int>(v);   // in range: inside the image
         const double disparity_px = static_cast<double>(
             view.disparity_px.row(top + (v - top > 0.5))[left + (u - left > 0.5)]);
-        // Above the plane the ray ends earlier, at a larger disparity; NaN fails the comparison.
+        // Above the plane the ray ends earlier, with a larger disparity. NaN fails the comparison.
         const double above_m = height_m * (1.0 - fb_px_m / (disparity_px * z_m));
         if (!(std::abs(above_m) < kHeightTolerance_m)) continue;
         const std::uint8_t* upper = view.left.row(top) + left;

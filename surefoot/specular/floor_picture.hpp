@@ -12,29 +12,29 @@
 
 namespace surefoot::specular {
 
-/// The floor as seen from above: the mean brightness of each cell of a level plane in odom, over
-/// all frames that saw the plane there. What a mirror or a pane of glass shows of the floor before
-/// it lies in the same plane, so that it enters the picture too.
+/// Top view of the floor: the mean brightness of each cell of a level plane in odom, over all
+/// frames that saw the plane there. The reflection of the floor in a mirror or a pane of glass lies
+/// in the same plane and therefore enters the picture too.
 ///
 /// Order of calls: `follow` and `add` for every frame. No allocation after construction.
 class FloorPicture {
   public:
     explicit FloorPicture(const SpecularConfig& config);
 
-    /// Moves the window ahead of the body when the body left its place in it.
+    /// Moves the window ahead of the body when the body has left its place in it.
     void follow(const Pose& T_odom_body);
-    /// Adds what a rectified left image shows of the plane z = `floor_z_m` (odom). A quarter of
-    /// the rows each frame, in turn. Pixels whose disparity contradicts the plane do not count.
+    /// Adds the part of a rectified left image that shows the plane z = `floor_z_m` (odom). Each
+    /// frame uses a quarter of the rows. Pixels whose disparity contradicts the plane do not count.
     void add(const camera::RectifiedRig& rig,
              const Pose& T_odom_body,
              ImageView<const std::uint8_t> left,
              ImageView<const float> disparity_px,
              double floor_z_m);
-    /// Forgets all.
+    /// Clears the picture.
     void clear();
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
-    /// Mean grey value; NaN = not seen.
+    /// Mean grey value; NaN = not observed.
     [[nodiscard]] ImageView<const float> brightness() const noexcept { return grey_.view(); }
 
   private:

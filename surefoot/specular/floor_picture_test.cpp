@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-/// Mean distance of the picture from the floor, over the cells that were seen in a square.
+/// Mean difference of picture and floor, over the observed cells of a square.
 double mean_error(const FloorPicture& picture, const FakeFloor& floor, double x_m, double y_m) {
     double sum = 0.0;
     int count = 0;
@@ -41,7 +41,7 @@ TEST(FloorPicture, is_the_floor_from_above) {
         picture.follow(body);
         picture.add(rig, body, view.left.view(), view.disparity_px.view(), 0.0);
     }
-    // Blotches of 12 mm and a pixel of 5 mm: some grey values are blurred away, of 15 rms.
+    // Blotches of 12 mm and pixels of 5 mm: some grey values of 15 rms are blurred away.
     EXPECT_LT(mean_error(picture, floor, 1.2, 0.1), 9.0);
     // The same picture compared with another floor.
     EXPECT_GT(mean_error(picture, carpet(4), 1.2, 0.1), 15.0);

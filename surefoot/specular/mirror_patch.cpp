@@ -11,7 +11,7 @@ namespace surefoot::specular {
 namespace {
 
 constexpr float kCut = 2.5F;  ///< standard deviations
-/// One standard deviation over the mean of absolute values, of a normal distribution.
+/// Ratio of the standard deviation to the mean absolute value of a normal distribution.
 constexpr float kSigmaOfMean = 1.2533F;
 /// Cells of a tile, in both directions. Patches are whole tiles.
 constexpr int kTile = 16;
@@ -21,7 +21,7 @@ bool is_known(float value) {
     return value == value;
 }
 
-/// Of inner cells with four known neighbours; others unknown.
+/// Laplacian of the inner cells with four known neighbours; other cells become unknown.
 void laplacian(const Image<float>& grey, Image<float>& out) {
     std::fill_n(out.row(0), grey.width(), kNanF);
     std::fill_n(out.row(grey.height() - 1), grey.width(), kNanF);
@@ -40,13 +40,13 @@ struct Strength {
     float sum = 0.0F;  ///< of absolute values
     float known = 0.0F;
 
-    /// One standard deviation; NaN where too little is known.
+    /// One standard deviation; NaN where too few cells are known.
     [[nodiscard]] float sigma() const {
         return known >= kLeastInTile && sum > 0.0F ? kSigmaOfMean * sum / known : kNanF;
     }
 };
 
-/// Sums over the cells of lines, kept apart by their place in a tile: lanes that can be added at
+/// Sums over the cells of lines, separated by their place in a tile, so that lanes are added at
 /// once.
 struct Lanes {
     std::array<float, kTile> sum{};
@@ -71,8 +71,8 @@ struct Lanes {
 
 constexpr int kMostTiles = MirrorPatch::kLines * MirrorPatch::kLineCells / (kTile * kTile);
 
-/// Makes tiles about as strong as each other, weak ones less so: there noise is most of it. Cuts
-/// what stands out.
+/// Normalises the strength of the tiles, of weak ones less because they contain mostly noise.
+/// Limits outliers.
 void level(Image<float>& detail) {
     std::array<Strength, kMostTiles> tiles;
     Strength all;
@@ -103,7 +103,7 @@ void level(Image<float>& detail) {
     }
 }
 
-/// Takes the mean of each line off it, then that of the cells that lie one behind the other.
+/// Subtracts from each line its mean, then the mean of the cells with the same index in all lines.
 void center(Image<float>& detail) {
     std::array<float, MirrorPatch::kLineCells> sums{};
     std::array<float, MirrorPatch::kLineCells> counts{};
@@ -187,7 +187,7 @@ void MirrorPatch::sample(const grid::GridGeometry& geometry,
                          double angle_rad) {
     const auto cosine = static_cast<float>(std::cos(angle_rad));
     const auto sine = static_cast<float>(std::sin(angle_rad));
-    // Centres of cells lie at whole numbers here.
+    // Cell centres have integer coordinates here.
     const Eigen::Vector2f middle =
         ((middle_m - geometry.origin_m) / geometry.resolution_m).cast<float>() -
         Eigen::Vector2f::Constant(0.5F);

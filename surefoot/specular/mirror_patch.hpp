@@ -11,18 +11,18 @@
 
 namespace surefoot::specular {
 
-/// Detail of a piece of floor, ready to be compared with its own mirror image: what is left of the
-/// brightness when a cell is compared with its neighbours, as strong everywhere, without what is
-/// the same along a whole line or across all lines (joints of tiles and boards). Lines are parallel
-/// to the mirror lines that are looked for, and lie one behind the other in memory.
+/// Detail of a piece of floor, prepared for comparison with its own mirror image. It is the
+/// difference of a cell from its neighbours, normalised to the same strength everywhere. Structure
+/// that is constant along a line or across all lines (joints of tiles and boards) is removed. Lines
+/// are parallel to the mirror lines of the search and lie one behind the other in memory.
 struct PatchDetail {
     static constexpr int kUnit = 40;    ///< about one standard deviation
-    static constexpr int kBlocks = 12;  ///< a line is summed in so many parts
+    static constexpr int kBlocks = 12;  ///< number of parts in which a line is summed
 
     int lines = 0;
     int line_cells = 0;
-    std::vector<std::int16_t> values;  ///< 0 where nothing is known
-    std::vector<std::int16_t> known;   ///< cells known in each block of each line
+    std::vector<std::int16_t> values;  ///< 0 = unknown
+    std::vector<std::int16_t> known;   ///< number of known cells in each block of each line
     double mean_square = 0.0;          ///< of the known values
 
     void resize(int new_lines, int new_line_cells);
@@ -34,8 +34,8 @@ struct PatchDetail {
     }
 };
 
-/// A rectangle of the floor's picture, turned so that its lines count along the normal of the
-/// mirror lines that are looked for. No allocation after construction.
+/// A rectangle of the floor picture, rotated so that its lines are counted along the normal of the
+/// mirror lines of the search. No allocation after construction.
 class MirrorPatch {
   public:
     static constexpr int kLines = 256;
@@ -43,8 +43,8 @@ class MirrorPatch {
 
     MirrorPatch();
 
-    /// Samples around `middle_m` (odom): lines grow along (cos, sin) of `angle_rad`, cells of a
-    /// line along its left hand.
+    /// Samples the rectangle around `middle_m` (odom). Line numbers grow along (cos, sin) of
+    /// `angle_rad`, cells of a line toward the left of that direction.
     void sample(const grid::GridGeometry& geometry,
                 ImageView<const float> brightness,
                 const Eigen::Vector2d& middle_m,
@@ -64,8 +64,8 @@ class MirrorPatch {
     PatchDetail coarse_;
 };
 
-/// The detail of an image of brightness (NaN = unknown; a row is a line): its Laplacian over the
-/// mean of its absolute values in a tile, cut, less the means along and across the lines.
+/// Computes the detail of a brightness image (NaN = unknown; a row is a line): the Laplacian over
+/// the mean of its absolute values in a tile, limited, minus the means along and across the lines.
 /// `work`: scratch memory of the same size.
 void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
 

@@ -17,25 +17,26 @@ constexpr int kBlocks = PatchDetail::kBlocks;
 constexpr int kMostApart = 160;  ///< fine cells
 constexpr int kBorder = 24;      ///< fine lines beside the first and the last mirror line
 constexpr std::size_t kCandidates = 3;
-constexpr int kAround = 4;  ///< half cells about a candidate, in which the best line lies
-/// Half cells between a line and those beside it that tell its noise.
+constexpr int kAround = 4;  ///< half cells around a candidate that contain the best line
+/// Distance in half cells of the lines from which a line's noise is measured.
 constexpr int kBesideFrom = 10;
 constexpr int kBesideTo = 40;
 constexpr int kBesideStep = 2;
 constexpr int kLeastPairs = 2000;
-/// So many cells before the line, and behind it, must have been seen all along its seen part.
+/// This many cells before and behind the line must be known along its whole observed part.
 constexpr int kLeastDepth = 35;
 constexpr std::size_t kLeastBeside = 16;
-/// Independent cells would have one. Neighbours hang together, and fewer is luck.
+/// Lower limit of the noise. Independent cells would have 1; neighbours are correlated, so a
+/// smaller value is chance.
 constexpr double kLeastSpread = 1.3;
-/// One standard deviation over the mean distance, of a normal distribution.
+/// Ratio of the standard deviation to the mean absolute deviation of a normal distribution.
 constexpr double kSigmaOfMean = 1.2533;
 constexpr double kLeanStep_rad = 0.25 * std::numbers::pi / 180.0;
 constexpr int kLeanSteps = 2;
-constexpr int kMostShift = 3;  ///< half cells between the middle and the outermost block
+constexpr int kMostShift = 3;  ///< half cells from the middle to the outermost block
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-/// Parts of a line that are tried at half of the resolution: all, halves, thirds.
+/// Parts of a line that are tried at half the resolution: all, halves, thirds.
 struct Part {
     int first;
     int last;
@@ -57,15 +58,15 @@ Total total(const PairSums& sums, int first, int last) {
     return out;
 }
 
-/// Standard deviations of the sum, were all cells independent; kNone where few pairs are known.
+/// Sum in standard deviations, if all cells were independent; kNone with too few known pairs.
 double raw_score(const Total& total, double mean_square, int least_pairs) {
     if (total.pairs < least_pairs) return kNone;
     return static_cast<double>(total.sum) /
            (mean_square * std::sqrt(static_cast<double>(total.pairs)));
 }
 
-/// By how much each score exceeds the mean of those 3 to 10 lines beside it; the larger of that and
-/// what stands there.
+/// Excess of each score over the mean of the lines 3 to 10 away; keeps the larger of this excess
+/// and the present entry.
 void raise_to_excess(const std::vector<double>& scores, std::vector<double>& stands_out) {
     constexpr int kFrom = 3;
     constexpr int kTo = 10;
@@ -124,7 +125,7 @@ void MirrorScan::find_candidates(const PatchDetail& coarse) {
     }
 }
 
-/// Scores a line by what those beside it show over the same blocks.
+/// Computes the score of a line relative to the lines beside it, over the same blocks.
 PatchLine MirrorScan::rated(PatchLine line, int first, int last, double raw) {
     noise_.clear();
     for (const PairSums& sums : beside_) {

@@ -14,17 +14,17 @@ namespace {
 
 constexpr double kAhead_m = 0.8;      ///< from the body to the middle of the patches
 constexpr int kAheadDirections = 41;  ///< within 20 deg of the heading
-/// Every direction comes up once in 180 turns, and neighbours far apart in time.
+/// Every direction is searched once in 180 turns; neighbouring directions are far apart in time.
 constexpr unsigned kStride = 67;
-constexpr double kFloorStep_m = 0.015;  ///< another floor: the picture starts again
-constexpr double kFloorShare = 0.1;     ///< of one frame in the mean height of the floor
+constexpr double kFloorStep_m = 0.015;  ///< beyond this it is another floor: restart the picture
+constexpr double kFloorShare = 0.1;     ///< weight of one frame in the mean height of the floor
 constexpr double kSameAngle_rad = 2.0 * kRadPerDeg;
 constexpr double kSameOffset_m = 0.06;
-constexpr double kFarthest_m = 4.0;     ///< a pane farther from the body is forgotten
-constexpr double kFarthestNew_m = 2.0;  ///< a pane farther ahead is not told yet
-constexpr double kNearestNew_m = 0.2;   ///< the body fills the way up to here
+constexpr double kFarthest_m = 4.0;     ///< a pane farther from the body is removed
+constexpr double kFarthestNew_m = 2.0;  ///< a new pane farther ahead is not accepted yet
+constexpr double kNearestNew_m = 0.2;   ///< the body occupies the space up to here
 constexpr int kTurns = 2;
-constexpr double kWorthTurning = 4.0;  ///< score
+constexpr double kWorthTurning = 4.0;  ///< score from which a turned search is worth its time
 constexpr double kStraight_rad = 0.1 * kRadPerDeg;
 constexpr double kWayStep_m = 0.1;
 constexpr std::size_t kMostWay = 64;
@@ -106,7 +106,7 @@ void MirrorWatch::add(const camera::RectifiedRig& rig,
         panes_, [&](const SuspectedPane& pane) { return pane.low_looks >= config_.forget_looks; });
 }
 
-/// The even slots look ahead: 0, 1, -1, 2, -2 ... deg from the heading; the others all around.
+/// Even slots search ahead: 0, 1, -1, 2, -2 ... deg from the heading. Odd slots search all around.
 int MirrorWatch::next_direction(int slot) {
     if (slot % 2 == 1)
         return wrapped(static_cast<int>(kStride * other_turn_++ % unsigned{kDirections}));
@@ -146,7 +146,7 @@ void MirrorWatch::look(int direction) {
     double angle_rad = direction * kRadPerDeg;
     patch_.sample(picture_.geometry(), picture_.brightness(), middle_m_, angle_rad);
     auto line = scan_.find(patch_);
-    // A line that leans in its patch is sharper in one that leans with it.
+    // A line that is oblique in its patch is sharper in a patch turned to its direction.
     for (int turn = 0; turn < kTurns && line; ++turn) {
         const bool is_worth_it =
             line->score >= kWorthTurning || line->correlation >= config_.mirror_correlation;
@@ -164,7 +164,8 @@ void MirrorWatch::look(int direction) {
     if (!is_impossible(pane)) suspect(pane);
 }
 
-/// Where the pane crosses the middle of a patch with these normals, in cells across its lines.
+/// Position where the pane crosses the middle of a patch with this angle, in cells across its
+/// lines.
 double MirrorWatch::place_of(const SuspectedPane& pane, double angle_rad) const {
     const Eigen::Vector2d across(std::cos(angle_rad), std::sin(angle_rad));
     const double away_m = (pane.offset_m - pane.normal.dot(middle_m_)) / pane.normal.dot(across);
@@ -212,7 +213,7 @@ void hide_behind(std::span<const SuspectedPane> panes,
                  const SpecularConfig& config,
                  const grid::GridGeometry& geometry,
                  ImageView<std::uint8_t> hidden) {
-    // A cell is hidden when any part of it is: half of its diagonal.
+    // A cell is hidden if any part of it is hidden: adds half of its diagonal.
     const double reach_m = std::numbers::sqrt2 / 2.0 * geometry.resolution_m;
     for (const SuspectedPane& pane : panes) {
         const Eigen::Vector2d left = pane.left();

@@ -19,27 +19,27 @@
 
 namespace surefoot::specular {
 
-/// An upright plane that is suspected to be a mirror or a pane of glass: normal . p = offset_m in
-/// odom, from above. The normal points away from where the machine was.
+/// An upright plane that may be a mirror or a pane of glass: normal . p = offset_m in odom, seen
+/// from above. The normal points away from the machine's position at the detection.
 struct SuspectedPane {
     Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
     double offset_m = 0.0;
-    double from_m = 0.0;  ///< its seen part, along the left hand of the normal
+    double from_m = 0.0;  ///< its observed part, along the left of the normal
     double to_m = 0.0;
-    double score = 0.0;        ///< of the last look; see PatchLine
-    double correlation = 0.0;  ///< likewise: near 1 a mirror, near 0.1 glass
+    double score = 0.0;        ///< of the last observation; see PatchLine
+    double correlation = 0.0;  ///< the same; near 1 for a mirror, near 0.1 for glass
     int low_looks = 0;         ///< in a row, below the score that keeps it
 
     [[nodiscard]] Eigen::Vector2d left() const { return {-normal.y(), normal.x()}; }
 };
 
-/// Looks for mirrors and panes of glass that stand on the floor, while frames come in, and
-/// remembers them as long as the floor shows them.
+/// Detects mirrors and panes of glass that stand on the floor, frame by frame. Keeps them as long
+/// as the floor picture shows them.
 ///
-/// A frame looks along a few of 180 directions: all come up in turn, those ahead more often. Panes
-/// that are suspected already are looked at again, one a frame.
+/// Each frame searches a few of 180 directions: all in turn, those ahead more often. Each frame
+/// also checks one known pane again.
 ///
-/// Not thread-safe; frames in time order. No allocation after construction but for a new pane.
+/// Not thread-safe. Frames must come in time order. Allocates only to add a pane.
 class MirrorWatch {
   public:
     static constexpr int kDirections = 180;  ///< one degree apart
@@ -47,14 +47,14 @@ class MirrorWatch {
 
     explicit MirrorWatch(const SpecularConfig& config);
 
-    /// A rectified left image with its disparity, taken at a healthy pose. `floor_z_m`: height of
-    /// the level floor in odom; nothing where no level floor was found in this frame.
+    /// Adds a rectified left image with its disparity and a healthy pose. `floor_z_m`: height of
+    /// the level floor in odom; nothing if no level floor was found in this frame.
     void add(const camera::RectifiedRig& rig,
              const Pose& T_odom_body,
              ImageView<const std::uint8_t> left,
              ImageView<const float> disparity_px,
              std::optional<double> floor_z_m);
-    /// Forgets everything: odom is another one.
+    /// Forgets everything. Call when odom starts again with a new origin.
     void forget();
 
     [[nodiscard]] std::span<const SuspectedPane> panes() const noexcept { return panes_; }
@@ -69,7 +69,7 @@ class MirrorWatch {
     [[nodiscard]] double place_of(const SuspectedPane& pane, double angle_rad) const;
     [[nodiscard]] int next_direction(int slot);
     void remember_way();
-    /// The body went through it, or it is too far away to be told.
+    /// Whether the body went through the pane, or the pane is too near or too far to be detected.
     [[nodiscard]] bool is_impossible(const SuspectedPane& pane) const;
 
     SpecularConfig config_;
@@ -78,7 +78,7 @@ class MirrorWatch {
     MirrorScan scan_;
     std::vector<SuspectedPane> panes_;
     Eigen::Vector2d body_m_ = Eigen::Vector2d::Zero();
-    std::vector<Eigen::Vector2d> way_m_;                  ///< where the body was, newest last
+    std::vector<Eigen::Vector2d> way_m_;                  ///< path of the body, newest last
     Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< of the patches of this frame
     double heading_rad_ = 0.0;
     std::optional<double> floor_z_m_;  ///< mean of the last frames
@@ -88,13 +88,13 @@ class MirrorWatch {
     unsigned other_turn_ = 0;
 };
 
-/// Height in odom of a floor that is level within 1.5 deg, where the patches lie; nothing where
-/// `ground_body` (in base_link) is not accepted or leans more.
+/// Height in odom of a floor that is level within 1.5 deg, at the place of the patches. Nothing if
+/// `ground_body` (in base_link) is not accepted or tilted more.
 [[nodiscard]] std::optional<double> level_floor_z_m(const GroundObservation& ground_body,
                                                     const Pose& T_odom_body);
 
-/// Marks (with 1) the cells at and behind the panes as seen from the body, which stands before all
-/// of them; the others stay as they are. `hidden` has the size of `geometry`.
+/// Sets to 1 the cells at and behind the panes, seen from the body; the body is in front of all
+/// panes. Other cells stay unchanged. `hidden` has the size of `geometry`.
 void hide_behind(std::span<const SuspectedPane> panes,
                  const SpecularConfig& config,
                  const grid::GridGeometry& geometry,

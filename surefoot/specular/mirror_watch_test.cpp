@@ -17,7 +17,7 @@ using namespace testing;
 constexpr double kAngle_rad = 3.0 * kRadPerDeg;
 constexpr double kOffset_m = 1.6;
 
-/// Drives towards x = 1 m over a floor.
+/// Drives toward x = 1 m over a floor.
 class Drive {
   public:
     explicit Drive(const SpecularConfig& config = {}) : watch_(config) {}

@@ -8,7 +8,7 @@
 namespace surefoot::specular {
 namespace {
 
-/// Values of any size, with holes.
+/// Random values of any size, with unknown cells.
 PatchDetail random_detail(int lines, int line_cells, std::uint64_t seed) {
     Rng rng(seed);
     PatchDetail detail;

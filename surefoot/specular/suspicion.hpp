@@ -6,9 +6,9 @@
 
 namespace surefoot::specular {
 
-/// The line of a patch is taken for a mirror or a pane of glass. Glass, whose correlation is low,
-/// needs the higher score, and must stand out of the other lines of its patch twice as far as they
-/// do out of theirs.
+/// Whether a line is suspected to be a mirror or a pane of glass. Glass has a low correlation.
+/// It needs the higher score, and at least twice the score of the second best line of its
+/// patch.
 [[nodiscard]] inline bool is_suspect(const PatchLine& line, const SpecularConfig& config) noexcept {
     constexpr double kGlassUnique = 2.0;
     if (line.correlation >= config.mirror_correlation)

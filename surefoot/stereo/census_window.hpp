@@ -5,8 +5,8 @@
 
 namespace surefoot::stereo {
 
-/// Neighbours that a census word compares with its pixel: the fields of one colour of a chequered 9
-/// x 7 window. Bits in this order, eight to a byte.
+/// Offset [px] of a neighbour with which a census word compares its pixel. The neighbours are the
+/// fields of one colour of a chequered 9 x 7 window, in this order, eight bits to a byte.
 struct CensusNeighbour {
     int du = 0;
     int dv = 0;

@@ -61,13 +61,13 @@ TEST(ClippedFilter, IsItsDefinitionForEveryExecutor) {
             }
         }
         if (width > 40 && height > 40) {
-            EXPECT_GT(gone, 0) << "seed " << seed << " tests nothing";
+            EXPECT_GT(gone, 0) << "seed " << seed << " has no clipped area";
         }
     }
 }
 
-/// A search carries the disparity of the window's frame, or any other, into the white, and nothing
-/// in the image contradicts it.
+/// A search carries the disparity of the window's frame, or another one, into the white area, and
+/// nothing in the image contradicts it.
 TEST(ClippedFilter, MatchersSayNothingInsideAWhiteWindow) {
     SyntheticPair pair = Scene(SceneConfig{}).render();
     const int width = pair.left.width();

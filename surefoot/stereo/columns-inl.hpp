@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Included once for every instruction set, by sources that foreach_target.h includes.
+// Sources that foreach_target.h includes once per instruction set include this file as well.
 #if defined(SUREFOOT_STEREO_COLUMNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUREFOOT_STEREO_COLUMNS_INL_HPP
 #undef SUREFOOT_STEREO_COLUMNS_INL_HPP
@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
 namespace {
 
-/// Calls here(tag, u) for the columns from `first` to before `last` in whole registers, the last of
-/// which may do some columns again; one by one if there are fewer.
+/// Calls here(tag, u) for the columns first ... last - 1, one full register at a time. The last
+/// register may repeat some columns. Fewer columns than one register has are done one by one.
 template <class Here>
 HWY_INLINE void for_columns(int first, int last, const Here& here) {
     const hwy::HWY_NAMESPACE::ScalableTag<float> whole;

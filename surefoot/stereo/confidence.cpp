@@ -9,7 +9,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// Noise over texture slope, the error that one pixel alone would make [px].
+/// Ratio of noise to texture slope: the error [px] that a single pixel would have.
 float noise_per_pixel(const MatchEvidence& evidence) noexcept {
     if (!(evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px))
         return kMaxNoisePerPixel_px;

@@ -53,7 +53,7 @@ TEST(OutlierProbability, GrowsWithEveryWarning) {
     EXPECT_GT(outlier_probability(changed([](auto& e) { e.unknown_share = 0.5F; })), good);
 }
 
-/// Rows give, on every processor, what the definition says of single pixels.
+/// On every processor, rows give the same values as the definition for single pixels.
 TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
     constexpr int kWidth = 500;
     constexpr int kHeight = 2;

@@ -43,12 +43,12 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
     }
 }
 
-/// Jumps across holes, which have no neighbour to compare with.
+/// Marks jumps across holes, where no neighbour exists for comparison.
 void mark_across_holes(const float* d,
                        const RowRuns& runs,
                        rows::JumpRule rule,
                        std::uint8_t* mark) {
-    int before = -1;  // the last pixel of the run before
+    int before = -1;  // the last pixel of the previous run
     runs.for_each([&](int first, int last) {
         const float limit = rule.step_px + rule.slope * static_cast<float>(first - before);
         if (before >= 0 && std::abs(d[first] - d[before]) > limit) mark[before] = mark[first] = 255;
@@ -112,8 +112,8 @@ void distance_to_marks(Executor& executor,
     const int width = marks.width();
     const int height = marks.height();
     distance_px.resize(width, height);
-    // Along each row; then from row to row, straight or aslant. A longer way along the row than
-    // down the column takes its first part along the row of the mark.
+    // First along each row, then from row to row, straight or diagonally. A path that is longer
+    // along the row than down the column takes its first part along the row of the mark.
     for_row_blocks(executor, height, [&](int first, int last) {
         std::vector<std::uint8_t> scratch(
             2 * static_cast<std::size_t>(width + 2 * rows::kSpreadMargin));

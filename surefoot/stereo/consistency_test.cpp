@@ -98,7 +98,7 @@ TEST(MarkJumps, GroundAtAUsableAngleIsNone) {
     for (std::size_t i = 0; i < jumps.size(); ++i) EXPECT_EQ(jumps.data()[i], 0) << "pixel " << i;
 }
 
-/// The rule of mark_jumps along one line of pixels, `stride` elements apart, word by word.
+/// The rule of mark_jumps along one line of pixels, `stride` elements apart, implemented literally.
 void mark_line(const float* d, std::uint8_t* jump, int count, int stride) {
     int last = -1;  // the last known pixel
     for (int i = 0; i < count; ++i) {

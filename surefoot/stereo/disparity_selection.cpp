@@ -10,7 +10,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// What the left pixels of a row say about the pixels of the right row.
+/// The claims of a row's left pixels on the pixels of the right row.
 class Claims {
   public:
     explicit Claims(int width)
@@ -19,11 +19,11 @@ class Claims {
           offer_(width_),
           best_(kOutside + width_) {}
 
-    /// With which disparity the right pixel of each left one is claimed most cheaply.
+    /// Finds for each left pixel the disparity of the cheapest claim on its right pixel.
     void look_up(const std::uint8_t* disparity, const std::uint8_t* cost, std::uint8_t* claimed) {
         rows::claim(disparity, cost, static_cast<int>(width_), place_.data(), offer_.data());
         std::fill(best_.begin(), best_.end(), kNoClaim);
-        // Copies: the compiler must assume that what is stored below changes the members.
+        // Local copies, because the compiler must assume that the stores below change the members.
         const std::int32_t* const place = place_.data();
         const std::uint16_t* const offer = offer_.data();
         std::uint16_t* const best = best_.data() + kOutside;
@@ -32,7 +32,8 @@ class Claims {
             const std::uint16_t before = best[place[u]];
             best[place[u]] = before < offer[u] ? before : offer[u];
         };
-        // Neighbours want the same places and wait for each other: two at a time, far apart.
+        // Neighbouring pixels claim the same places and would wait for each other. Two halves of
+        // the row, far apart, are therefore processed together.
         const std::size_t half = width / 2;
         for (std::size_t u = 0; u < half; ++u) {
             claim(u);
@@ -45,7 +46,7 @@ class Claims {
 
   private:
     static constexpr std::uint16_t kNoClaim = 0xffff;
-    /// As far as disparities reach there are places left of the right row: nobody asks for them.
+    /// Places left of the right row, which disparities can reach. Their results are never used.
     static constexpr std::size_t kOutside = 256;
     std::size_t width_;
     std::vector<std::int32_t> place_;

@@ -16,7 +16,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// One row in which every pixel won at disparity 2, clearly.
+/// One row in which every pixel clearly won at disparity 2.
 Winners clear_row(int width) {
     Winners winners;
     winners.resize(width, 1);
@@ -38,7 +38,7 @@ Image<float> selected(const Winners& winners, const SelectionConfig& config = {}
 TEST(Refine, VertexOfTheParabola) {
     Winners winners = clear_row(8);
     winners.cost_below.at(4, 0) = 20;   // vertex at (20 - 30) / (2 (20 + 30 - 20)) = -1/6
-    winners.cost_above.at(5, 0) = 10;   // a tie with the next one: half way
+    winners.cost_above.at(5, 0) = 10;   // equal to the next cost: half way
     winners.cost_below.at(6, 0) = 255;  // end of the range
     const Image<float> d = selected(winners);
     EXPECT_TRUE(std::isnan(d.at(0, 0)));  // its right pixel is outside
@@ -80,7 +80,7 @@ TEST(Refine, InfinitelyFarIsNoDepth) {
     for (int u = 0; u < 4; ++u) EXPECT_TRUE(std::isnan(d.at(u, 0)));
 }
 
-/// What settle says, pixel by pixel.
+/// The definition of select_disparities, pixel by pixel.
 float selected_plainly(const SelectionConfig& config, const Winners& w, int u, int v) {
     const int d = w.disparity.at(u, v);
     const int cost = w.cost.at(u, v);

@@ -6,14 +6,14 @@
 
 namespace surefoot::stereo {
 
-/// Divides by one whole number below 2^10 whose odd part is below 2^8, with multiplications alone,
-/// and rounds as a division does: dividing takes a processor ten times as long, and no other
-/// program may see a difference.
+/// Divides floats by one whole number below 2^10 with an odd part below 2^8. It multiplies instead,
+/// because a division takes a processor ten times as long. The result is rounded exactly as a
+/// division rounds it.
 ///
-/// The inverse and x are taken apart, x = h + l and 1 / n = H + L with 12 bits in h and H, so that
-/// h H is exact. What is added to it, h L + l / n, is smaller by 2^-11 and thus off by less than
-/// 2^-34 of the quotient. A quotient by an odd part m is never nearer than 2^-25 / m to the middle
-/// between two floats, where rounding turns: 2^-33. For x = 0 and 2^-80 <= |x| <= 2^80.
+/// The proof splits x = h + l and 1 / n = H + L, with 12 bits in h and in H, so that h H is exact.
+/// The rest, h L + l / n, is smaller by 2^-11 and thus wrong by less than 2^-34 of the quotient. A
+/// quotient by an odd part m is at least 2^-25 / m = 2^-33 away from the middle between two floats,
+/// where rounding changes direction. Valid for x = 0 and 2^-80 <= |x| <= 2^80.
 class Divisor {
   public:
     constexpr explicit Divisor(int divisor)
@@ -26,7 +26,7 @@ class Divisor {
         return high * upper_ + (high * lower_ + (x - high) * inverse_);
     }
 
-    // For those who divide many numbers side by side.
+    // For callers that divide many numbers side by side in a register.
     static constexpr std::uint32_t kUpperHalf = 0xfffff000U;  ///< bits of a float
     [[nodiscard]] constexpr float inverse() const noexcept { return inverse_; }
     [[nodiscard]] constexpr float upper() const noexcept { return upper_; }

@@ -6,7 +6,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// All floats of one power of two; the others only move the exponent.
+/// All floats of one power of two; other powers only change the exponent.
 TEST(Divisor, RoundsAsADivisionDoes) {
     for (const int divisor : {12, 100, 720}) {
         const Divisor by(divisor);

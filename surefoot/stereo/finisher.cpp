@@ -7,7 +7,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// Differences between neighbours above this are two surfaces.
+/// A larger difference between neighbours separates two surfaces.
 constexpr double kJump_px = 1.0;
 constexpr int kNeighbourhoodRadius_px = 4;
 

@@ -7,14 +7,14 @@
 
 namespace surefoot::stereo {
 
-/// What every search is followed by: jumps are found, disparities are refined, and every match gets
-/// its sigma and its outlier probability.
+/// The last steps after every search: find disparity jumps, refine the disparities to sub-pixel,
+/// and give every match its sigma and its outlier probability.
 class Finisher {
   public:
     explicit Finisher(const RefineConfig& refinement = {}) : refiner_(refinement) {}
 
-    /// Fills all of `depth` from what was found (NaN = nothing), which may lie in
-    /// `depth.disparity_px` if there is no filter. Jumps and holes are those before the filter.
+    /// Fills all of `depth` from the disparities `found_px` (NaN = unknown). Without a filter,
+    /// `found_px` may be `depth.disparity_px`. Jumps and holes are found before the filter.
     void finish(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,
@@ -24,7 +24,7 @@ class Finisher {
 
   private:
     SubpixelRefiner refiner_;
-    // Kept between frames, so that nothing is allocated anew.
+    // Kept between frames, so that a frame of the same size allocates nothing.
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
     UnknownCounts unknown_;

@@ -38,7 +38,7 @@ void link_row(const float* disparity_px,
     const hn::ScalableTag<float> d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const auto limit = hn::Set(d, same_px);
-    float rest[kWord + 1];  // of the row, and then nothing known
+    float rest[kWord + 1];  // rest of the row, then unknown pixels
     for (int u = 0; u < width; u += kWord) {
         const float* from = disparity_px + u;
         if (u + kWord >= width) {
@@ -58,7 +58,7 @@ void link_row(const float* disparity_px,
     }
 }
 
-/// Known disparities, and less than all of them for an unknown one: they are positive.
+/// Maps an unknown disparity to a value below all known ones, which are positive.
 template <class D>
 HWY_INLINE hn::Vec<D> ordered(D d, const float* from) {
     const auto value = hn::LoadU(d, from);
@@ -72,7 +72,7 @@ HWY_INLINE void sort(V& a, V& b) {
     a = low;
 }
 
-/// The three of a column in order.
+/// Sorts the three values of a column.
 template <class D>
 HWY_INLINE void sort_column(
     D d, const float* const lines[3], int u, float* low, float* middle, float* high) {
@@ -90,9 +90,9 @@ HWY_INLINE V middle_of(V a, V b, V c) {
     return hn::Max(hn::Min(a, b), hn::Min(hn::Max(a, b), c));
 }
 
-/// The middle of nine, whose columns are in order: of the highest of the low ones, the middle one
-/// of the middle ones and the lowest of the high ones it is the middle one. Each points at the
-/// column before.
+/// Median of nine values in three sorted columns: the median of the largest of the low values, the
+/// median of the middle values, and the smallest of the high values. The pointers refer to the
+/// previous column.
 template <class D>
 HWY_INLINE void median_here(
     D d, const float* low, const float* middle, const float* high, float* out) {
@@ -148,7 +148,8 @@ void select_row(const SelectionRow& row) {
         const bool good = static_cast<int>(d != 0) & static_cast<int>(d <= u) &
                           static_cast<int>(second[u] * unique >= 100 * cost) &
                           static_cast<int>(apart <= tolerance);
-        // Vertex of the parabola through the costs at -1, 0 and 1; none beside the ends.
+        // Vertex of the parabola through the costs at -1, 0 and 1; not at the ends of the search
+        // range.
         const int curvature = below + above - 2 * cost;
         const bool curved = static_cast<int>(below != kNoCost) &
                             static_cast<int>(above != kNoCost) & static_cast<int>(curvature > 0);
@@ -203,7 +204,7 @@ HWY_INLINE hn::Vec<hn::Rebind<std::uint8_t, D>> bytes_of(D /*d*/, hn::Mask<D> ma
     return hn::DemoteTo(d8, hn::IfThenElseZero(hn::RebindMask(d32, mask), hn::Set(d32, 255)));
 }
 
-/// What mark_down does to the lanes from `u` on.
+/// mark_down for the lanes from `u` on.
 template <class D>
 HWY_INLINE void mark_down_here(D d,
                                const float* disparity_px,
@@ -272,7 +273,7 @@ void sum_windows_row(const std::uint8_t* counts,
     }
 }
 
-/// In steps of 1, 2, 4 and 8, each of which may be taken or not.
+/// Spreads in steps of 1, 2, 4 and 8. Any sum of these steps gives a distance.
 void spread_along_row(const std::uint8_t* HWY_RESTRICT mark,
                       int width,
                       std::uint8_t* scratch,
@@ -293,7 +294,7 @@ void spread_along_row(const std::uint8_t* HWY_RESTRICT mark,
             const auto longer = hn::SaturatedAdd(beside, more);
             hn::StoreU(hn::Min(hn::LoadU(d8, from + u), longer), d8, to + u);
         }
-        // What registers wrote beyond the end is no distance.
+        // Registers wrote beyond the end; these values are no distances.
         std::fill_n(to + width, kSpreadMargin, std::uint8_t{255});
         std::swap(from, to);
     }

@@ -4,24 +4,24 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The loops of settle.cpp and consistency.cpp over one row of an image, compiled once for every
-/// instruction set and chosen at run time; all give the same bytes.
+/// The loops of disparity_selection.cpp and consistency.cpp over one image row. They are compiled
+/// once per instruction set and chosen at run time; every instruction set gives the same bytes.
 namespace surefoot::stereo::rows {
 
-/// One bit for each pixel, 64 to a word, the first one lowest: whether it is known, and whether it
-/// and the next one are and differ by at most `same_px`. Bits beyond the end are 0.
+/// Sets one bit per pixel, 64 to a word, lowest bit first. `known`: the pixel has a disparity.
+/// `linked`: this pixel and the next are known and differ by at most `same_px`. Other bits are 0.
 void link(const float* disparity_px,
           int width,
           float same_px,
           std::uint64_t* known,
           std::uint64_t* linked);
 
-/// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
-/// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
-/// repeat. `scratch`: 3 (width + 2).
+/// Median of 3 x 3 disparities. Unknown (NaN) sorts below all numbers, so the median is unknown
+/// only where at least five pixels are. `lines`: the rows above, here and below. The end columns
+/// repeat. `scratch`: 3 (width + 2) floats.
 void median(const float* const lines[3], int width, float* scratch, float* out);
 
-/// What each left pixel claims: `place` its right pixel, and `offer` 256 * cost + disparity.
+/// Each left pixel claims a right pixel: `place` is its column, `offer` is 256 * cost + disparity.
 void claim(const std::uint8_t* disparity,
            const std::uint8_t* cost,
            int width,
@@ -34,7 +34,7 @@ struct SelectionRow {
     const std::uint8_t* cost_below = nullptr;
     const std::uint8_t* cost_above = nullptr;
     const std::uint8_t* second_cost = nullptr;
-    /// Disparity with which the right pixel of this match was claimed most cheaply.
+    /// Disparity of the cheapest claim on the right pixel of this match.
     const std::uint8_t* claimed = nullptr;
     int width = 0;
     int uniqueness_percent = 0;
@@ -44,23 +44,23 @@ struct SelectionRow {
 /// See stereo::select_disparities.
 void select(const SelectionRow& row);
 
-/// What counts as a jump between known pixels: a difference above step_px + slope * distance.
+/// A jump between known pixels is a difference larger than step_px + slope * distance.
 struct JumpRule {
     float step_px = 0.0F;
     float slope = 0.0F;
 };
-/// Half the pixels over which the steps of a ramp are spread.
+/// A ramp spreads its step over 2 kRampHalf_px pixels.
 inline constexpr int kRampHalf_px = 2;
 
-/// Writes 255 into `mark` on both sides of a jump between neighbours of the row, and in the middle
-/// of a ramp of 2 kRampHalf_px; else 0.
+/// Writes 255 into `mark` on both sides of a jump between neighbours of the row and in the middle
+/// of a ramp of 2 kRampHalf_px. Writes 0 everywhere else.
 void mark_along(const float* disparity_px, int width, JumpRule rule, std::uint8_t* mark);
-/// Adds the middles of ramps between the rows kRampHalf_px above and below.
+/// Also marks the middle of each ramp between the rows kRampHalf_px above and below.
 void mark_ramps(
     const float* above, const float* below, int width, JumpRule rule, std::uint8_t* mark);
-/// Adds both sides of jumps from the last known pixel of each column, which is `last_px` (NaN:
-/// none) and lies 1 + `rows_since` rows above; both are kept from row to row. `mark` is followed by
-/// the next row after `stride` elements.
+/// Also marks both sides of each jump down a column. The upper side is the column's last known
+/// pixel: `last_px` (NaN = no known pixel yet), 1 + `rows_since` rows above. Both arrays are
+/// updated from row to row. The next row of `mark` begins `stride` elements later.
 void mark_down(const float* disparity_px,
                int width,
                JumpRule rule,
@@ -71,18 +71,18 @@ void mark_down(const float* disparity_px,
 
 /// Adds `sign` to the count of every column whose pixel is unknown.
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts);
-/// Sums of 2 radius + 1 neighbours: `counts` has `radius` more on either side. They must fit.
+/// Sums 2 radius + 1 neighbours; `counts` has `radius` more on either side. Sums must fit a byte.
 void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums);
 
-/// Distances are counted up to here, 255 beyond.
+/// Largest distance that is counted; 255 means more.
 inline constexpr int kFarthest_px = 15;
-/// Distance from the nearest marked pixel of the row. `scratch`: 2 (width + 2 kSpreadMargin).
+/// Distance [px] from the nearest marked pixel of the row. `scratch`: 2 (width + 2 kSpreadMargin).
 void spread_along(const std::uint8_t* mark,
                   int width,
                   std::uint8_t* scratch,
                   std::uint8_t* distance_px);
 inline constexpr int kSpreadMargin = 80;
-/// Lessens `distance_px` to one more than the least of three neighbours in the row `from`.
+/// Lowers `distance_px` to at most 1 + the smallest of the three neighbours in the row `from`.
 void spread_across(const std::uint8_t* from, int width, std::uint8_t* distance_px);
 
 }  // namespace surefoot::stereo::rows

@@ -19,7 +19,7 @@ void MatcherConfig::describe(ConfigVisitor& visitor) {
                     bm_prefilter_cap,
                     1,
                     63,
-                    "bm: steeper slopes of grey along a row are cut off here");
+                    "bm: limit of the grey slope along a row; steeper slopes count as this value");
     visitor.integer("uniqueness_percent",
                     uniqueness_percent,
                     0,
@@ -29,7 +29,7 @@ void MatcherConfig::describe(ConfigVisitor& visitor) {
                    left_right_tolerance_px,
                    0.0,
                    16.0,
-                   "a pixel hidden behind a nearer match by more than this is dropped");
+                   "a pixel is dropped if a nearer match hides it by more than this disparity");
 }
 
 std::optional<std::string> MatcherConfig::problem() const {

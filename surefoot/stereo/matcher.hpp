@@ -13,42 +13,42 @@
 namespace surefoot::stereo {
 
 enum class Algorithm : std::uint8_t {
-    census,  ///< ours: semi-global on census words
+    census,  ///< our semi-global matcher on census words
     sgbm,    ///< OpenCV's semi-global matcher
-    bm,      ///< OpenCV's block matcher: fast, and lost where texture is weak
+    bm,      ///< OpenCV's block matcher: fast, but unreliable on weak texture
 };
 inline constexpr const char* kAlgorithmNames[] = {"census", "sgbm", "bm"};
 
-/// Along how many paths OpenCV's semi-global matcher sums its costs.
+/// Number and directions of the paths along which OpenCV's semi-global matcher sums costs.
 enum class SgbmMode : std::uint8_t {
     three_way,  ///< from the left, from above, from the right
     hh4,        ///< four, along rows and columns
-    hh,         ///< eight; holds the costs of the whole image
+    hh,         ///< eight; keeps the costs of the whole image in memory
 };
 inline constexpr const char* kSgbmModeNames[] = {"three_way", "hh4", "hh"};
 
 struct MatcherConfig {
     Algorithm algorithm = Algorithm::census;
     int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images want 96-128
-    int block_size = 3;    ///< odd; sgbm alone
+    int block_size = 3;    ///< odd; for sgbm only
     SgbmMode sgbm_mode = SgbmMode::three_way;
-    /// Odd; bm alone. Its fast loops go up to 21, and to a prefilter of 31.
+    /// Odd; for bm only. OpenCV's fast loops handle sizes up to 21 and prefilter caps up to 31.
     int bm_block_size = 15;
     int bm_prefilter_cap = 31;
     int uniqueness_percent = 5;
     double left_right_tolerance_px = 1.0;
     void describe(ConfigVisitor& visitor);
-    /// First reason why it cannot be used, with the value; or nothing.
+    /// Returns the first invalid setting with its value in words, or nothing if all are valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Dense matching of a rectified pair. An implementation is deterministic for every executor.
+/// Dense matching of a rectified pair. Every executor gives the same result, byte for byte.
 class Matcher {
   public:
     virtual ~Matcher() = default;
-    /// Writes disparity, sigma and outlier probability for every pixel of `left` into `depth`.
-    /// Both images must have the same size. Where there is no match, disparity and sigma are NaN
-    /// and the outlier probability is 1.
+    /// Writes disparity, sigma and outlier probability of every pixel of `left` into `depth`. Both
+    /// images must have the same size. A pixel without a match gets NaN as disparity and sigma, and
+    /// an outlier probability of 1.
     virtual void match(ImageView<const std::uint8_t> left,
                        ImageView<const std::uint8_t> right,
                        Executor& executor,
@@ -59,13 +59,13 @@ class Matcher {
 /// probability. `config` must have no problem().
 [[nodiscard]] std::unique_ptr<Matcher> make_sgbm_matcher(const MatcherConfig& config);
 
-/// The same behind OpenCV's block matcher.
+/// OpenCV's block matcher, followed by the same steps.
 [[nodiscard]] std::unique_ptr<Matcher> make_bm_matcher(const MatcherConfig& config);
 
-/// SemiGlobalSearch, its winners settled, speckles removed, then as above.
+/// SemiGlobalSearch, selection of its winners, removal of speckles, then the same steps as above.
 [[nodiscard]] std::unique_ptr<Matcher> make_census_matcher(const MatcherConfig& config);
 
-/// The one that `config.algorithm` names.
+/// The matcher that `config.algorithm` names.
 [[nodiscard]] std::unique_ptr<Matcher> make_matcher(const MatcherConfig& config);
 
 }  // namespace surefoot::stereo

@@ -29,7 +29,7 @@ DepthImage match(const GreyImage& left, const GreyImage& right, const MatcherCon
     return depth;
 }
 
-/// Steps of 0.18 m, a kerb and a table over a floor, as a walking machine sees them.
+/// Steps of 0.18 m, a kerb and a table on a floor, seen from a walking machine.
 const test::SyntheticPair& scene() {
     static const test::SyntheticPair pair = [] {
         test::SceneConfig config;
@@ -43,7 +43,7 @@ const test::SyntheticPair& scene() {
     return pair;
 }
 
-/// Upside down.
+/// Rotates an image by 180 degrees.
 template <typename T>
 void flip(Image<T>& image) {
     for (int v = 0; v < image.height() / 2; ++v)
@@ -60,7 +60,7 @@ struct Score {
     double within_3_sigma = 0.0;
 };
 
-/// Over pixels whose truth is known (hidden ones are not) and, if given, `use` accepts.
+/// Uses pixels with known truth (hidden ones have none) that `use`, if given, accepts.
 template <typename Use>
 Score score(const Image<float>& disparity_px,
             const Image<float>* sigma_px,
@@ -96,7 +96,7 @@ Score score(const Image<float>& disparity_px,
     return s;
 }
 
-/// What OpenCV gives with the same settings, without anything of ours.
+/// OpenCV's result with the same settings, without our steps.
 Image<float> plain_sgbm(const GreyImage& left, const GreyImage& right, int disparities) {
     const auto padded = [&](const GreyImage& image) {
         const cv::Mat m(
@@ -155,7 +155,7 @@ class EveryMatcher : public testing::TestWithParam<Algorithm> {
     [[nodiscard]] static MatcherConfig config() {
         MatcherConfig config;
         config.algorithm = GetParam();
-        if (config.algorithm == Algorithm::sgbm) config.uniqueness_percent = 10;  // as beside it
+        if (config.algorithm == Algorithm::sgbm) config.uniqueness_percent = 10;  // see plain_sgbm
         return config;
     }
     [[nodiscard]] static const char* name() {
@@ -255,7 +255,7 @@ TEST_P(EveryMatcher, FloorIsExactToATenthOfAPixel) {
 }
 
 TEST(CensusMatcher, IsNotLateOnWeakFloor) {
-    // Its paths come down the image: seen upright and upside down the floor must lie as high.
+    // Its paths run down the image. Upright and upside down, the floor must have the same height.
     double mean_px[2] = {};
     for (const bool upside_down : {false, true}) {
         double sum_px = 0.0;
@@ -338,7 +338,7 @@ TEST_P(EveryMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
     cv::setNumThreads(1);
     matcher->match(pair.left.view(), pair.right.view(), serial, a);
     cv::setNumThreads(2);
-    matcher->match(pair.right.view(), pair.left.view(), two, b);  // leaves other contents behind
+    matcher->match(pair.right.view(), pair.left.view(), two, b);  // leaves other contents in b
     matcher->match(pair.left.view(), pair.right.view(), two, b);
     cv::setNumThreads(threads);
     EXPECT_TRUE(same(a.disparity_px, b.disparity_px));
@@ -351,12 +351,12 @@ TEST_P(EveryMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
 struct RealPair {
     const char* name;
     const char* truth;
-    const char* other_truth;  ///< of the right eye, to find hidden pixels; or
-    const char* mask;         ///< above 200 where both eyes see
+    const char* other_truth;  ///< of the right camera, to find hidden pixels; or
+    const char* mask;         ///< above 200 where both cameras see the point
     double truth_scale;
     int disparities;
-    double max_bad_2;     ///< measured value plus a tenth
-    double max_bad_2_bm;  ///< the same of block matching, which is worse than SGBM
+    double max_bad_2;     ///< measured value plus 10 %
+    double max_bad_2_bm;  ///< the same for block matching, which is worse than SGBM
 };
 
 GreyImage load(const std::string& file) {
@@ -388,7 +388,7 @@ Image<float> load_truth(const std::string& base, const RealPair& pair) {
 }
 
 TEST_P(EveryMatcher, MiddleburyBesidePlainSgbm) {
-    // Truth of adirondack is rounded to whole pixels: only bad-2 means something there.
+    // The truth of adirondack is rounded to whole pixels, so only bad-2 is meaningful there.
     const RealPair pairs[] = {
         {"cones", "disp_left_x4.png", "disp_right_x4.png", nullptr, 4.0, 64, 0.024, 0.041},
         {"teddy", "disp_left_x4.png", "disp_right_x4.png", nullptr, 4.0, 64, 0.028, 0.066},
@@ -431,13 +431,13 @@ TEST_P(EveryMatcher, MiddleburyBesidePlainSgbm) {
             100 * ours.within_3_sigma);
         if (GetParam() == Algorithm::bm) {
             EXPECT_LT(ours.bad_2, pair.max_bad_2_bm) << pair.name;
-            // What has no texture stays empty: adirondack loses 11.3 %.
+            // Areas without texture stay empty: adirondack loses 11.3 %.
             EXPECT_GT(ours.density, plain.density - 0.12) << pair.name;
             continue;
         }
         EXPECT_LT(ours.bad_2, pair.max_bad_2) << pair.name;
         EXPECT_LE(ours.bad_2, plain.bad_2) << pair.name;
-        // Fewer pixels, for fewer wrong ones: adirondack loses 1.8 % to the left-right check.
+        // Fewer pixels, with fewer wrong ones: adirondack loses 1.8 % to the left-right check.
         EXPECT_GT(ours.density, plain.density - 0.02) << pair.name;
     }
     if (skipped > 0)

@@ -17,10 +17,10 @@ namespace {
 constexpr float kPixelPerStep = 1.0F / 16.0F;
 constexpr int kSgbmPrefilterCap = 63;
 
-/// One of OpenCV's searches, and what we make of its disparities.
+/// Runs one of OpenCV's searches and converts its disparities.
 class OpenCvMatcher final : public Matcher {
   public:
-    /// `margin_px` on every side of an image stay without a match.
+    /// A border of `margin_px` on every side of the image gets no match.
     OpenCvMatcher(const MatcherConfig& config, cv::Ptr<cv::StereoMatcher> search, int margin_px)
         : left_right_tolerance_px_(config.left_right_tolerance_px),
           margin_px_(margin_px),
@@ -43,7 +43,7 @@ class OpenCvMatcher final : public Matcher {
     }
 
   private:
-    /// Copies with wider borders: OpenCV leaves them without a match.
+    /// Makes copies with wider borders, because OpenCV gives border pixels no match.
     void pad(ImageView<const std::uint8_t> image, cv::Mat& padded) const {
         const cv::Mat source(image.height,
                              image.width,
@@ -66,8 +66,8 @@ class OpenCvMatcher final : public Matcher {
                     steps_.ptr<std::int16_t>(v + margin_px_) + left_margin_px_;
                 float* const d = disparity_px.row(v);
                 for (int u = 0; u < disparity_px.width(); ++u) {
-                    // 0 would be infinitely far away, below it stands "no match".
-                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNanF;
+                    // Disparity 0 is infinitely far away; negative values mean "no match".
+                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNan;
                 }
             }
         });
@@ -79,7 +79,7 @@ class OpenCvMatcher final : public Matcher {
     cv::Ptr<cv::StereoMatcher> search_;
     ClippedFilter clipped_;
     Finisher finisher_;
-    // Kept between frames, so that nothing is allocated anew.
+    // Kept between frames, so that a frame of the same size allocates nothing.
     cv::Mat padded_left_;
     cv::Mat padded_right_;
     cv::Mat steps_;
@@ -123,7 +123,7 @@ std::unique_ptr<Matcher> make_bm_matcher(const MatcherConfig& config) {
     search->setDisp12MaxDiff(-1);  // our own left-right check
     search->setSpeckleWindowSize(kSpeckleSize_px);
     search->setSpeckleRange(kSpeckleRange_px);
-    // Half a window on every side, and one: OpenCV wants images larger than it.
+    // Half a window on every side plus one, because OpenCV requires images larger than the window.
     return std::make_unique<OpenCvMatcher>(config, search, config.bm_block_size / 2 + 1);
 }
 

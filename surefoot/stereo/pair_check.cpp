@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kHalf_px = kShiftHalf_px;  ///< of the window around a corner
 constexpr int kMaxCorners = 300;
-constexpr double kCornerQuality = 0.01;  ///< of the best corner
+constexpr double kCornerQuality = 0.01;  ///< relative to the best corner
 constexpr double kMinCorrelation = 0.9;
-/// A second place that fits nearly as well (a fence, a tiled floor) says nothing.
+/// If a second place fits nearly as well (a fence, a tiled floor), the match is ambiguous.
 constexpr double kMaxSecond = 0.95;
 
 cv::Mat as_mat(ImageView<const std::uint8_t> image) {
@@ -29,7 +29,7 @@ cv::Mat as_mat(ImageView<const std::uint8_t> image) {
             static_cast<std::size_t>(image.stride)};
 }
 
-/// Where a corner went, in whole pixels: the best normalised correlation.
+/// Whole-pixel shift of a corner with the best normalised correlation.
 std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
                                           const cv::Mat& right,
                                           const cv::Point& corner,
@@ -47,7 +47,7 @@ std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
     double best = 0.0;
     cv::Point at;
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
-    // A best place on the edge of what was searched may go on beyond it.
+    // A maximum at the edge of the search area may continue beyond it.
     if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
     const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);
     score(peak & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1.0);
@@ -69,7 +69,7 @@ Corners match_corners(ImageView<const std::uint8_t> left,
     const cv::Mat left_mat = as_mat(left);
     const cv::Mat right_mat = as_mat(right);
     std::vector<cv::Point2f> places;
-    // Spread over the image, whatever its size.
+    // Spreads the corners over the image, for any image size.
     const double distance_px = std::max(6.0, std::sqrt(left.width * (left.height / 1200.0)));
     cv::goodFeaturesToTrack(left_mat, places, kMaxCorners, kCornerQuality, distance_px);
     corners.found = static_cast<int>(places.size());

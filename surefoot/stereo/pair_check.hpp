@@ -8,30 +8,30 @@
 
 namespace surefoot::stereo {
 
-/// How well two images fit together as a rectified pair: what corners of the left one say that are
-/// found again in the right one, a few rows up and down and in both directions along the row.
+/// How well two images fit together as a rectified pair. Corners of the left image are searched in
+/// the right image, a few rows up and down and in both directions along the row.
 struct PairCheck {
     int corners = 0;             ///< found in the left image
-    int matched = 0;             ///< of these, found again without doubt
+    int matched = 0;             ///< of these, found again with a clear match
     double row_offset_px = 0.0;  ///< median row in the right image minus row in the left one
     double row_error_px = 0.0;   ///< median of its absolute value
-    int backward = 0;            ///< of the matched, more than 1 px to the right of where they were
+    int backward = 0;            ///< of the matched: more than 1 px to the right in the right image
 
-    /// The median is believed from this many corners on.
+    /// The medians are meaningful from this many matched corners on.
     static constexpr int kEnough = 20;
     [[nodiscard]] bool enough() const noexcept { return matched >= kEnough; }
-    /// The right image is the left one: four of five corners moved the wrong way. Real pairs move
-    /// that way only where the eyes squint.
+    /// The images are swapped: more than four of five matched corners moved the wrong way. In an
+    /// unswapped pair corners move that way only where the optical axes converge.
     [[nodiscard]] bool swapped() const noexcept { return enough() && 5 * backward > 4 * matched; }
 };
 
-/// Farthest that corners are looked for [px].
+/// Largest search distance [px] for a corner.
 struct PairSearch {
     int disparity_px = 128;
     int rows_px = 8;
 };
 
-/// A corner of the left image that was found again without doubt.
+/// A corner of the left image with a clear match in the right image.
 struct CornerShift {
     double u_px = 0.0;  ///< in the left image
     double v_px = 0.0;
@@ -44,12 +44,12 @@ struct Corners {
     std::vector<CornerShift> matched;
 };
 
-/// Images of equal size.
+/// Matches corners of the left image in the right image. Both images must have the same size.
 [[nodiscard]] Corners match_corners(ImageView<const std::uint8_t> left,
                                     ImageView<const std::uint8_t> right,
                                     const PairSearch& search = {});
 
-/// Images of equal size. Those without corners give none, not an error.
+/// Checks a pair of equal size. Images without corners give a result with 0 corners, not an error.
 [[nodiscard]] PairCheck check_pair(ImageView<const std::uint8_t> left,
                                    ImageView<const std::uint8_t> right,
                                    const PairSearch& search = {});

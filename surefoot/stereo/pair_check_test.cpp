@@ -16,7 +16,7 @@ namespace {
 constexpr int kWidth = 240;
 constexpr int kHeight = 160;
 
-/// Blobs of about 4 px that never repeat; `shift` moves what is seen to the right and down.
+/// Blobs of about 4 px that never repeat; `shift` moves the scene right and down.
 GreyImage blobs(double shift_u_px, double shift_v_px) {
     Rng rng(5);
     cv::Mat noise(kHeight + 80, kWidth + 80, CV_8UC1);
@@ -41,8 +41,8 @@ TEST(PairCheck, MeasuresRowsToAFractionOfAPixel) {
     for (const double rows_px : {0.0, 0.4, -1.25, 3.5}) {
         const PairCheck found = check(blobs(0, 0), blobs(-12.3, rows_px));
         ASSERT_TRUE(found.enough());
-        // The median of many corners is known better than one of them, whose noise is all that is
-        // left of the absolute value.
+        // The median of many corners is more certain than one corner, whose noise remains in the
+        // absolute value.
         EXPECT_NEAR(found.row_offset_px, rows_px, 0.05);
         EXPECT_NEAR(found.row_error_px, std::abs(rows_px), 0.1);
         EXPECT_FALSE(found.swapped());
@@ -53,12 +53,13 @@ TEST(PairCheck, NoticesExchangedEyes) {
     const PairCheck found = check(blobs(-12.3, 0), blobs(0, 0));
     ASSERT_TRUE(found.enough());
     EXPECT_TRUE(found.swapped());
-    // Far away there is no disparity: no reason to complain.
+    // Far objects have no disparity, which is no reason for a warning.
     EXPECT_FALSE(check(blobs(0, 0), blobs(0, 0)).swapped());
 }
 
 TEST(PairCheck, KnowsWhenItCannotTell) {
-    // Rows farther apart than it looks, images of different things, nothing to see, tiny ones.
+    // Rows farther apart than the search range, images of different scenes, empty images, tiny
+    // images.
     EXPECT_FALSE(check(blobs(0, 0), blobs(-12, 20)).enough());
     GreyImage mirrored = blobs(0, 0);
     for (int v = 0; v < kHeight; ++v) std::reverse(mirrored.row(v), mirrored.row(v) + kWidth);

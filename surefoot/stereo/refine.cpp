@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxWindowRadius_px = 16;
 constexpr int kMaxSmoothRadius_px = 16;
-/// Blocks that begin with a window of rows want to be higher than it.
+/// A block starts by summing a window of rows, so it should be higher than the window.
 constexpr int kSolvedRows = 64;
 
 void smooth_image_row(ImageView<const std::uint8_t> in,
@@ -26,7 +26,7 @@ void smooth_image_row(ImageView<const std::uint8_t> in,
     rows::smooth_image(lines, in.width, scratch.data(), out);
 }
 
-/// Sums of the columns of a window that slides down, and scratch for its way along the row.
+/// Column sums of a window that moves down, and scratch memory for its way along the row.
 struct WindowSums {
     WindowSums(int width, int radius) {
         const auto columns = static_cast<std::size_t>(width + rows::kPadding);
@@ -82,7 +82,7 @@ SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
     SUREFOOT_ASSERT(config.window_radius_px >= 1 && config.window_radius_px <= kMaxWindowRadius_px);
 }
 
-/// Filters some rows of what was found and smooths them along the row.
+/// Filters a block of rows of the found disparities and smooths them along the row.
 void SubpixelRefiner::smooth_block(int first,
                                    int last,
                                    const Image<float>& found_px,
@@ -102,8 +102,8 @@ void SubpixelRefiner::smooth_block(int first,
     }
 }
 
-/// Smooths some rows down the columns; grey difference and gradient of every pixel at its
-/// disparity.
+/// Smooths a block of rows down the columns and computes grey difference and gradient of every
+/// pixel at its disparity.
 void SubpixelRefiner::warp_block(int first,
                                  int last,
                                  ImageView<const std::uint8_t> left,
@@ -142,7 +142,7 @@ void SubpixelRefiner::warp_block(int first,
     }
 }
 
-/// Solves the windows of some rows; sums slide down the columns and along each row.
+/// Solves the windows of a block of rows. The sums move down the columns and along each row.
 void SubpixelRefiner::solve_block(int first,
                                   int last,
                                   Image<float>& disparity_px,
@@ -198,7 +198,7 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     for_row_blocks(executor, height, [&](int first, int last) {
         smooth_block(first, last, found_px, filter);
     });
-    // Only now: it may be the image of what was found.
+    // Resized only here, because `disparity_px` may be the image `found_px`.
     disparity_px.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
         warp_block(first, last, left, right, jump_distance_px, disparity_px);

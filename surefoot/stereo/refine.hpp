@@ -12,57 +12,57 @@ namespace surefoot::stereo {
 struct RefineConfig {
     int smooth_radius_px = 4;      ///< neighbours on the same surface are averaged over 9x9 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
-    /// What was found in a row is what the surface has so many rows farther up: a search whose
-    /// paths come down the image, but not up, follows slanted ground late.
+    /// A search whose paths run down the image but not up follows slanted ground late. The value
+    /// found in a row therefore belongs to the row this many rows farther up.
     int lag_rows = 0;
     int window_radius_px = 12;    ///< 25x25 pixels share one correction, at most 16
-    double prior_sigma_px = 0.2;  ///< how far the smoothed value is trusted, 1 sigma
+    double prior_sigma_px = 0.2;  ///< trust in the smoothed value, 1 sigma
     int jump_margin_px = 2;       ///< pixels this near to a jump show mixed surfaces: not used
     double max_step_px = 1.0;     ///< no correction is larger
-    /// Least grey-level noise (1 sigma, after smoothing the image) that a window is believed to
-    /// have.
+    /// Lower limit of the grey-level noise of a window, 1 sigma, after smoothing the image.
+    /// Prevents too much trust in a window.
     double min_noise_grey = 0.4;
-    /// Neighbouring pixels share their noise after the smoothing: this many count as one.
+    /// Smoothing correlates the noise of neighbouring pixels: this many count as one.
     double correlation = 3.5;
 };
 
-/// What is done to the found disparities before anything else.
+/// Filter that runs on the found disparities before any other step.
 enum class Filter : std::uint8_t {
     none,
     median,  ///< of 3 x 3 pixels
 };
 
-/// What the refinement learnt about the pixels of a row besides their disparity; NaN = unknown.
+/// By-products of the refinement for one row, besides the disparities; NaN = unknown.
 struct RefinedRow {
     const float* residual_grey = nullptr;     ///< rms grey difference that no shift explains
     const float* gradient_grey_px = nullptr;  ///< rms slope along the row in the window
-    const float* shift_px = nullptr;          ///< how far the smoothed value was moved
+    const float* shift_px = nullptr;          ///< change of the smoothed value
 };
-/// Is called once for each row `v` when it is refined, from any thread; what it is given ends with
-/// the call. So it need not be written to memory.
+/// Called once for each refined row `v`, from any thread. The row's data are valid only during the
+/// call, so that they need not be written to memory.
 using RefinedRows = std::function<void(int v, const RefinedRow&)>;
 
 /// Sub-pixel refinement: smoothing along surfaces, then image registration (Lucas and Kanade 1981)
 /// along the row.
 ///
-/// A semi-global matcher draws its parabola through three costs and so prefers whole pixels,
+/// A semi-global matcher draws its parabola through three costs. It therefore prefers whole pixels,
 /// scatters from pixel to pixel, and leans toward fronto-parallel surfaces where texture is weak.
-/// Averaging over neighbours on the same surface removes the first two. For the third, the right
-/// image is warped by the disparity field itself, so that slanted ground stays slanted, and each
-/// window solves for the one shift that explains the grey differences left over: with e = L(u) -
-/// R(u - d) and g the mean gradient of both images,
+/// Averaging over neighbours on the same surface removes the first two errors. For the third, the
+/// disparity field itself warps the right image, so that slanted ground stays slanted. Each window
+/// then solves for the one shift that explains the remaining grey differences. With g the mean
+/// gradient of both images and e = L(u) - R(u - d),
 ///   shift = -(sum g e / c s^2) / (sum g^2 / c s^2 + 1 / p^2)
-/// where s is the residual noise, c the noise correlation and p the prior. The sums are free of
-/// their means (cameras differ in brightness) and exact (integers): they do not depend on the
-/// blocks. Taking the gradient from both images makes g and e uncorrelated under noise at every
-/// fraction of a pixel. A second step would amplify the noise: the box window has negative
-/// frequencies. Cost: O(1) per pixel for any window.
+/// where s is the residual noise, c the noise correlation and p the prior. The means are removed
+/// from the sums (cameras differ in brightness). The sums are exact integers, so that the result
+/// does not depend on the row blocks. The gradient comes from both images, which makes g and e
+/// uncorrelated under noise at every fraction of a pixel. A second step would amplify the noise,
+/// because the box window has negative frequencies. Cost: O(1) per pixel for any window.
 class SubpixelRefiner {
   public:
     explicit SubpixelRefiner(const RefineConfig& config);
 
-    /// Makes `disparity_px` of what was found (NaN = unknown, and stays so); both may be the same
-    /// image if there is no filter. `jump_distance_px` is the distance of every pixel from the
+    /// Computes `disparity_px` from `found_px` (NaN = unknown, and stays unknown). Both may be the
+    /// same image if there is no filter. `jump_distance_px` is the distance of every pixel from the
     /// nearest disparity jump.
     void refine(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
@@ -91,12 +91,12 @@ class SubpixelRefiner {
     Image<std::int32_t> evidence_;  ///< see rows::kUnused
 };
 
-/// Mean over the neighbours on the same surface along a row. They count in opposite pairs, so that
-/// a slanted plane keeps its value. On either side of the row stand `radius_px` unknown pixels.
+/// Mean over the neighbours on the same surface along a row. Neighbours count in opposite pairs, so
+/// that a slanted plane keeps its value. `row` has `radius_px` unknown pixels before and after it.
 void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
-/// The same down the columns, for row `v`; near the ends fewer neighbours count. `lag_rows`: what
-/// counts is the row so many farther down and its neighbours, where it differs by no more than half
-/// of `same_surface_px` (edges stay where they are).
+/// The same down the columns, for row `v`; near the image border fewer neighbours count. With
+/// `lag_rows`, the row that many farther down and its neighbours count instead, where it differs by
+/// at most half of `same_surface_px`. This limit keeps edges in place.
 void smooth_down(
     const Image<float>& in, int v, int radius_px, double same_surface_px, int lag_rows, float* out);
 

@@ -24,9 +24,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Grey levels are held in sixteenths.
+/// Grey levels are stored in sixteenths.
 constexpr float kScale = 16.0F;
-/// Differences beyond 32 grey levels say "not the same point", not "by how much".
+/// A difference beyond 32 grey levels means another point; its size does not matter.
 constexpr float kMaxError = 512.0F;
 /// 64 grey levels per pixel; 33 x 33 squares of it fit an int32: 1089 * 1024^2 = 1.1e9.
 constexpr float kMaxGradient = 1024.0F;
@@ -46,7 +46,7 @@ void smooth_image_row(const std::uint8_t* const in[5],
     }
     sum[-2] = sum[-1] = sum[0];
     sum[width] = sum[width + 1] = sum[width - 1];
-    // At most 256 * 255 + 8: it fits.
+    // The sum is at most 256 * 255 + 8, so it fits.
     for (int u = 0; u < width; ++u) {
         const auto total = static_cast<std::uint16_t>(
             sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u] + 8);
@@ -54,7 +54,7 @@ void smooth_image_row(const std::uint8_t* const in[5],
     }
 }
 
-/// The lanes from `u` on, averaged with the neighbours of `steps` lines on either side.
+/// Averages the lanes from `u` on with their neighbours in `steps` lines on either side.
 template <bool kAhead, class D>
 HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
     auto center = hn::LoadU(d, row.center + u);
@@ -84,7 +84,7 @@ void smooth_along_row(const SmoothRow& row) {
         for_columns(0, row.width, [&](auto d, int u) { smooth_here<true>(d, row, row.steps, u); });
 }
 
-/// Where the lanes from `u` on are seen in the right row: whole pixel, or kNowhere, and fraction.
+/// Position of the lanes from `u` on in the right row: whole pixel (or kNowhere) and fraction.
 template <class D>
 HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     const hn::RebindToSigned<D> d32;
@@ -103,8 +103,8 @@ HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     hn::StoreU(hn::Sub(kept, hn::ConvertTo(d, place)), d, row.fraction + u);
 }
 
-/// The four pixels of the right row around each place, side by side. A gather of each would take
-/// four times as many loads.
+/// Loads the four pixels of the right row around each place, side by side. A separate gather of
+/// each pixel would take four times as many loads.
 void take_pairs(const WarpRow& row) {
     const std::int16_t* HWY_RESTRICT right = row.right;
     const std::int32_t* HWY_RESTRICT place = row.place;
@@ -114,8 +114,8 @@ void take_pairs(const WarpRow& row) {
         std::memcpy(pairs + 2 * u, right + place[u] - 1, 2 * sizeof(std::int32_t));
 }
 
-/// Pairs of pixels of the lanes from `u` on: `front` of those left of the fraction, `back` of those
-/// right of it.
+/// Pixel pairs of the lanes from `u` on: `front` left of the fractional position, `back` right of
+/// it.
 template <class D32>
 HWY_INLINE void load_pairs(
     D32 d32, const WarpRow& row, int u, hn::Vec<D32>& front, hn::Vec<D32>& back) {
@@ -134,7 +134,7 @@ HWY_INLINE void load_pairs(
 #endif
 }
 
-/// Nearest integers of |x| < 4096, halves upwards.
+/// Nearest integers of |x| < 4096; halves round up.
 template <class D>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> rounded(D d, hn::Vec<D> x) {
     const hn::RebindToSigned<D> d32;
@@ -208,7 +208,7 @@ void slide_row(const std::int32_t* HWY_RESTRICT entering,
     }
 }
 
-/// Sums of each lane and all before it.
+/// Prefix sums over the lanes.
 template <class D32>
 HWY_INLINE hn::Vec<D32> sums_so_far(D32 d32, hn::Vec<D32> x) {
     const auto lane = hn::Iota(d32, 0);
@@ -221,8 +221,8 @@ HWY_INLINE hn::Vec<D32> sums_so_far(D32 d32, hn::Vec<D32> x) {
     return x;
 }
 
-/// prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; below 0 nothing, beyond the end the
-/// total. They wrap around; differences that fit are right all the same.
+/// prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; 0 before the start, the total beyond the
+/// end. The prefix sums may wrap around; differences that fit are still correct.
 void sum_up(const SolveRow& row) {
     const hn::ScalableTag<std::int32_t> d32;
     const int lanes = static_cast<int>(hn::Lanes(d32));
@@ -254,7 +254,7 @@ void solve_row(const SolveRow& row) {
     float* HWY_RESTRICT residual = row.residual_grey;
     float* HWY_RESTRICT gradient = row.gradient_grey_px;
     const auto window = [span](const std::int32_t* prefix, int u) {
-        // As unsigned: prefixes may have wrapped around.
+        // Computed as unsigned, because prefixes may have wrapped around.
         return static_cast<std::int32_t>(static_cast<std::uint32_t>(prefix[u + span]) -
                                          static_cast<std::uint32_t>(prefix[u]));
     };
@@ -278,7 +278,7 @@ void solve_row(const SolveRow& row) {
         const float ee = (real_window(pee, u) - e * per_pixel * e) * kUnit;
         const float explained = gg > 0.0F ? ge * ge / gg : 0.0F;
         const float variance = std::max(least_variance, (ee - explained) * per_pixel);
-        // The correction of least squares, held back by the prior: both weighed by the variance.
+        // Least squares correction, damped by the prior; both are weighted by the variance.
         const float step = -ge / (gg + row.correlation * variance * prior_weight);
         const float shift = std::min(std::max(step, -row.max_step_px), row.max_step_px);
         const bool known = disparity_px[u] == disparity_px[u];
@@ -304,13 +304,13 @@ HWY_INLINE hn::Vec<D> divide(D d, const Divisor& by, hn::Vec<D> x) {
     return hn::Add(hn::Mul(high, hn::Set(d, by.upper())), rest);
 }
 
-/// c + x * y, rounded twice on every processor.
+/// c + x * y with two roundings on every processor.
 template <class D>
 HWY_INLINE hn::Vec<D> plus_product(D d, float c, hn::Vec<D> x, hn::Vec<D> y) {
     return hn::Add(hn::Set(d, c), hn::Mul(x, y));
 }
 
-/// ln x of a positive normal number: 2 atanh((m - 1) / (m + 1)) of its mantissa. Error < 1e-6.
+/// ln x of a positive normal number, as 2 atanh((m - 1) / (m + 1)) of its mantissa. Error < 1e-6.
 template <class D>
 HWY_INLINE hn::Vec<D> log_of(D d, hn::Vec<D> x) {
     const hn::RebindToSigned<D> d32;
@@ -331,7 +331,7 @@ HWY_INLINE hn::Vec<D> log_of(D d, hn::Vec<D> x) {
                    hn::Mul(hn::Mul(hn::Set(d, 2.0F), t), series));
 }
 
-/// e^x for |x| <= 80: 2^n times the series of the rest. Relative error < 1e-6.
+/// e^x for |x| <= 80, as 2^n times the series of the remainder. Relative error < 1e-6.
 template <class D>
 HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
     constexpr Divisor k720(720);
@@ -347,11 +347,11 @@ HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
     return hn::Mul(series, hn::BitCast(d, power));
 }
 
-// The formulae of confidence.cpp in two loops: in one, each step would wait for so many others that
-// no processor looks far enough ahead to fill the time.
+// The formulae of confidence.cpp in two loops. In one loop each step would wait for so many others
+// that no processor could look far enough ahead.
 
-/// Sigma and score of the lanes from `u` on, whose windows of unknown pixels hold `area`. The score
-/// stands where the probability will.
+/// Sigma and score of the lanes from `u` on. Their windows of unknown pixels contain `area` pixels.
+/// The score is stored in place of the probability.
 template <class D>
 HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) {
     constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));         // in range: constants
@@ -419,7 +419,7 @@ void rate_row(const RateRow& row) {
     const Divisor whole(row.unknown_rows * (2 * radius + 1));
     for_columns(radius, inner, [&](auto d, int u) { score_here(d, row, whole, u); });
     for (int u = inner; u < row.width; ++u) beside_end(u);
-    // What has been weighed must not be weighed again.
+    // Values that are already rated must not be rated again.
     const hn::ScalableTag<float> d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     int u = 0;

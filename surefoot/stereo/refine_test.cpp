@@ -68,7 +68,7 @@ struct Errors {
     double rms_px = 0.0;
 };
 
-/// Away from the border, where windows are whole.
+/// Pixels away from the border, where windows are complete.
 Errors errors_of(const Image<float>& disparity_px, const Image<float>& truth_px) {
     constexpr int kMargin_px = 20;
     double sum = 0.0;
@@ -115,7 +115,7 @@ TEST(SmoothAlong, DoesNotMixSurfacesAndKeepsTheUnknownUnknown) {
     }
 }
 
-/// Of a column of values, each a row of `width` pixels: the first pixel of every row.
+/// First pixel of every row, for a column of values that are each repeated over a row.
 std::vector<float> smoothed_down(const std::vector<float>& column, int lag_rows) {
     constexpr int kWidth = 70;  // more than any register
     Image<float> in(kWidth, static_cast<int>(column.size()));
@@ -147,7 +147,7 @@ TEST(SmoothDown, TakesWhatTheSearchIsLateFor) {
 
 TEST(SmoothDown, DoesNotMoveEdgesAndKeepsTheUnknownUnknown) {
     std::vector<float> step(14, 5.0F);
-    std::fill(step.begin() + 7, step.end(), 6.0F);  // the same surface for the mean, but not ahead
+    std::fill(step.begin() + 7, step.end(), 6.0F);  // the same surface for the mean, not ahead
     std::vector<float> out = smoothed_down(step, 2);
     EXPECT_FLOAT_EQ(out[4], 5.0F + 4.0F / 9.0F) << "rows 2 to 10";
     EXPECT_FLOAT_EQ(out[5], 5.0F + 4.0F / 9.0F) << "rows 3 to 11 as seen from row 5";
@@ -172,7 +172,7 @@ TEST(SubpixelRefiner, RemovesALeanOfTheWholeSurface) {
     const Errors errors = errors_of(refined.disparity_px, pair.disparity_px);
     std::printf(
         "from a lean of 0.150 px: mean %+.3f px, rms %.3f px\n", errors.mean_px, errors.rms_px);
-    // The prior of 0.2 px holds back a part where texture is weak.
+    // The prior of 0.2 px reduces the correction where texture is weak.
     EXPECT_LT(std::abs(errors.mean_px), 0.03);
     EXPECT_LT(errors.rms_px, 0.09);
 }
@@ -206,7 +206,8 @@ TEST(SubpixelRefiner, BrightnessOfTheEyesDoesNotMatter) {
     const Refined same = refine(pair.left, pair.right, pair.disparity_px, serial);
     const Refined bright = refine(pair.left, brighter, pair.disparity_px, serial);
     const Errors difference = errors_of(bright.disparity_px, same.disparity_px);
-    // Grey differences are cut at 32 levels: 20 more let a few true differences reach the cut.
+    // Grey differences are limited to 32 levels. With 20 more, a few true differences reach the
+    // limit.
     EXPECT_LT(difference.rms_px, 0.02);
 }
 
@@ -247,7 +248,7 @@ class PlainRefinement {
         });
     }
 
-    /// The disparity, and what was learnt.
+    /// The disparity and the by-products of the refinement.
     struct Pixel {
         float disparity_px, residual_grey, gradient_grey_px, shift_px;
     };
@@ -337,7 +338,7 @@ class PlainRefinement {
         const float slope_right = (1.0F - s) * (tap[2] - tap[0]) + s * (tap[3] - tap[1]);
         const auto slope_left = static_cast<float>(grey(left, u + 1, v) - grey(left, u - 1, v));
         const float slope = std::clamp(0.25F * (slope_left + slope_right), -1024.0F, 1024.0F);
-        const auto nearest = [](float value) {  // halves upwards
+        const auto nearest = [](float value) {  // halves round up
             return static_cast<int>(value + 4096.5F) - 4096;
         };
         return {true, nearest(slope), nearest(error)};
@@ -373,7 +374,7 @@ bool same_float(float a, float b) {
     return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// Steep edges, surfaces, holes and wild disparities, whose windows hold much or next to nothing.
+/// Steep edges, surfaces, holes and random disparities; windows contain many or almost no pixels.
 struct WildPair {
     WildPair(int width, int height, Rng& rng)
         : left(width, height),

@@ -12,11 +12,11 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kRounds = 8;      ///< of weighting; it settles in four or five
+constexpr int kRounds = 8;      ///< of re-weighting; it converges in four or five
 constexpr double kHuber = 1.5;  ///< sigmas
 /// Corners within a few degrees of each other share lens errors: this many count as one.
 constexpr double kCornersPerIndependent = 4.0;
-/// What nobody knows better than: without it a handful of corners on a line could say anything.
+/// Weak prior. Without it a few corners on a line could give any result.
 constexpr double kPriorTurn_rad = 0.01;
 constexpr double kPriorFocal = 0.01;
 constexpr double kLeastSigma_px = 0.02;
@@ -52,19 +52,26 @@ std::vector<double> residuals_px(std::span<const Row> rows, const Eigen::Vector3
 }  // namespace
 
 void SelfCalibrationConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean(
-        "enabled", enabled, "correct the right eye's calibration by the rows of the first frames");
-    visitor.integer("min_corners", min_corners, 20, 100000, "corners that it needs");
-    visitor.number("max_turn_deg",
-                   max_turn_deg,
-                   0.0,
-                   5.0,
-                   "a larger turn is no trim: nothing is corrected, calibrate again");
-    visitor.number("max_focal_share",
-                   max_focal_share,
-                   0.0,
-                   0.1,
-                   "the same for the share by which its focal length differs");
+    visitor.boolean("enabled",
+                    enabled,
+                    "correct the right camera's calibration by the row errors of the first frames");
+    visitor.integer("min_corners",
+                    min_corners,
+                    20,
+                    100000,
+                    "least number of matched corners; with fewer nothing is corrected");
+    visitor.number(
+        "max_turn_deg",
+        max_turn_deg,
+        0.0,
+        5.0,
+        "largest rotation that is corrected; beyond it nothing is: calibrate the rig again");
+    visitor.number(
+        "max_focal_share",
+        max_focal_share,
+        0.0,
+        0.1,
+        "largest relative change of the focal length that is corrected; see max_turn_deg");
 }
 
 std::optional<RigSelfCalibration> estimate_self_calibration(const SelfCalibrationConfig& config,

@@ -14,41 +14,41 @@ namespace surefoot::stereo {
 
 struct SelfCalibrationConfig {
     bool enabled = true;
-    int min_corners = 150;  ///< fewer say nothing
-    /// Larger ones are no trim: the rig wants to be calibrated again.
+    int min_corners = 150;  ///< below this no estimate is made
+    /// Larger corrections are rejected: the rig then needs a new calibration.
     double max_turn_deg = 0.6;
     double max_focal_share = 0.01;
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// What the rows of a rectified pair say about the right eye.
+/// Correction of the right camera, estimated from the row errors of a rectified pair.
 struct RigSelfCalibration {
     camera::RightCameraCorrection camera;             ///< yaw stays 0
     Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of roll, pitch [rad] and focal share
     int corners = 0;
-    double row_error_px = 0.0;       ///< median of the absolute value, before
-    double row_error_left_px = 0.0;  ///< and what this trim leaves of it
+    double row_error_px = 0.0;       ///< median of the absolute value, before the correction
+    double row_error_left_px = 0.0;  ///< the same after the correction
     double significance = 0.0;       ///< chi square of the three parameters together
 
-    /// A chi square of 3 degrees of freedom is above this once in 1000 times by chance.
+    /// A chi square with 3 degrees of freedom exceeds this by chance once in 1000 cases.
     static constexpr double kSignificant = 16.27;
     [[nodiscard]] bool significant() const noexcept { return significance > kSignificant; }
 };
 
-/// A right eye that is turned by (pitch p, roll r about x, z) and has focal lengths longer by m
-/// shows at the ray (x, y, 1), to first order,
+/// Estimates the right camera's rotation (pitch p about x, roll r about z) and the share m by which
+/// its focal lengths are too long. To first order, the image of the ray (x, y, 1) moves by
 ///   rows:    dv / f = p (1 + y^2) - r x + m y
 ///   columns: du / f = p x y + r y + m x
-/// The rows ought to be 0: they give p, r and m, and with them the error of every disparity (a
-/// focal length that is 0.06 % too long shifts the disparities at the border of a ZED's image by
-/// 0.2 px, a centimetre at 1.5 m). Least squares with Huber's weights.
+/// Row errors should be 0: they give p, r and m, and so the error of every disparity (0.06 % too
+/// long a focal length shifts disparities at the border of a ZED's image by 0.2 px, 1 cm at 1.5 m).
+/// Least squares with Huber's weights.
 ///
-/// Turns about y are left alone: rows see them as x y, like a decentred lens, and would turn an
-/// error of the lens into a bias of every depth.
+/// Rotation about y (yaw) is not estimated. It moves rows by x y, as a decentred lens does, so an
+/// error of the lens would become a bias of every depth.
 ///
-/// `corners` are those of rectified images of `rig`. Nothing from fewer corners than `min_corners`,
-/// or when the turn or the focal length leaves what a trim may do.
+/// `corners` come from rectified images of `rig`. Returns nothing with fewer corners than
+/// `min_corners`, or when rotation or focal length exceed the limits of `config`.
 [[nodiscard]] std::optional<RigSelfCalibration> estimate_self_calibration(
     const SelfCalibrationConfig& config,
     const camera::RectifiedRig& rig,

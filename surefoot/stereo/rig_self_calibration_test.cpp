@@ -30,7 +30,7 @@ camera::StereoRig nominal_rig() {
     return rig;
 }
 
-/// Where the rig `real` sees points that somebody rectifies by the rig `believed`.
+/// Pixels of points in the rig `real`, rectified with the rig `believed`.
 std::vector<CornerShift> corners_of(const camera::StereoRig& real,
                                     const camera::StereoRig& believed,
                                     int count,
@@ -86,8 +86,8 @@ TEST(RigSelfCalibration, FindsHowTheRightEyeIsTurned) {
     }
 }
 
-/// What an eye at `origin_m`, turned by `rotation`, sees of a plane that rises to the back, with
-/// waves of 5 to 30 px of all directions.
+/// View of a camera at `origin_m`, rotated by `rotation`: a plane that rises to the back, with
+/// waves of 5 to 30 px in all directions.
 GreyImage wavy_plane(const camera::PinholeRadTan& lens,
                      const Eigen::Vector3d& origin_m,
                      const Eigen::Quaterniond& rotation,
@@ -141,7 +141,7 @@ TEST(RigSelfCalibration, FindsAllOfTheTurnInImages) {
     const auto self_calibration =
         estimate_self_calibration({}, rectified(nominal), corners.matched);
     ASSERT_TRUE(self_calibration);
-    // A preference for whole pixels takes a tenth away from all of it.
+    // A bias toward whole pixels removes a tenth of the whole effect.
     EXPECT_NEAR(self_calibration->camera.roll_rad, this_camera.roll_rad, 0.03e-3);
     EXPECT_NEAR(self_calibration->camera.pitch_rad, this_camera.pitch_rad, 0.012e-3);
     EXPECT_NEAR(self_calibration->camera.focal_share, this_camera.focal_share, 0.05e-3);
@@ -170,7 +170,7 @@ TEST(RigSelfCalibration, WrongMatchesDoNotDecide) {
     for (std::size_t i = 0; i < corners.size(); i += 8) corners[i].rows_px = rng.uniform(2.0, 8.0);
     const auto self_calibration = estimate_self_calibration({}, rectified(nominal), corners);
     ASSERT_TRUE(self_calibration);
-    // An eighth of one-sided outliers pulls Huber's mean by 1/7 of 1.5 sigma, 0.02 px, 7e-5 of f.
+    // One eighth of one-sided outliers pulls Huber's mean by 1/7 of 1.5 sigma, 0.02 px, 7e-5 of f.
     EXPECT_NEAR(self_calibration->camera.pitch_rad, this_camera.pitch_rad, 1.5e-4);
     EXPECT_NEAR(self_calibration->camera.focal_share,
                 this_camera.focal_share,

@@ -10,8 +10,8 @@
 
 namespace surefoot::stereo {
 
-/// Runs of known pixels of a row, each within some px of the next. Their ends are looked for 64
-/// pixels at a time, so that a row costs little more than its runs.
+/// Runs of known pixels of a row whose neighbours differ by at most a limit. The search handles 64
+/// pixels at a time, so that its cost depends on the number of runs rather than of pixels.
 class RowRuns {
   public:
     void find(const float* disparity_px, int width, float same_px) {
@@ -21,12 +21,12 @@ class RowRuns {
         rows::link(disparity_px, width, same_px, known_.data(), linked_.data());
     }
 
-    /// Calls found(first, last) for every run from the left to the right; `last` belongs to it.
+    /// Calls found(first, last) for every run from left to right; `last` is inclusive.
     template <typename Found>
     void for_each(const Found& found) const {
         int first = 0;
         bool open = false;
-        std::uint64_t linked_before = 0;  // whether the last pixel of the word before is, in bit 0
+        std::uint64_t linked_before = 0;  // bit 0: the last pixel of the previous word is linked
         for (std::size_t word = 0; word < known_.size(); ++word) {
             const int column = static_cast<int>(word) * 64;
             std::uint64_t starts = known_[word] & ~(linked_[word] << 1 | linked_before);
@@ -49,7 +49,7 @@ class RowRuns {
   private:
     // Bit u % 64 of word u / 64 for column u.
     std::vector<std::uint64_t> known_;
-    std::vector<std::uint64_t> linked_;  ///< known, and so is the next one, within the limit
+    std::vector<std::uint64_t> linked_;  ///< this pixel and the next are known and within the limit
 };
 
 }  // namespace surefoot::stereo

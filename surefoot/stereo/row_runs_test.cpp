@@ -35,7 +35,7 @@ TEST(RowRuns, AreThoseFoundPixelByPixelOnEveryProcessor) {
     Rng rng(11);
     for (const int width : {1, 2, 15, 63, 64, 65, 127, 128, 129, 300}) {
         for (const double unknown : {0.0, 0.02, 0.3, 0.9, 1.0}) {
-            // Exactly as long as the row: sanitizers see what is read beyond it.
+            // Exactly as long as the row, so that sanitizers detect reads beyond it.
             std::vector<float> row(static_cast<std::size_t>(width));
             for (float& pixel : row) {
                 pixel = rng.uniform() < unknown ? std::numeric_limits<float>::quiet_NaN()

@@ -14,7 +14,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/views.hpp"
 
-/// A textured floor with boxes on it, seen by an ideal stereo camera: exact truth for tests.
+/// A textured floor with boxes, rendered for an ideal stereo camera. Gives tests exact truth.
 namespace surefoot::stereo::test {
 
 struct Box {
@@ -31,7 +31,7 @@ struct SceneConfig {
     double roll_rad = 0.0;
     double noise_grey = 2.0;
     double contrast_grey = 9.0;  ///< of each octave of the texture
-    double right_gain = 1.0;     ///< exposure of the right eye
+    double right_gain = 1.0;     ///< exposure of the right camera
     std::uint64_t seed = 1;
     std::vector<Box> boxes;
 };
@@ -40,7 +40,7 @@ struct SyntheticPair {
     GreyImage left;
     GreyImage right;
     Image<float>
-        disparity_px;  ///< truth at the pixel's centre; NaN = nothing or hidden from the right
+        disparity_px;  ///< truth at the pixel's centre; NaN = empty or hidden from the right
     Image<std::uint8_t> near_edge;  ///< 1 within 6 px of a jump of the truth
 };
 

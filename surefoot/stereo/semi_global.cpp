@@ -24,7 +24,7 @@ constexpr int padded(int count) {
     return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-/// Bytes at addresses that whole registers like. Grows, never shrinks.
+/// Bytes at addresses aligned for whole registers. The buffer grows and never shrinks.
 class AlignedBytes {
   public:
     AlignedBytes() = default;
@@ -51,7 +51,7 @@ class AlignedBytes {
     std::size_t size_ = 0;
 };
 
-/// An image with a border that repeats its edge, rows aligned.
+/// An image with a border that repeats its edge; rows are aligned.
 struct Bordered {
     AlignedBytes bytes;
     std::ptrdiff_t stride = 0;
@@ -99,13 +99,13 @@ struct CensusPlanes {
     }
 };
 
-/// A path at one place of its way: costs per disparity and one row more, and the least of them.
+/// State of a path at one place: costs per disparity, one extra row, and the least cost.
 struct PathState {
     std::uint8_t* costs = nullptr;
     std::uint8_t* least = nullptr;
 };
 
-/// Paths at many places.
+/// Path states at many places.
 struct PathStates {
     AlignedBytes bytes;
     std::ptrdiff_t stride = 0;
@@ -123,21 +123,21 @@ struct PathStates {
     }
 };
 
-/// What 64 rows need while they are worked on, column by column with the rows in the lanes.
+/// Data of 64 rows during their search, column by column with the rows in the lanes.
 struct Strip {
-    int index = 0;  ///< which one of the image
+    int index = 0;  ///< number of the strip in the image
     AlignedBytes left;
     AlignedBytes right;
     AlignedBytes grey;
-    PathStates from_left;  ///< as it enters each block of 64 columns
+    PathStates from_left;  ///< state at the start of each block of 64 columns
     PathStates from_right;
-    AlignedBytes sums;  ///< of one block, matching costs behind them; a free group before each
+    AlignedBytes sums;  ///< of one block, then its matching costs; a free group before each
 };
 
-/// How many blocks of 64 columns of each strip are done. A strip is begun by whoever has finished
-/// another one, the upper ones first, and then follows the strip above it block by block. So nobody
-/// waits for work that is not being done, whatever the executor: pieces that wait for pieces not
-/// yet begun would wait for ever where there is one thread.
+/// Number of finished blocks of 64 columns of each strip. A thread that has finished a strip begins
+/// the next one, upper strips first, and follows the strip above block by block. A thread therefore
+/// only waits for work that already runs. Tasks that wait for tasks not yet begun would wait
+/// forever on an executor with one thread.
 class Progress {
   public:
     void begin(int strips) {
@@ -148,7 +148,7 @@ class Progress {
         for (int strip = 0; strip < strips; ++strip) at(strip).store(0, std::memory_order_relaxed);
         next_.store(0, std::memory_order_relaxed);
     }
-    /// The next strip that nobody has begun; may lie beyond the last one.
+    /// The next strip that is not begun yet; may lie beyond the last one.
     [[nodiscard]] int take_strip() { return next_.fetch_add(1, std::memory_order_relaxed); }
     void block_is_done(int strip) {
         at(strip).fetch_add(1, std::memory_order_release);
@@ -168,8 +168,8 @@ class Progress {
     std::atomic<int> next_ = 0;
 };
 
-/// Strips of 64 rows that are worked on at the same time, at most. One for each thread: what is
-/// made of a strip stays in the cache until it has been used.
+/// Largest number of strips that are processed at the same time, one per thread. The data of a
+/// strip stay in the cache until they are used.
 constexpr int kMaxStrips = 6;
 
 kernels::WinnerRows winners_at(Winners& out, int u, int v) {
@@ -180,7 +180,7 @@ kernels::WinnerRows winners_at(Winners& out, int u, int v) {
             out.second_cost.row(v) + u};
 }
 
-/// One row of a block, of which `count` columns lie in the image.
+/// Processes one row of a block, of which `count` columns lie in the image.
 void follow_row(const kernels::ColumnStep& step, const kernels::WinnerRows& out, int count) {
     if (count == kLanes) return kernels::follow_columns(step, out);
     std::uint8_t rows[5][kLanes];  // all of it is written. NOLINT(*-member-init)
@@ -204,7 +204,7 @@ struct SemiGlobalSearch::Workspace {
     Bordered right;
     CensusPlanes left_census;
     CensusPlanes right_census;
-    Strip strips[kMaxStrips];  ///< one for each of those that work at the same time
+    Strip strips[kMaxStrips];  ///< one for each thread that works at the same time
     std::ptrdiff_t sums_size = 0;
     Progress progress;
     PathStates from_above;  ///< per 64 columns
@@ -251,7 +251,7 @@ void SemiGlobalSearch::Workspace::take_census(int strip) {
     }
 }
 
-/// Census words and grey levels of a strip, the rows in the lanes.
+/// Transposes census words and grey levels of a strip, so that rows lie in the lanes.
 void SemiGlobalSearch::Workspace::turn_strip(const Strip& s) {
     const int v = s.index * kLanes;
     const int front = right_census.front;
@@ -287,7 +287,7 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(const Strip& s, int blo
     return rows;
 }
 
-/// Follows the paths from the left once to note how they enter each block: their costs of a whole
+/// Runs the paths from the left once and stores their state at each block. The costs of a whole
 /// strip would not fit into a cache.
 void SemiGlobalSearch::Workspace::pass_strip(const Strip& s) {
     take_census(s.index);
@@ -308,7 +308,8 @@ void SemiGlobalSearch::Workspace::pass_strip(const Strip& s) {
     kernels::begin_path(config.disparities, end.costs, end.least);
 }
 
-/// Both paths along the rows through 64 x 64 pixels. Needs the block to the right of it.
+/// Runs both paths along the rows through 64 x 64 pixels. Needs the result of the block to the
+/// right.
 void SemiGlobalSearch::Workspace::follow_rows(const Strip& s, int block) {
     kernels::RowBlock rows = row_block(s, block);
     rows.sums = s.sums.data() + kernels::kSumsGroup;
@@ -326,8 +327,8 @@ void SemiGlobalSearch::Workspace::follow_rows(const Strip& s, int block) {
     kernels::follow_left(rows);
 }
 
-/// Calls what one row of a block reads and writes: rows lie too far apart for a processor to guess
-/// the next one.
+/// Prefetches the data that one row of a block reads and writes. Rows lie too far apart for the
+/// processor to predict the next one.
 void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
     hwy::Prefetch(left.row(v) + u);
     for (int byte = 0; byte < kCensusBytes; ++byte) {
@@ -343,7 +344,7 @@ void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
     }
 }
 
-/// Path from above and winners of a block. Needs the one above it, and the paths along its rows.
+/// Path from above and winners of a block. Needs the block above, and the row paths of this block.
 void SemiGlobalSearch::Workspace::follow_columns(const Strip& s, int block, Winners& out) {
     const int u = block * kLanes;
     const PathState path = from_above.at(block);
@@ -369,7 +370,7 @@ void SemiGlobalSearch::Workspace::follow_columns(const Strip& s, int block, Winn
     }
 }
 
-/// From the right to the left, right behind the strip above.
+/// Processes blocks from right to left, directly behind the strip above.
 void SemiGlobalSearch::Workspace::follow_strip(const Strip& s, Winners& out) {
     const int blocks = column_blocks();
     for (int done = 0; done < blocks; ++done) {

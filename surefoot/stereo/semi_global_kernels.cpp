@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/stereo/semi_global_kernels.hpp"
 
-// The target with byte-wise population counts (Ice Lake, Zen 4) is not built unless it is asked
-// for.
+// Highway builds the target with byte-wise population counts (Ice Lake, Zen 4) only on request.
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/stereo/semi_global_kernels.cpp"
@@ -25,13 +24,13 @@ int lanes() {
     return static_cast<int>(hn::Lanes(kBytes));
 }
 
-/// Without population counts of bytes a matching cost takes longer than everything else of a step.
-/// Then the costs are kept when the first path has found them, and turned with the sums.
+/// Without byte-wise population counts, a matching cost takes longer than the rest of a step. In
+/// this case the first path stores the costs, and they are transposed with the sums.
 constexpr bool kMatchKept = HWY_TARGET > HWY_AVX3_DL;
 
-/// There bits are looked up, four at a time, and census words a b c d are written so that six
-/// look-ups do instead of eight: c becomes a ^ b ^ c (see count_bits), and the six bits of d leave
-/// places 3 and 7 free.
+/// On these targets bits are counted by table look-up, four at a time. Census words a b c d are
+/// stored so that six look-ups are enough instead of eight: c becomes a ^ b ^ c (see count_bits),
+/// and the six bits of d leave places 3 and 7 free.
 constexpr bool kLookedUp = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 ||
                            HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3;
 
@@ -70,8 +69,9 @@ HWY_INLINE void turn(const std::uint8_t* in,
     }
 }
 #else
-/// Lanes 16 b to 16 b + 15 of the result are the 16 bytes at from + 16 b stride. Loads that repeat
-/// 16 bytes and choices between them are no shuffles, of which wide registers do one at a time.
+/// Lanes 16 b ... 16 b + 15 of the result are the 16 bytes at from + 16 b stride. The function uses
+/// loads that repeat 16 bytes and blends instead of shuffles, because wide registers do only one
+/// shuffle at a time.
 HWY_INLINE Bytes load_pieces(const std::uint8_t* from, std::ptrdiff_t stride) {
 #if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4
     return static_cast<void>(stride), hn::LoadU(kBytes, from);
@@ -86,7 +86,7 @@ HWY_INLINE Bytes load_pieces(const std::uint8_t* from, std::ptrdiff_t stride) {
 #endif
 }
 
-/// Four rounds of interleaving row i with row i + 8 turn 16 columns of `lanes()` rows into rows.
+/// Four rounds of interleaving row i with row i + 8 transpose 16 columns of `lanes()` rows.
 HWY_INLINE void turn_sixteen(const std::uint8_t* in,
                              std::ptrdiff_t in_stride,
                              std::uint8_t* out,
@@ -125,12 +125,12 @@ void transpose_block(const std::uint8_t* in,
     turn(in, in_stride, out, out_stride);
 }
 
-/// Apart from transpose_block: with strides that the compiler knows, places cost no arithmetic.
+/// Separate from transpose_block: with compile-time strides, addresses cost no arithmetic.
 HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
     turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
 }
 
-/// Bytes have no shift of their own.
+/// Shifts each byte; the instruction sets have no such instruction.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #if HWY_TARGET == HWY_SCALAR
     return hn::Set(kBytes, static_cast<std::uint8_t>(hn::GetLane(value) >> shift));
@@ -141,7 +141,7 @@ HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #endif
 }
 
-/// P2: falls with the grey step.
+/// P2; it falls with the grey step.
 HWY_INLINE Bytes jump_penalty(const Penalties& penalties, Bytes grey, Bytes grey_before) {
     const Bytes step = hn::Sub(hn::Max(grey, grey_before), hn::Min(grey, grey_before));
     const Bytes relief = shift_right(step, penalties.contrast_shift);
@@ -154,9 +154,9 @@ struct Word {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Bits set in a, b, c and d, given odd = a ^ b ^ c: of each three bits `odd` holds whether one or
-/// three are set, `pair` whether two or three. A look-up regards bits 0 to 3 and wants bit 7 to be
-/// clear: d needs no mask, whatever the shift moves in from the next byte.
+/// Number of bits set in a, b, c and d, given odd = a ^ b ^ c. For each position, `odd` holds
+/// whether one or three of a, b, c are set, `pair` whether two or three. A look-up uses bits 0 to 3
+/// and needs bit 7 clear. d needs no mask, whatever the shift moves in from the next byte.
 [[maybe_unused]] HWY_INLINE Bytes count_bits(Bytes a, Bytes b, Bytes odd, Bytes d) {
     HWY_ALIGN static constexpr std::uint8_t kCounts[16] = {
         0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
@@ -196,11 +196,12 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
             hn::Load(kBytes, place + 3 * kLanes)};
 }
 
-/// What is written to where nothing was read before is called this far ahead: otherwise every line
-/// is waited for.
+/// Prefetch distance for memory that is written without being read before. Otherwise every line
+/// would wait for memory.
 constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kSumsGroup;
 
-/// Before matching: stay, change by one, or jump. Saturated: beyond the last disparity stands 255.
+/// Before adding the matching cost: stay, change by one, or jump. Additions saturate; the entry
+/// beyond the last disparity is 255.
 HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Bytes jump) {
     const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
     return hn::Min(hn::Min(neighbour, here), jump);
@@ -208,7 +209,7 @@ HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Byt
 
 enum class Sums : std::uint8_t { left_alone, written, added_to };
 
-/// `sum` and `match` are places of one disparity of one column.
+/// `sum` and `match` point at one disparity of one column.
 template <Sums kSums>
 HWY_INLINE void put_down(Bytes cost, Bytes matching, std::uint8_t* sum, std::uint8_t* match) {
     if constexpr (kSums == Sums::written) {
@@ -223,7 +224,7 @@ HWY_INLINE void put_down(Bytes cost, Bytes matching, std::uint8_t* sum, std::uin
         hn::Store(hn::Add(cost, hn::Load(kBytes, sum)), kBytes, sum);
 }
 
-/// The next column `u` of a path, in the lanes from `lane`.
+/// Moves a path to its next column `u`, in the lanes from `lane` on.
 template <Sums kSums>
 HWY_INLINE void follow_column(const RowBlock& block,
                               std::ptrdiff_t u,
@@ -301,13 +302,13 @@ HWY_INLINE Word word_of(const std::uint8_t* const bytes[kCensusBytes], std::ptrd
             hn::LoadU(kBytes, bytes[3] + at)};
 }
 
-/// The winner of what has been seen so far, disparity by disparity from 0.
+/// The best disparity so far, in a scan over disparities from 0 upward.
 struct Winner {
     Bytes disparity, cost, cost_below, cost_above;
-    Bytes second;  ///< best of those at least two away from the winner
-    Bytes older;   ///< best of all but the last
+    Bytes second;  ///< least cost at least two away from the winner
+    Bytes older;   ///< least cost of all but the last disparity
     Bytes last;
-    Bytes next;                            ///< disparity that is seen next
+    Bytes next;                            ///< next disparity of the scan
     hn::Mask<decltype(kBytes)> older_won;  ///< the last one is not the winner
 
     HWY_INLINE explicit Winner(Bytes none)
@@ -323,7 +324,7 @@ struct Winner {
 
     HWY_INLINE void see(Bytes sum) {
         const Bytes least = hn::Min(cost, sum);
-        const auto stays = hn::Eq(least, cost);  // bytes are slower to put in order
+        const auto stays = hn::Eq(least, cost);  // ordering bytes is slower than this comparison
         const Bytes rest = hn::IfThenElse(older_won, hn::Min(second, sum), second);
         second = hn::IfThenElse(stays, rest, older);
         cost_above = hn::IfThenElse(older_won, cost_above, sum);
@@ -344,7 +345,7 @@ struct Winner {
     }
 };
 
-/// One step of the path from above, and the winner of all three paths on the way.
+/// One step of the path from above; also finds the winner of all three paths.
 void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     const Bytes slope = hn::Set(kBytes, step.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
@@ -355,7 +356,7 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
                                             hn::LoadU(kBytes, step.grey + lane),
                                             hn::LoadU(kBytes, step.grey_above + lane)));
     const Word left = word_of(step.left, lane);
-    // Copies: the compiler must assume that what is stored below changes `step`.
+    // Local copies, because the compiler must assume that the stores below change `step`.
     const std::uint8_t* const right[kCensusBytes] = {
         step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
     const int disparities = step.disparities;

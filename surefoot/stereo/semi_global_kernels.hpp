@@ -6,20 +6,20 @@
 
 #include "surefoot/stereo/census_window.hpp"
 
-/// The inner loops of SemiGlobalSearch. Widths and counts are multiples of kLanes; every row of 64
-/// bytes is aligned.
+/// The inner loops of SemiGlobalSearch. Widths and counts are multiples of kLanes. Every row of 64
+/// bytes is aligned to 64 bytes.
 namespace surefoot::stereo::kernels {
 
 inline constexpr int kLanes = 64;
-/// Census bytes of one place in a strip, lane by lane: kCensusBytes rows of kLanes.
+/// Bytes of the census words at one place of a strip, lane by lane: kCensusBytes rows of kLanes.
 inline constexpr int kCensusRow = kCensusBytes * kLanes;
 
-/// The sums of 64 x 64 pixels: groups of disparities, column by column (row by row once they are
-/// turned). So whoever walks along the disparities and whoever turns a group both stay on a few
-/// pages.
+/// The path sums of 64 x 64 pixels are stored in groups of disparities, column by column (row by
+/// row after the transposition). Loops over disparities and the transposition of one group both
+/// touch only a few memory pages.
 inline constexpr int kGroup = 8;
-/// One disparity and one column more than needed: places a power of two apart share their lines of
-/// the cache.
+/// One disparity and one column of padding: addresses a power of two apart would share their cache
+/// lines.
 inline constexpr int kSumsColumn = (kGroup + 1) * kLanes;
 inline constexpr int kSumsGroup = (kLanes + 1) * kSumsColumn;
 
@@ -30,9 +30,9 @@ struct Penalties {
     int contrast_shift = 0;
 };
 
-/// Census bytes of one row, arranged as the processor counts their differences best. `grey` points
-/// at its first pixel in an image with a border of kCensusReach; `out[byte]` receives `width`
-/// values.
+/// Census bytes of one row, in the order in which the processor counts differing bits fastest.
+/// `grey` points at the row's first pixel in an image with a border of kCensusReach. `out[byte]`
+/// receives `width` values.
 void census(const std::uint8_t* grey,
             std::ptrdiff_t stride,
             int width,
@@ -44,35 +44,35 @@ void transpose(const std::uint8_t* in,
                std::uint8_t* out,
                std::ptrdiff_t out_stride);
 
-/// Up to 64 columns of 64 rows, the rows side by side in the lanes.
+/// A block of up to 64 columns of 64 rows; the rows lie side by side in the lanes.
 struct RowBlock {
     const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
-    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more stand before column 0
+    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more columns precede column 0
     const std::uint8_t* grey = nullptr;   ///< [column] kLanes
-    /// Of the column that the path comes from; at the edge of the image that of its first one.
+    /// Of the previous column on the path; at the image edge, of the path's first column.
     const std::uint8_t* grey_before = nullptr;
-    std::uint8_t* state = nullptr;  ///< of the path: (disparities + 1) * kLanes, kept
-    std::uint8_t* least = nullptr;  ///< its least cost: kLanes, kept
+    std::uint8_t* state = nullptr;  ///< path costs: (disparities + 1) * kLanes, updated
+    std::uint8_t* least = nullptr;  ///< their least cost: kLanes, updated
     std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [column] kSumsColumn: [d] kLanes
     std::uint8_t* match = nullptr;  ///< matching costs, laid out like the sums
     int columns = 0;
     int disparities = 0;
     Penalties penalties;
 };
-/// How a path begins: nothing is owed, and nothing is worse than what lies beyond the last
-/// disparity.
+/// Starts a path: all costs are 0, and the entry beyond the last disparity is larger than any real
+/// cost.
 void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least);
-/// Follows the path from the left through the block; `sums` and `match` stay as they are.
+/// Runs the path from the left through the block without changing `sums` and `match`.
 void pass_right(const RowBlock& block);
-/// The same, and `sums` become its costs. `match` is handed on to the two that come next;
-/// processors that count bits quickly leave it alone.
+/// The same, and writes the path's costs to `sums`. Also stores the matching costs in `match` for
+/// the next two paths, except on processors that count bits quickly.
 void follow_right(const RowBlock& block);
-/// Follows the path from the right, adds its costs to `sums` and turns them: column u of row v
-/// comes to lie where row u of column v was, but one group of disparities before it (as `match`
-/// does): the first group needs room before `sums`.
+/// Runs the path from the right, adds its costs to `sums` and transposes them: column u of row v
+/// moves to the place of row u of column v, one group of disparities earlier. `match` moves in the
+/// same way. The first group needs room before `sums`.
 void follow_left(const RowBlock& block);
 
-/// Where winners of 64 columns go: kLanes each, at any address.
+/// Output of the winners of 64 columns: kLanes values each, at any alignment.
 struct WinnerRows {
     std::uint8_t* disparity = nullptr;
     std::uint8_t* cost = nullptr;
@@ -80,7 +80,7 @@ struct WinnerRows {
     std::uint8_t* cost_above = nullptr;
     std::uint8_t* second_cost = nullptr;
 };
-/// One row of 64 columns, side by side in the lanes.
+/// Input for one row of 64 columns, which lie side by side in the lanes.
 struct ColumnStep {
     const std::uint8_t* left[kCensusBytes] = {};
     const std::uint8_t* right[kCensusBytes] = {};  ///< at the column of disparity 0
@@ -88,8 +88,8 @@ struct ColumnStep {
     const std::uint8_t* grey_above = nullptr;
     const std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [d] kLanes, paths along rows
     const std::uint8_t* match = nullptr;  ///< laid out like the sums
-    std::uint8_t* state = nullptr;        ///< path from above: (disparities + 1) * kLanes, kept
-    std::uint8_t* least = nullptr;        ///< least cost of that path, kLanes, kept
+    std::uint8_t* state = nullptr;        ///< path from above: (disparities + 1) * kLanes, updated
+    std::uint8_t* least = nullptr;        ///< least cost of that path: kLanes, updated
     int disparities = 0;
     Penalties penalties;
 };

@@ -66,11 +66,13 @@ void keep_winner(const PathCosts& sums, int u, int v, Winners& out) {
 
 std::optional<std::string> SemiGlobalConfig::problem() const {
     if (disparities < 1 || disparities > 256)
-        return fmt::format("{} disparities, allowed are 1 to 256", disparities);
+        return fmt::format("semi-global search: {} disparities; the value must be from 1 to 256",
+                           disparities);
     if (slope_penalty < 0 || min_jump_penalty < 0 || contrast_shift < 0 || contrast_shift > 8)
-        return std::string("a penalty is negative, or the contrast shift lies outside 0 to 8");
+        return std::string(
+            "semi-global search: penalties must be at least 0, the contrast shift from 0 to 8");
     if (jump_penalty < min_jump_penalty || 3 * (kCensusBits + jump_penalty) >= 255) {
-        return fmt::format("jump penalty {}, allowed are {} to {}",
+        return fmt::format("semi-global search: jump penalty {}; the value must be from {} to {}",
                            jump_penalty,
                            min_jump_penalty,
                            254 / 3 - kCensusBits);

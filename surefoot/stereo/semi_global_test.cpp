@@ -16,7 +16,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// Smooth blobs and noise, shifted by a disparity that changes: ties, jumps and borders occur.
+/// Smooth blobs and noise, shifted by a changing disparity, with ties, jumps and borders.
 std::pair<GreyImage, GreyImage> pair_of(int width, int height, std::uint64_t seed) {
     Rng rng(seed);
     GreyImage left(width, height);
@@ -102,7 +102,7 @@ TEST(SemiGlobal, SameBytesForEveryExecutorAndAfterAnotherSize) {
     }
 }
 
-/// Every piece on a thread of its own, none of which begins before all are there.
+/// An executor with one thread per task; no task begins before all threads are ready.
 class Together final : public Executor {
   public:
     [[nodiscard]] int threads() const noexcept override { return 4; }

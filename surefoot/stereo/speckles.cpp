@@ -22,7 +22,7 @@ int root_of(const At& at, int run) {
     return run;
 }
 
-/// The smaller number becomes the root: so roots do not depend on the order of joining.
+/// The smaller number becomes the root, so that roots do not depend on the order of joining.
 template <typename At>
 void join(const At& at, int a, int b) {
     a = root_of(at, a);
@@ -34,14 +34,14 @@ void join(const At& at, int a, int b) {
     low.size += high.size;
 }
 
-/// Numbers of the runs of a row, from `begin` to before `end`.
+/// Numbers of the runs of a row, from `begin` to `end` (exclusive).
 struct RowOfRuns {
     const float* disparity_px = nullptr;
     int begin = 0;
     int end = 0;
 };
 
-/// Joins the runs of a row with those of the row above wherever two pixels agree.
+/// Joins the runs of a row with those of the row above where two pixels agree.
 template <typename At>
 void connect(const At& at, const RowOfRuns& above, const RowOfRuns& here, float same_px) {
     int upper = above.begin;
@@ -71,7 +71,7 @@ SpeckleFilter::Band& SpeckleFilter::band_of(int v) {
     return bands_[static_cast<std::size_t>(v / kBandRows)];
 }
 
-/// Of one band, as if there were no other.
+/// Finds the islands of one band, independent of other bands.
 void SpeckleFilter::find_islands(int first_row,
                                  int last_row,
                                  const Image<float>& disparity_px,
@@ -93,7 +93,7 @@ void SpeckleFilter::find_islands(int first_row,
         connect([runs](int place) -> Run& { return runs[place]; }, above, here, same_px);
         above = here;
     }
-    // No parent stands behind its run: each has the number of its root already.
+    // A parent never comes after its run, so that each parent already has the number of its root.
     const int number = first_row / kBandRows << kPlaceBits;
     for (int place = 0; place < found(); ++place) {
         Run& run = band.runs[static_cast<std::size_t>(place)];
@@ -103,7 +103,7 @@ void SpeckleFilter::find_islands(int first_row,
     }
 }
 
-/// Between rows v - 1 and v.
+/// Joins islands between rows v - 1 and v.
 void SpeckleFilter::join_over_border(int v, const Image<float>& disparity_px, float same_px) {
     const auto row = [&](int row_v) {
         const int band = row_v / kBandRows;
@@ -121,7 +121,7 @@ void SpeckleFilter::remove_islands(int first_row,
                                    int min_size,
                                    Image<float>& disparity_px) {
     const Band& band = band_of(first_row);
-    int parent = -1;  // of the run before: mostly it is that of the next one too
+    int parent = -1;  // of the previous run: usually also that of the next one
     bool small = false;
     for (int v = first_row; v < last_row; ++v) {
         float* const d = disparity_px.row(v);
@@ -138,7 +138,7 @@ void SpeckleFilter::remove_islands(int first_row,
     }
 }
 
-/// Changes nothing: bands ask at the same time.
+/// Does not modify the tree, because bands call it in parallel.
 int SpeckleFilter::island_size(int run) {
     while (at(run).parent != run) run = at(run).parent;
     return at(run).size;

@@ -10,15 +10,15 @@
 
 namespace surefoot::stereo {
 
-/// Behind every search islands of fewer pixels go; pixels that differ by at most kSpeckleRange_px
-/// hang together.
+/// Islands of fewer pixels are removed after every search. Neighbours that differ by at most
+/// kSpeckleRange_px belong to the same island.
 inline constexpr int kSpeckleSize_px = 100;
 inline constexpr int kSpeckleRange_px = 2;
 
-/// Removes small islands: pixels that hang together, each within `same_px` of the next along a row
-/// or a column, and are fewer than `min_size` in all become NaN. Works on runs of each row (union
-/// by root of their numbers), so that its cost grows with the edges in the image, not with its
-/// pixels. Bands of rows are joined on their own first, then to each other over their borders.
+/// Removes small islands: groups of fewer than `min_size` pixels become NaN. Pixels belong together
+/// when neighbours along a row or column differ by at most `same_px`. Works on runs of each row
+/// with union-find, so that the cost grows with the number of edges in the image, not of pixels.
+/// Bands of rows are joined separately first, then across their borders.
 class SpeckleFilter {
   public:
     void remove(Executor& executor, int min_size, double same_px, Image<float>& disparity_px);
@@ -27,15 +27,15 @@ class SpeckleFilter {
     struct Run {
         int first = 0;
         int last = 0;    ///< inclusive
-        int parent = 0;  ///< number of a run of the same island; its own = root
-        int size = 0;    ///< pixels of the island, of roots
+        int parent = 0;  ///< number of a run of the same island; its own number = root
+        int size = 0;    ///< number of pixels of the island; valid for roots
     };
-    /// Some rows. Runs are numbered by their places in the band while it is alone, and then by the
-    /// number of the band, shifted, and their places.
+    /// A band of rows. A run's number is first its place in the band. When bands are joined, the
+    /// shifted number of the band is added.
     struct Band {
         RowRuns in_row;
         std::vector<Run> runs;
-        std::vector<int> row_first;  ///< place of the first run of each row, and the end
+        std::vector<int> row_first;  ///< index of the first run of each row, and the end
     };
     static constexpr int kBandRows = 32;
     static constexpr int kPlaceBits = 20;

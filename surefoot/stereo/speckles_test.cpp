@@ -13,7 +13,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// The definition: flood from every pixel, count, drop.
+/// The definition: flood fill from every pixel, count, remove.
 Image<float> flooded(const Image<float>& in, int min_size, double same_px) {
     Image<float> out = in;
     Image<std::uint8_t> seen(in.width(), in.height(), 0);
@@ -40,7 +40,7 @@ Image<float> flooded(const Image<float>& in, int min_size, double same_px) {
     return out;
 }
 
-/// Of several bands: islands reach over their borders, some of them over more than one.
+/// Several bands, with islands that cross one or more band borders.
 TEST(SpeckleFilter, IsTheFloodFillForEveryExecutor) {
     SpeckleFilter filter;
     Backwards backwards;
@@ -70,7 +70,8 @@ TEST(SpeckleFilter, IsTheFloodFillForEveryExecutor) {
     }
 }
 
-/// A snake through all bands is one island: it stays, whole, where any of its parts alone would go.
+/// One snake-shaped island through all bands. It must stay whole, although each part alone is too
+/// small.
 TEST(SpeckleFilter, JoinsOverTheBordersOfBands) {
     constexpr int kWidth = 9;
     constexpr int kHeight = 100;

@@ -22,7 +22,7 @@ constexpr double kLeastGain = 0.2;
 constexpr double kMiddleGrey = 128.0;  ///< gain and offset are nearly independent about it
 constexpr double kSingular = 1e-6;
 
-/// Columns are shifted by c + a x + b y at the place (x, y) of the window, rows by r.
+/// Shift at the place (x, y) of the window: columns by c + a x + b y, rows by r.
 struct Warp {
     double columns_px = 0.0;
     double slant_x = 0.0;
@@ -34,8 +34,8 @@ struct Warp {
 using Row = Eigen::Matrix<double, 6, 1>;
 using Rows = std::array<Row, static_cast<std::size_t>(kSide) * kSide>;
 
-/// Weights of the pixels -2..3 for the value at t in [0, 1): Lagrange's polynomial of degree 5. Two
-/// pixels (or four) show fine texture nearer to the whole pixel than it is.
+/// Weights of the pixels -2 ... 3 for the value at t in [0, 1): Lagrange polynomial of degree 5.
+/// With only two or four pixels, fine texture appears nearer to the whole pixel than it is.
 std::array<double, kTaps> taps_at(double t) {
     const double a = t + 2.0, b = t + 1.0, d = t - 1.0, e = t - 2.0, f = t - 3.0;
     return {-b * t * d * e * f / 120.0,
@@ -67,8 +67,8 @@ Rows rows_of(ImageView<const std::uint8_t> left, int u_px, int v_px) {
     return rows;
 }
 
-/// Sum of the rows times the right image's grey values where `warp` puts them; nothing where they
-/// leave the image.
+/// Sum of the rows times the right image's grey values at their places under `warp`; nothing where
+/// the places leave the image.
 std::optional<Row> project(
     const Rows& rows, ImageView<const std::uint8_t> right, int u_px, int v_px, const Warp& warp) {
     constexpr int kReach =
@@ -80,7 +80,7 @@ std::optional<Row> project(
     if (v0 - kHalf - kBefore < 0 || v0 + kHalf + kTaps - kBefore > right.height) return {};
     const auto down = taps_at(warp.rows_px - std::floor(warp.rows_px));
     const int first = u0 - kReach - kBefore;  // column of strip[0]
-    std::array<double, kWide> strip{};        // one row of the window, settled between rows
+    std::array<double, kWide> strip{};        // one window row, interpolated between rows
     Row sum = Row::Zero();
     std::size_t i = 0;
     for (int y = -kHalf; y <= kHalf; ++y) {

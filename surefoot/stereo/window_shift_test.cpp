@@ -16,7 +16,7 @@ namespace {
 constexpr int kSide = 48;
 constexpr int kMiddle = kSide / 2;
 
-/// Grey values known at every place: waves of all directions, 6 to 20 px long.
+/// Grey values known at every position: waves in all directions, 6 to 20 px long.
 class Waves {
   public:
     explicit Waves(std::uint64_t seed) {
@@ -54,7 +54,7 @@ struct View {
     double noise = 0.0;
 };
 
-/// The waves as `view` moves them about the middle of the image.
+/// The waves, moved by `view` about the middle of the image.
 GreyImage picture(const Waves& waves, const View& view, Rng& rng) {
     GreyImage image(kSide, kSide);
     for (int v = 0; v < kSide; ++v) {
@@ -136,12 +136,12 @@ TEST(WindowShift, SaysNothingWhereItCannotTell) {
     const GreyImage grey(kSide, kSide, 90);
     EXPECT_FALSE(refined(grey, left, kMiddle, kMiddle));
     EXPECT_FALSE(refined(left, grey, kMiddle, kMiddle));
-    GreyImage stripes(kSide, kSide);  // nothing tells how far along them it moved
+    GreyImage stripes(kSide, kSide);  // nothing shows their shift along the stripes
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) stripes.at(u, v) = left.at(kMiddle, v);
     }
     EXPECT_FALSE(refined(stripes, stripes, kMiddle, kMiddle));
-    // Two pixels away from where it was told to look.
+    // Two pixels away from the start.
     EXPECT_FALSE(refined(left, picture(waves, {0.0, 0.0, 0.0, 2.0}, rng), kMiddle, kMiddle));
 }
 

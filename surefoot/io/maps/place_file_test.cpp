@@ -147,7 +147,8 @@ TEST(PlaceFile, SaysWhatIsWrongAndWhatToDo) {
     says(with(bytes, kFeaturesAt, std::uint32_t{400}), "bytes into a keyframe");
     says(with(bytes, kFeaturesAt + 4, std::uint32_t{9}), "reserved bytes hold 9");
     says(with(bytes, kWidthAt, std::int32_t{-1}), "keyframe 0 has images of -1 x 376");
-    says(with(bytes, kPoseAt, std::numeric_limits<double>::quiet_NaN()), "pose that is none");
+    says(with(bytes, kPoseAt, std::numeric_limits<double>::quiet_NaN()),
+         "pose in the map that is not valid");
     says(with(bytes, kFirstFeatureAt, -5.0F), "outside its image");
 }
 

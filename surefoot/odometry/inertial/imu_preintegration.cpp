@@ -9,12 +9,12 @@
 namespace surefoot::odometry {
 namespace {
 
-/// A reading of an unknown range counts as saturated when it stays exactly the same for so many
-/// samples at a rate or force that no steady motion of a machine has.
+/// If the range is unknown: a reading counts as saturated when it stays exactly the same for this
+/// many samples at a rate or force that a machine in steady motion never has.
 constexpr int kStuckSamples = 4;
 constexpr double kStuckRate_rad_s = 2.0;
 constexpr double kStuckForce_m_s2 = 15.0;
-/// Readings this close to the range are at it: converters end a few counts before.
+/// Readings this close to the range count as saturated, because converters end a few counts early.
 constexpr double kAtRange = 0.998;
 
 bool finite(const ImuSample& sample) {
@@ -29,7 +29,7 @@ bool at_range(const ImuLimits& limits, const ImuSample& sample) {
            beyond(sample.specific_force_m_s2, limits.accel_range_m_s2);
 }
 
-/// High and constant on one axis, `get` reading the three axes of a sample.
+/// High and constant on one axis; `get` returns the three axes of a sample.
 template <typename Get>
 bool stuck(std::span<const ImuSample> samples, double least, const Get& get) {
     Eigen::Vector3i run = Eigen::Vector3i::Ones();
@@ -45,7 +45,7 @@ bool stuck(std::span<const ImuSample> samples, double least, const Get& get) {
 }
 
 /// The samples that the interval needs: from the last one at or before its start to the first one
-/// at or after its end. Stamps must grow.
+/// at or after its end. Stamps must increase.
 std::span<const ImuSample> around(std::span<const ImuSample> samples,
                                   std::int64_t start_ns,
                                   std::int64_t end_ns) {
@@ -82,7 +82,7 @@ ImuProblem problem_of(const ImuLimits& limits,
     return is_stuck ? ImuProblem::saturated : ImuProblem::none;
 }
 
-/// Reading at a time not beyond `next`, which is the first sample not before it.
+/// Reading at a time. `next` is the index of the first sample that is not before this time.
 ImuSample reading_at(std::span<const ImuSample> samples, std::size_t next, std::int64_t time_ns) {
     if (next == 0 || next == samples.size()) {
         ImuSample held = next == 0 ? samples.front() : samples.back();
@@ -98,7 +98,7 @@ ImuSample reading_at(std::span<const ImuSample> samples, std::size_t next, std::
             a.specific_force_m_s2 + s * (b.specific_force_m_s2 - a.specific_force_m_s2)};
 }
 
-/// One step of the mid-point rule, with the error's covariance and the biases' Jacobians.
+/// One step of the mid-point rule, including the covariance and the Jacobians of the biases.
 void step(const ImuNoise& noise, const ImuSample& from, const ImuSample& to, ImuMotion& m) {
     const double dt_s = seconds_from_ns(to.time_ns - from.time_ns);
     const Eigen::Vector3d turn_rad =
@@ -139,7 +139,7 @@ void step(const ImuNoise& noise, const ImuSample& from, const ImuSample& to, Imu
     m.covariance = (A * m.covariance * A.transpose()).eval();
     m.covariance.noalias() += B * variance.asDiagonal() * B.transpose();
 
-    // A bias is a constant n with the opposite sign.
+    // A bias acts like a constant noise n of opposite sign.
     const Eigen::Matrix3d turned = by_phi * m.d_rotation_d_gyro - by_gyro;
     m.d_position_d_gyro += dt_s * m.d_velocity_d_gyro + 0.5 * dt_s * dt_s * turned;
     m.d_velocity_d_gyro += dt_s * turned;

@@ -16,7 +16,7 @@ namespace {
 
 const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
 
-/// A swinging, turning walk; what it does is known at any time.
+/// A swinging and turning walk whose true motion is known at any time.
 struct Walk {
     static Eigen::Vector3d position(double t) {
         return {
@@ -28,13 +28,13 @@ struct Walk {
     static Eigen::Vector3d acceleration(double t) {
         return {-1.156 * std::sin(1.7 * t), -0.529 * std::cos(2.3 * t), -1.25 * std::sin(5.0 * t)};
     }
-    /// Turns about z, then y, then x.
+    /// Rotations about z, then y, then x.
     static Eigen::Quaterniond rotation(double t) {
         return Eigen::AngleAxisd(0.8 * std::sin(0.9 * t), Eigen::Vector3d::UnitZ()) *
                Eigen::AngleAxisd(0.3 * std::sin(1.9 * t), Eigen::Vector3d::UnitY()) *
                Eigen::AngleAxisd(0.2 * std::sin(2.9 * t + 0.4), Eigen::Vector3d::UnitX());
     }
-    /// By differences of the rotation: an error of 1e-9 rad/s.
+    /// From differences of the rotation; the error is 1e-9 rad/s.
     static Eigen::Vector3d turn_rate(double t) {
         constexpr double kStep_s = 1e-4;
         const Eigen::Vector3d d =
@@ -58,7 +58,7 @@ std::vector<ImuSample> samples_of(double from_s, double to_s, double rate_hz) {
     return samples;
 }
 
-/// White noise as a sampled sensor has it.
+/// White noise of a sampled sensor.
 void add_noise(std::vector<ImuSample>& samples, const ImuNoise& noise, double rate_hz, Rng& rng) {
     const double gyro = noise.gyro_density_rad_s_sqrt_hz * std::sqrt(rate_hz);
     const double accel = noise.accel_density_m_s2_sqrt_hz * std::sqrt(rate_hz);
@@ -79,7 +79,7 @@ ImuMotion integrated(const std::vector<ImuSample>& samples,
     return result.motion;
 }
 
-/// (rotation, velocity, position) from `a` to `b`.
+/// (rotation, velocity, position) error from `a` to `b`.
 Vector9 difference(const ImuMotion& a, const ImuMotion& b) {
     Vector9 d;
     d << log_so3(a.rotation.conjugate() * b.rotation), b.velocity_m_s - a.velocity_m_s,
@@ -87,7 +87,7 @@ Vector9 difference(const ImuMotion& a, const ImuMotion& b) {
     return d;
 }
 
-/// The true motion in the terms of ImuMotion.
+/// The true motion in the form of ImuMotion.
 ImuMotion truth(double from_s, double to_s) {
     ImuMotion m;
     const double dt_s = to_s - from_s;
@@ -129,7 +129,7 @@ TEST(ImuPreintegration, WithoutALaterSampleTheLastOneHolds) {
     auto samples = samples_of(0.0, 0.25, 200.0);
     const Vector9 error = difference(truth(0.20, 0.2530), integrated(samples, 0.20, 0.2530));
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 3e-4) << error.transpose();
-    samples.resize(samples.size() - 8);  // 43 ms without one
+    samples.resize(samples.size() - 8);  // 43 ms without a sample
     EXPECT_EQ(
         preintegrate({}, {}, samples, ns_from_seconds(0.2), ns_from_seconds(0.253), {}).problem,
         ImuProblem::gap);
@@ -176,7 +176,7 @@ TEST(ImuPreintegration, AnotherBiasIsRightToFirstOrder) {
         return difference(integrated(samples, 0.1, 0.6, bias), corrected).norm();
     };
     EXPECT_LT(error_of(1.0), 2e-3);
-    EXPECT_NEAR(error_of(1.0) / error_of(0.5), 4.0, 0.3);  // what is left is of second order
+    EXPECT_NEAR(error_of(1.0) / error_of(0.5), 4.0, 0.3);  // the remaining error is of second order
 }
 
 TEST(ImuPreintegration, CovarianceMatchesSampledNoise) {
@@ -197,8 +197,8 @@ TEST(ImuPreintegration, CovarianceMatchesSampledNoise) {
         const Vector9 d = difference(exact, run(noisy));
         sampled += d * d.transpose() / kRuns;
     }
-    // In units of the expected sigmas: 4000 runs leave 1.6 % for an element (2.2 % on the
-    // diagonal), five times that for the worst of 45.
+    // In units of the expected sigmas. 4000 runs leave a scatter of 1.6 % per element (2.2 % on the
+    // diagonal); the worst of 45 elements may be five times that.
     const Vector9 scale = exact.covariance.diagonal().cwiseSqrt().cwiseInverse();
     const Matrix9 difference_sigmas =
         scale.asDiagonal() * (sampled - exact.covariance) * scale.asDiagonal();
@@ -232,7 +232,7 @@ TEST(ImuPreintegration, BadInputIsNamedAndNothingIsMadeOfIt) {
     bad[85].specific_force_m_s2.y() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(ask(bad), ImuProblem::not_finite);
     bad = good;
-    bad[85].angular_velocity_rad_s.z() = -2.18;  // once: another sensor may mean it
+    bad[85].angular_velocity_rad_s.z() = -2.18;  // once: it may be a real reading
     EXPECT_EQ(ask(bad), ImuProblem::none);
     EXPECT_EQ(ask(bad, {.gyro_range_rad_s = 2.18}), ImuProblem::saturated);
     for (std::size_t i = 83; i < 87; ++i) bad[i].angular_velocity_rad_s.z() = -2.18;

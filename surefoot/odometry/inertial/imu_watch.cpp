@@ -8,9 +8,9 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Half the rate is no gap, nor is a stamp that jitters by two periods.
+/// Half the usual rate is not a gap, and neither is a stamp that jitters by two periods.
 constexpr std::int64_t kGapPeriods = 4;
-constexpr std::size_t kLeastPeriods = 8;  ///< before them the rate is not known
+constexpr std::size_t kLeastPeriods = 8;  ///< with fewer periods the rate is unknown
 constexpr int kLackingFrames = 2;
 
 }  // namespace
@@ -20,7 +20,7 @@ ImuWatch::ImuWatch(double late_s) : late_ns_(ns_from_seconds(late_s)) {}
 void ImuWatch::listen(std::span<const ImuSample> samples) {
     const std::optional<std::int64_t> longest = longest_ns();
     for (const ImuSample& sample : samples) {
-        // Stamps that repeat or go back say nothing about the rate.
+        // Stamps that repeat or go back contain no information about the rate.
         if (last_ns_ && sample.time_ns > *last_ns_) {
             const std::int64_t period_ns = sample.time_ns - *last_ns_;
             if (longest && period_ns > *longest) hole_ = true;
@@ -43,7 +43,7 @@ bool ImuWatch::gap() const noexcept {
     return lacking_frames_ >= kLackingFrames;
 }
 
-/// Longest time without a sample that is no gap; nothing while the rate is unknown.
+/// Longest time without a sample that still counts as normal; nothing while the rate is unknown.
 std::optional<std::int64_t> ImuWatch::longest_ns() const {
     if (heard_periods_ < kLeastPeriods) return std::nullopt;
     auto periods_ns = periods_ns_;

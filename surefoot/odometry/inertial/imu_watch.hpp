@@ -11,18 +11,18 @@
 
 namespace surefoot::odometry {
 
-/// Does the IMU deliver what its own rate promises? A frame lacks samples when more than four of
-/// the stream's usual periods (the median of the last ones) went by without one, or when its
-/// readings cannot be integrated for whatever reason. One such frame is an accident of delivery;
-/// `gap` says that the second in a row has come. An IMU that never brought a sample has no gap.
+/// Checks whether the IMU delivers samples at its usual rate. A frame lacks samples when four usual
+/// periods (median of the last ones) pass without a sample, or when its readings cannot be
+/// integrated. One such frame may be a late delivery; `gap` is true from the second in a row on. An
+/// IMU that never delivered a sample has no gap.
 class ImuWatch {
   public:
-    /// Samples may come this much after the frame that they belong to.
+    /// `late_s`: samples may arrive this much later than their frame.
     explicit ImuWatch(double late_s);
 
-    /// Takes samples in the order in which they come.
+    /// Takes samples in the order of their arrival.
     void listen(std::span<const ImuSample> samples);
-    /// A frame at `time_ns` has all the samples that it gets; what came of integrating them.
+    /// Ends a frame at `time_ns` that has all its samples; `problem`: result of their integration.
     void finish(std::int64_t time_ns, ImuProblem problem);
     [[nodiscard]] bool gap() const noexcept;
 
@@ -30,10 +30,10 @@ class ImuWatch {
     [[nodiscard]] std::optional<std::int64_t> longest_ns() const;
 
     std::int64_t late_ns_ = 0;
-    std::array<std::int64_t, 32> periods_ns_{};  ///< the last ones, in a ring
+    std::array<std::int64_t, 32> periods_ns_{};  ///< the last periods, in a ring
     std::size_t heard_periods_ = 0;
     std::optional<std::int64_t> last_ns_;  ///< stamp of the last sample
-    bool hole_ = false;                    ///< before one of the samples since the last frame
+    bool hole_ = false;                    ///< a gap before a sample since the last frame
     int lacking_frames_ = 0;               ///< in a row
 };
 

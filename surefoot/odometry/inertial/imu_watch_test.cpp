@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
 
-/// Frames every 50 ms; the samples of each are those of a stream that tests may disturb.
+/// Frames every 50 ms. Their samples come from a stream that a test can disturb.
 struct Stream {
     ImuWatch watch{0.03};
     std::int64_t frame_ns = 0;
     std::int64_t sample_ns = 0;  ///< stamp of the last sample
     std::int64_t period_ns = 5 * kMs_ns;
 
-    /// A frame with all its samples, or without any.
+    /// A frame, with all its samples or with none.
     bool frame(bool samples, ImuProblem problem = ImuProblem::none) {
         frame_ns += 50 * kMs_ns;
         std::vector<ImuSample> given;
@@ -28,7 +28,7 @@ struct Stream {
         watch.finish(frame_ns, problem);
         return watch.gap();
     }
-    /// One digit a frame: is there a gap?
+    /// One digit per frame: 1 = gap.
     std::string frames(std::size_t count, bool samples, ImuProblem problem = ImuProblem::none) {
         std::string said;
         for (std::size_t i = 0; i < count; ++i) said += frame(samples, problem) ? '1' : '0';
@@ -80,7 +80,7 @@ TEST(ImuWatch, AnotherRateIsNoGap) {
     EXPECT_EQ(stream.frames(10, true), std::string(10, '0'));
     stream.period_ns = 1 * kMs_ns;
     EXPECT_EQ(stream.frames(10, true), std::string(10, '0'));
-    stream.period_ns = 5 * kMs_ns;  // a fifth: a gap, until it is the usual rate
+    stream.period_ns = 5 * kMs_ns;  // a fifth of the rate: a gap until it is the usual rate
     EXPECT_EQ(stream.frames(10, true), "0100000000");
 }
 

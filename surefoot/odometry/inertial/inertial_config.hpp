@@ -6,8 +6,8 @@
 
 namespace surefoot::odometry {
 
-/// How an IMU is used where the rig has one. The densities are above those of data sheets: what
-/// scale, alignment, time stamps and vibration do to a sensor on a walking machine is in them.
+/// Use of the rig's IMU. The noise densities exceed those of data sheets, because they include
+/// errors of scale, alignment and time stamps and the vibration of a walking machine.
 struct InertialConfig {
     bool enabled = true;
     ImuNoise noise;

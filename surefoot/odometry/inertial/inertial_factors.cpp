@@ -6,7 +6,7 @@
 namespace surefoot::odometry::inertial {
 namespace {
 
-/// Of up_odom by the tilt.
+/// Derivative of up_odom by the tilt.
 Eigen::Matrix<double, 3, 2> up_by_tilt(const InertialState& state) {
     const Eigen::Vector3d tilt(state.tilt_rad.x(), state.tilt_rad.y(), 0.0);
     const Eigen::Matrix3d J = -(state.R_odom_level * exp_so3(tilt)).toRotationMatrix() *

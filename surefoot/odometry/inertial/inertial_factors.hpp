@@ -7,19 +7,19 @@
 
 #include "surefoot/odometry/inertial/inertial_solver.hpp"
 
-/// What the least-squares problem of `inertial_solver` is made of: each part adds its normal
-/// equations H step = b at a pair of states, ordered (previous 15, present 15, tilt 2).
+/// Parts of the least-squares problem of `inertial_solver`. Each part adds its normal equations H
+/// step = b at a pair of states, in the order previous 15, present 15, tilt 2.
 namespace surefoot::odometry::inertial {
 
-inline constexpr int kFrame = 15;  ///< unknowns of a frame without gravity
+inline constexpr int kFrame = 15;  ///< unknowns of a frame, gravity excluded
 inline constexpr int kAll = 2 * kFrame + 2;
 inline constexpr int kPresent = kFrame;
 inline constexpr int kSharedTilt = 2 * kFrame;
 using VectorAll = Eigen::Matrix<double, kAll, 1>;
 using MatrixAll = Eigen::Matrix<double, kAll, kAll>;
 
-/// Inverse of a covariance or information whose components have very different units; not finite
-/// when it has none.
+/// Inverse of a covariance or information matrix whose components have very different units. All
+/// entries are NaN if the matrix is not positive definite.
 template <int Size>
 Eigen::Matrix<double, Size, Size> inverse_of(const Eigen::Matrix<double, Size, Size>& M) {
     using Square = Eigen::Matrix<double, Size, Size>;
@@ -31,7 +31,7 @@ Eigen::Matrix<double, Size, Size> inverse_of(const Eigen::Matrix<double, Size, S
     return 0.5 * (inverse + inverse.transpose());
 }
 
-/// Two states that share gravity.
+/// Two states with a common gravity direction.
 struct Pair {
     InertialState previous;
     InertialState present;
@@ -55,10 +55,10 @@ struct Normal {
     }
 };
 
-/// The previous frame's belief.
+/// Adds the belief about the previous frame as a prior.
 void add_prior(const InertialState& mean, const Matrix17& information, const Pair& at, Normal& n);
 
-/// The IMU's motion from the previous to the present frame.
+/// Motion of the IMU from the previous to the present frame.
 struct MotionFactor {
     const ImuMotion& motion;
     Matrix9 information;
@@ -75,7 +75,7 @@ struct MotionFactor {
     void add_bias_walk(const Pair& at, Normal& n) const;
 };
 
-/// The points of the present frame.
+/// Point observations of the present frame.
 struct PointsFactor {
     const VisualEvidence& seen;
     const Pose& T_imu_camera;
@@ -87,7 +87,7 @@ struct PointsFactor {
     void add_to(const Pair& at, Normal& n);
 };
 
-/// A pose of the present frame that is known by itself.
+/// A pose of the present frame that is known from another source.
 struct PoseFactor {
     const PoseEvidence& known;
     Matrix6 information = inverse_of<6>(known.covariance);
@@ -95,7 +95,7 @@ struct PoseFactor {
     void add_to(const Pair& at, Normal& n) const;
 };
 
-/// No evidence about the present frame.
+/// Placeholder for a frame without visual evidence.
 struct NothingSeen {
     void add_to(const Pair&, Normal&) const {}
 };

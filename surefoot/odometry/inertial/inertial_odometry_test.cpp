@@ -17,10 +17,10 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr double kRate_hz = 200.0;
-constexpr std::int64_t kFirst_ns = 1'000'000'000;  // as render_frame has it
+constexpr std::int64_t kFirst_ns = 1'000'000'000;  // as in render_frame
 constexpr std::int64_t kFrame_ns = 50'000'000;
 
-/// A hand-held curve of the left camera; it begins to move after `still_s`.
+/// A hand-held curve of the left camera, which begins to move after `still_s`.
 struct Curve {
     double still_s = 0.0;
     double shake_rad = 0.0;  ///< at 4 Hz, about x, from the second second on
@@ -37,7 +37,8 @@ struct Curve {
     }
 };
 
-/// The room of the other tests with an IMU beside the camera; the world's up leans in the camera.
+/// The room of the other tests with an IMU beside the camera. The world's up is tilted in the
+/// camera.
 struct Machine {
     camera::StereoRig rig = testing::small_rig();
     Curve curve;
@@ -50,7 +51,7 @@ struct Machine {
         return {rig.body_from_left() * T_left_imu, kRate_hz};
     }
 
-    /// By differences of the curve.
+    /// From differences of the curve.
     [[nodiscard]] ImuSample sample(std::int64_t time_ns, Rng& rng) const {
         constexpr double kStep_s = 1e-3;
         const double t = seconds_from_ns(time_ns - kFirst_ns);
@@ -129,8 +130,8 @@ TEST(InertialOdometry, FollowsTheCurveInAnOdomThatLeans) {
     EXPECT_LT(worst_m, 0.006);
 }
 
-/// Shaken at 4 Hz, where the mean motion since the frame before says little about the present one:
-/// the gyroscope tells how the rows of a rolling shutter lie.
+/// Shaken at 4 Hz, so that the mean motion since the previous frame says little about the present
+/// one. The gyroscope shows the positions of the rows of a rolling shutter.
 TEST(InertialOdometry, TheGyroscopeSeesHowARollingShutterMoves) {
     const auto rms_m = [](double readout_s, bool with_imu) {
         Machine machine;
@@ -160,7 +161,7 @@ TEST(InertialOdometry, TheGyroscopeSeesHowARollingShutterMoves) {
     EXPECT_GT(without_m, 3.0 * with_imu_m);
 }
 
-/// Half a second without images, in full motion: the IMU carries the pose.
+/// Half a second without images during full motion: the IMU carries the pose.
 TEST(InertialOdometry, HalfASecondInTheDarkIsBridged) {
     constexpr int kDark = 50;
     constexpr int kLight = 60;
@@ -199,7 +200,8 @@ TEST(InertialOdometry, HalfASecondInTheDarkIsBridged) {
     EXPECT_LT(error_mm[1], 0.5 * error_mm[0]);
 }
 
-/// Longer than the IMU may carry: coasting, as without one; then it starts again.
+/// Longer than the IMU may carry the pose: the pose coasts as without an IMU, then the IMU
+/// restarts.
 TEST(InertialOdometry, LongDarknessCoastsAndTheImuStartsAgain) {
     Machine machine;
     Follower run(machine, true);
@@ -213,7 +215,7 @@ TEST(InertialOdometry, LongDarknessCoastsAndTheImuStartsAgain) {
         if (i > 0) {
             EXPECT_LT((m.T_odom_body.translation_m - before.translation_m).norm(), 0.05) << i;
         }
-        if (i == 51) {  // the unseen speed is that of a frame without IMU
+        if (i == 51) {  // the unseen speed is that of a frame without an IMU
             EXPECT_GT(std::sqrt(m.relative_covariance(0, 0)), 0.1);
         }
         if (i > 54) {
@@ -239,7 +241,7 @@ TEST(InertialOdometry, StandingStillIsExact) {
     }
 }
 
-/// Standing shows the biases: the dark that comes with the first motion is bridged.
+/// Standing reveals the biases, so that the IMU bridges dark images at the first motion.
 TEST(InertialOdometry, StandingFirstIsAGoodStart) {
     Machine machine;
     machine.curve.still_s = 2.0;
@@ -277,7 +279,8 @@ TEST(InertialOdometry, AnImuThatContradictsIsNamedAndLeftOut) {
     EXPECT_GE(named, 10);
 }
 
-/// A jump of the bias is learnt within a frame or two; it is said all the same, and for some time.
+/// The state adapts to a jump of the bias within one or two frames; it is still reported for some
+/// time.
 TEST(InertialOdometry, AJumpOfTheBiasIsNamedWithinTwoFrames) {
     constexpr int kJump = 32;
     for (const bool turns : {true, false}) {
@@ -303,8 +306,8 @@ TEST(InertialOdometry, AJumpOfTheBiasIsNamedWithinTwoFrames) {
     }
 }
 
-/// Damages the samples of `frames` frames from `kDamaged` on; of these and those after them
-/// `named_frames` are named, the first one apart.
+/// Damages the samples of `frames` frames from `kDamaged` on. Of these and the following frames,
+/// `named_frames` must have the reason imu_gap; the first damaged frame must not.
 constexpr int kDamaged = 30;
 void follow_damaged(int frames, int named_frames, const std::function<void(StereoFrame&)>& damage) {
     Machine machine;
@@ -322,7 +325,7 @@ void follow_damaged(int frames, int named_frames, const std::function<void(Stere
     }
 }
 
-/// The first sample that comes again shows the end of the gap: that frame lacks samples, too.
+/// The first sample after the gap reveals its end, so that frame also lacks samples.
 TEST(InertialOdometry, MissingSamplesAreNamedFromTheSecondFrameOn) {
     constexpr int kForEver = 100;
     for (const int frames : {4, 20, kForEver}) {  // 0.2 s, 1 s
@@ -348,7 +351,7 @@ TEST(InertialOdometry, HalfTheRateIsNoGap) {
     });
 }
 
-/// Every stamp twice.
+/// Every stamp occurs twice.
 TEST(InertialOdometry, StampsThatRepeatAreNamed) {
     follow_damaged(9, 8, [](StereoFrame& frame) {
         const std::vector<ImuSample> once = std::exchange(frame.imu, {});
@@ -372,7 +375,7 @@ TEST(InertialOdometry, DarknessWithoutSamplesIsUnknownAtOnce) {
             const auto m = run.odometry.update(frame, serial);
             if (i < kDark) continue;
             EXPECT_EQ(m.health, Health::lost) << i;
-            EXPECT_STREQ(to_string(m.reason), "blur") << "the images are why: " << i;
+            EXPECT_STREQ(to_string(m.reason), "blur") << "the images are the cause: " << i;
             const double sigma_m = std::sqrt(m.relative_covariance(0, 0));
             const double unseen_m = config.lost_speed_m_s * seconds_from_ns(kFrame_ns);
             EXPECT_EQ(sigma_m > 0.99 * unseen_m, i >= silent) << i << " " << sigma_m;
@@ -399,7 +402,7 @@ TEST(InertialOdometry, BadSamplesAreLeftOut) {
     }
 }
 
-/// Frames that the camera repeated or tore are not tracked, but their samples count.
+/// Repeated or torn frames are not tracked, but their samples count.
 TEST(InertialOdometry, SkippedFramesLeaveTheirSamples) {
     double error_m[2] = {0.0, 0.0};
     for (const bool known : {false, true}) {
@@ -423,7 +426,7 @@ TEST(InertialOdometry, SkippedFramesLeaveTheirSamples) {
     EXPECT_GT(error_m[0], 2.0 * error_m[1]);
 }
 
-/// Where there are no samples, or the IMU is switched off, an IMU's mount changes no byte.
+/// Without samples, or with the IMU switched off, the mount of an IMU changes no byte.
 TEST(InertialOdometry, WithoutSamplesNothingChanges) {
     Machine machine;
     OdometryConfig off;

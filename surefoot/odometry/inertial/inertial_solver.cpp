@@ -32,7 +32,7 @@ Matrix17 present_covariance(const MatrixAll& H) {
     return inverse_of<kInertialSize>(information);
 }
 
-/// Levenberg-Marquardt over both states with any evidence about the present one.
+/// Levenberg-Marquardt over both states; `Evidence` is any evidence about the present one.
 template <typename Evidence>
 class JointProblem {
   public:
@@ -53,7 +53,7 @@ class JointProblem {
         return normal;
     }
 
-    /// The minimum from `pair` on; false when a step is not finite.
+    /// Minimises from `pair` on; returns false when a step is not finite.
     [[nodiscard]] bool minimise(int iterations, Pair& pair, Normal& normal) {
         normal = at(pair);
         double damping = 1e-9;
@@ -75,7 +75,7 @@ class JointProblem {
                 if (damping > 1e4) break;
             }
         }
-        // The evidence remembers the last pair it was asked about.
+        // Evaluated again, because the evidence stores the last pair at which it was evaluated.
         normal = at(pair);
         return true;
     }
@@ -146,8 +146,8 @@ Vector17 difference(const InertialState& from, const InertialState& to) {
 InertialBelief predict(const InertialModel& model,
                        const InertialBelief& before,
                        const ImuMotion& motion) {
-    // Nothing contradicts the prediction: it is the minimum, and only the covariance is to be
-    // found.
+    // Nothing contradicts the prediction, so it is the minimum. Only the covariance must be
+    // computed.
     const Pair pair{before.state, predicted_state(model, before.state, motion)};
     NothingSeen nothing;
     return {pair.present,
@@ -176,7 +176,7 @@ InertialSolution fuse(const InertialModel& model,
                       const InertialBelief& before,
                       const ImuMotion& motion,
                       const PoseEvidence& known) {
-    constexpr int kIterations = 8;  // all but linear
+    constexpr int kIterations = 8;  // nearly linear
     PoseFactor factor{known};
     return solve(model, before, motion, known.T_odom_imu, kIterations, factor);
 }
@@ -184,8 +184,8 @@ InertialSolution fuse(const InertialModel& model,
 InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                         const Matrix6& visual_covariance) {
     InertialBelief result = belief;
-    // Vision is part of the belief, so that the difference has no negative direction, but for
-    // robust weights at two slightly different poses: those directions stay as they are.
+    // Vision is part of the belief, so the difference has no negative direction, except for robust
+    // weights at two slightly different poses. Those directions stay unchanged.
     result.covariance.topLeftCorner<6, 6>() +=
         positive_part(visual_covariance - belief.covariance.topLeftCorner<6, 6>());
     return result;

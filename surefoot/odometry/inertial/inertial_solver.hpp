@@ -11,7 +11,7 @@
 
 namespace surefoot::odometry {
 
-/// Components of an inertial state's error, and where they begin.
+/// Layout of the error vector of an inertial state: first index of each component.
 inline constexpr int kInertialSize = 17;
 inline constexpr int kPoseAt = 0;      ///< (translation, rotation) as in pose.hpp
 inline constexpr int kVelocityAt = 6;  ///< in odom axes
@@ -21,23 +21,23 @@ inline constexpr int kTiltAt = 15;  ///< of gravity in odom
 using Vector17 = Eigen::Matrix<double, kInertialSize, 1>;
 using Matrix17 = Eigen::Matrix<double, kInertialSize, kInertialSize>;
 
-/// What the IMU's readings depend on at one instant.
+/// The quantities on which the IMU's readings depend at one instant.
 struct InertialState {
     Pose T_odom_imu;
     Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< of the IMU, in odom axes
     ImuBias bias;
-    /// Odom need not be level: up is R_odom_level Exp(tilt_x, tilt_y, 0) applied to z. The first
-    /// factor never changes after the start.
+    /// Odom need not be level: up is R_odom_level Exp(tilt_x, tilt_y, 0) applied to z. R_odom_level
+    /// never changes after the start.
     Eigen::Quaterniond R_odom_level = Eigen::Quaterniond::Identity();
     Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();
 
     [[nodiscard]] Eigen::Vector3d up_odom() const;
 };
 [[nodiscard]] InertialState perturbed(const InertialState& state, const Vector17& delta);
-/// The delta with `to == perturbed(from, delta)`; both start from the same R_odom_level.
+/// The delta for which `to == perturbed(from, delta)`. Both share the same R_odom_level.
 [[nodiscard]] Vector17 difference(const InertialState& from, const InertialState& to);
 
-/// A state and how sure it is.
+/// A state and its covariance.
 struct InertialBelief {
     InertialState state;
     Matrix17 covariance = Matrix17::Zero();
@@ -49,64 +49,64 @@ struct InertialModel {
     double gravity_m_s2 = 9.80665;
 };
 
-/// What the present frame sees: landmarks that are given, as in `refine_pose`.
+/// Observations of the present frame: matches with known landmarks, as in `refine_pose`.
 struct VisualEvidence {
     const camera::RectifiedRig& rig;
     const PoseSolverConfig& config;
     std::span<const PointMatch> matches;
-    double residual_scale = 1.0;  ///< the pixel noise is this many times the configured one
+    double residual_scale = 1.0;  ///< factor from the configured to the actual pixel noise
 };
 
-/// A pose that is known by itself, and the speed where the machine stands.
+/// A pose known from another source; also the velocity, if the machine stands still.
 struct PoseEvidence {
     Pose T_odom_imu;
     Matrix6 covariance = Matrix6::Zero();
-    std::optional<double> standing_sigma_m_s;  ///< the velocity is zero up to this
+    std::optional<double> standing_sigma_m_s;  ///< 1 sigma of a zero velocity; empty = it may move
 };
 
 struct InertialSolution {
-    bool found = false;  ///< else nothing below means anything
+    bool found = false;  ///< if false, the other members are invalid
     InertialBelief belief;
     std::vector<std::uint8_t> inlier;  ///< one per match
     int inliers = 0;
     double residual_px = 0.0;  ///< rms of the pixel components of the inliers
 };
 
-/// Where the IMU alone says that the present frame is, `motion` after `before`.
+/// Predicts the present state from the IMU alone: `before`, moved by `motion`.
 [[nodiscard]] InertialBelief predict(const InertialModel& model,
                                      const InertialBelief& before,
                                      const ImuMotion& motion);
 
-/// The most likely states of the previous and the present frame, given a belief about the previous
-/// one, the IMU's motion between them, and what the present frame sees: Gauss-Newton over both
-/// states and gravity, robust for the points as `refine_pose` is; then the previous state is
-/// marginalised (Schur complement). What comes out is the belief about the present state.
+/// Estimates the states of the previous and present frames from a belief about the previous one,
+/// the IMU's motion between them and the observations of the present frame. Gauss-Newton over both
+/// states and gravity, robust for points as `refine_pose` is. Then the previous state is
+/// marginalised (Schur complement). The result is the belief about the present state.
 ///
-/// The landmarks are taken as known but for their covariance, which counts as noise of this frame
-/// alone; see `with_vision_counted_once` for what that means for the next frame.
+/// Landmarks count as known up to their covariance, which acts as noise of this frame alone. See
+/// `with_vision_counted_once` for the consequence for the next frame.
 ///
-/// The residuals are those of Forster et al. 2017, (45), with gravity's direction as an unknown.
+/// Residuals as in Forster et al. 2017, (45), with the direction of gravity as an extra unknown.
 [[nodiscard]] InertialSolution fuse(const InertialModel& model,
                                     const InertialBelief& before,
                                     const ImuMotion& motion,
                                     const VisualEvidence& seen,
                                     const Pose& T_odom_camera_start);
-/// The same with a pose instead of points; one that stands shows the gyroscope's bias.
+/// The same with a known pose instead of points. A standing camera reveals the gyroscope's bias.
 [[nodiscard]] InertialSolution fuse(const InertialModel& model,
                                     const InertialBelief& before,
                                     const ImuMotion& motion,
                                     const PoseEvidence& known);
 
-/// The belief to go on with after a frame whose vision alone knows the pose up to
-/// `visual_covariance` (of the IMU's pose). Neighbouring frames see the same landmarks with the
-/// same errors: a pose that gathered information from frame to frame would count them again and
-/// again. Assumed is the worst, that all of the visual error is theirs: the pose's covariance is
-/// raised to that of vision alone, as by an independent shift of the map. What vision told about
-/// velocity, biases and gravity, which come from differences of poses, stays.
+/// Belief for the next frame, after a frame whose pose vision alone knows up to `visual_covariance`
+/// (of the IMU's pose). Neighbouring frames see the same landmarks with the same errors, so a pose
+/// that collects information from frame to frame would count these errors several times. The
+/// function assumes the worst case: landmarks cause all of the visual error. It raises the pose
+/// covariance to that of vision alone, as an independent shift of the map would. Information about
+/// velocity, biases and gravity stays, because it comes from differences of poses.
 [[nodiscard]] InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                                       const Matrix6& visual_covariance);
 
-/// Of a difference of covariances what is not negative in any direction.
+/// The symmetric matrix with its negative eigenvalues set to zero.
 [[nodiscard]] Matrix6 positive_part(const Matrix6& symmetric);
 
 /// Covariance of T_a_c = T_a_b * T_b_c for a fixed T_b_c.

@@ -29,7 +29,7 @@ Eigen::Vector3d random3(Rng& rng, double sigma) {
     return sigma * Eigen::Vector3d(x, y, rng.normal());
 }
 
-/// Readings of a machine that swings and turns, without errors, for up to `seconds`.
+/// Error-free readings of a machine that swings and turns, for up to `seconds`.
 std::vector<ImuSample> clean_samples(double seconds) {
     std::vector<ImuSample> samples;
     const int n = static_cast<int>(seconds * kRate_hz) + 2;
@@ -69,7 +69,7 @@ ImuMotion motion_of(const std::vector<ImuSample>& samples,
     return result.motion;
 }
 
-/// Where a machine comes by readings without errors; its own sensor's biases stay.
+/// Final state of a machine after error-free readings; its own sensor's biases stay.
 InertialState moved_by(const InertialState& truth, const ImuMotion& clean) {
     Matrix17 any = Matrix17::Identity();
     InertialState unbiased = truth;
@@ -79,7 +79,7 @@ InertialState moved_by(const InertialState& truth, const ImuMotion& clean) {
     return after;
 }
 
-/// Landmarks that a camera at the pose sees with this noise.
+/// Landmarks that a camera at the pose observes with this noise.
 std::vector<PointMatch> points_seen(const Pose& T_odom_camera,
                                     int count,
                                     double sigma_px,
@@ -105,7 +105,7 @@ Vector17 usual_sigmas() {
     return sigma;
 }
 
-/// A previous frame that is believed with errors, a noisy motion, and points.
+/// A previous belief with errors, a noisy motion, and points.
 struct TwoFrames {
     InertialModel model = test_model();
     camera::RectifiedRig rig = testing::rectified_rig();
@@ -123,7 +123,7 @@ struct TwoFrames {
         truth.bias = {random3(rng, 0.01), random3(rng, 0.1)};
         truth.R_odom_level = exp_so3(random3(rng, 0.5));
         truth.tilt_rad = {0.03, -0.02};
-        // Correlated, as beliefs are.
+        // Correlated, as real beliefs are.
         Matrix17 mix;
         for (int k = 0; k < mix.size(); ++k) mix(k) = 0.2 * rng.normal();
         mix += Matrix17::Identity();
@@ -147,7 +147,7 @@ struct TwoFrames {
 
 using Vector32 = Eigen::Matrix<double, 32, 1>;
 
-/// The two states at an offset from fixed ones: (previous 15, present 15, tilt 2).
+/// The two states, offset from fixed states: (previous 15, present 15, tilt 2).
 struct Offset {
     InertialState previous;
     InertialState present;
@@ -163,7 +163,7 @@ struct Offset {
     }
 };
 
-/// All that the previous belief and the IMU say, whitened: 17 + 9 + 6 residuals.
+/// Residuals of the previous belief and the IMU, whitened: 17 + 9 + 6.
 struct ImuCost {
     const TwoFrames& f;
     const InertialState& i0;
@@ -175,7 +175,7 @@ struct ImuCost {
         const InertialState& j = at.present;
         Eigen::Map<Vector32> r(residual);
         r.head<17>() = f.before.covariance.llt().matrixL().solve(difference(f.before.state, i));
-        // gravity and the definition of ImuMotion, written down once more
+        // Gravity and the definition of ImuMotion, written independently of the solver.
         const double dt = f.motion.dt_s;
         const Eigen::Vector3d g = -f.model.gravity_m_s2 *
                                   (i.R_odom_level * exp_so3({i.tilt_rad.x(), i.tilt_rad.y(), 0.0}))
@@ -216,10 +216,10 @@ struct PointCost {
 
 /// Offset of Ceres' minimum from ours, and its covariance of (present, tilt).
 Vector32 offset_of_ceres(const TwoFrames& f, const InertialSolution& ours, Matrix17& covariance) {
-    // Our previous state is marginalised: start from its belief.
+    // Our previous state is marginalised, so the start is its belief.
     const InertialState& i0 = f.before.state;
     InertialState j0 = ours.belief.state;
-    j0.tilt_rad = i0.tilt_rad;  // shared unknown: its offset counts from the belief
+    j0.tilt_rad = i0.tilt_rad;  // shared unknown: its offset is relative to the belief
     Vector32 x = Vector32::Zero();
     ceres::Problem problem;
     problem.AddResidualBlock(
@@ -265,7 +265,7 @@ TEST(InertialSolver, AgreesWithCeres) {
     }
 }
 
-/// Without Huber weights the covariance is that of the same least-squares problem.
+/// Without Huber weights the covariance equals that of the same least-squares problem.
 TEST(InertialSolver, CovarianceIsThatOfCeres) {
     TwoFrames f(7);
     f.config.huber_sigmas = f.config.gate_sigmas = 20.0;
@@ -280,8 +280,8 @@ TEST(InertialSolver, CovarianceIsThatOfCeres) {
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-4) << off;
 }
 
-/// Thirty frames that see fresh points each, many times: the error is as large as the covariance
-/// says, for all seventeen together and for the pose, after vision and after half a second without.
+/// Many runs of thirty frames, each with new points. The error must match the covariance, for all
+/// seventeen components and for the pose, after vision and after half a second without vision.
 TEST(InertialSolver, BeliefsAreHonest) {
     constexpr int kRuns = 120;
     constexpr int kSeen = 30;
@@ -337,14 +337,14 @@ TEST(InertialSolver, BeliefsAreHonest) {
                 nees_seen,
                 nees_blind,
                 nees_blind_pose);
-    // 120 runs scatter by 0.53; below 17 because the walk that the model has does not happen, above
-    // because Huber's weights ask more noise than there is.
+    // 120 runs scatter by 0.53. Below 17 because the model's random walk does not occur; above
+    // because Huber's weights expect more noise than there is.
     EXPECT_NEAR(nees_seen, 17.0, 2.5);
     EXPECT_NEAR(nees_blind, 17.0, 2.5);
     EXPECT_NEAR(nees_blind_pose, 6.0, 1.2);
 }
 
-/// A pose with the information of the points is as good as the points, robust weights apart.
+/// A pose with the information of the points is as good as the points, except for robust weights.
 TEST(InertialSolver, APoseWithItsCovarianceIsAsGoodAsItsPoints) {
     TwoFrames f(21, 60);
     f.config.huber_sigmas = f.config.gate_sigmas = 20.0;
@@ -403,7 +403,7 @@ TEST(InertialSolver, StandingShowsTheBiasOfTheGyroscope) {
     const Eigen::Vector3d sigma = belief.covariance.diagonal().segment<3>(kGyroBiasAt).cwiseSqrt();
     EXPECT_LT(sigma.maxCoeff(), 1.5e-3);
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 3.0 * sigma.maxCoeff()) << off.transpose();
-    EXPECT_LT(belief.state.velocity_m_s.norm(), 9e-3);  // 5 mm/s per frame were told
+    EXPECT_LT(belief.state.velocity_m_s.norm(), 9e-3);  // 5 mm/s per frame were added
 }
 
 TEST(InertialSolver, SharedLandmarksKeepThePoseAsUnsureAsOneFrame) {
@@ -411,13 +411,13 @@ TEST(InertialSolver, SharedLandmarksKeepThePoseAsUnsureAsOneFrame) {
     const auto solution = f.solved();
     ASSERT_TRUE(solution.found);
     const Matrix6 vision =
-        4.0 * solution.belief.covariance.topLeftCorner<6, 6>();  // less sure than both together
+        4.0 * solution.belief.covariance.topLeftCorner<6, 6>();  // less certain than both together
     const auto kept = with_vision_counted_once(solution.belief, vision);
     EXPECT_LT((kept.covariance.topLeftCorner<6, 6>() - vision).norm(), 1e-9 * vision.norm());
     Matrix17 change = kept.covariance - solution.belief.covariance;
     change.topLeftCorner<6, 6>().setZero();
     EXPECT_EQ(change.norm(), 0.0);
-    // Vision that is surer takes nothing away.
+    // More certain vision removes nothing.
     const auto same = with_vision_counted_once(solution.belief, 0.01 * vision);
     EXPECT_LT((same.covariance - solution.belief.covariance).norm(), 1e-15);
 }

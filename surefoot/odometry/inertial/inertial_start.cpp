@@ -10,14 +10,14 @@ namespace {
 constexpr std::size_t kMinFrames = 4;
 constexpr double kMinGravity_m_s2 = 1.0;
 
-/// What the gyroscope's turn lacks from one frame to the next [rad].
+/// Rotation error of the gyroscope from one frame to the next [rad]: vision minus IMU.
 Eigen::Vector3d missing_turn(const SeenMotion& from, const SeenMotion& to, const ImuBias& bias) {
     return log_so3(to.motion.rotation_at(bias).conjugate() * from.T_odom_imu.rotation.conjugate() *
                    to.T_odom_imu.rotation);
 }
 
 void find_gyro_bias(std::span<const SeenMotion> frames, InertialStart& start) {
-    // Twice: the correction is of first order in the bias.
+    // Two rounds, because the correction is of first order in the bias.
     for (int round = 0; round < 2; ++round) {
         Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
         Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -34,8 +34,8 @@ void find_gyro_bias(std::span<const SeenMotion> frames, InertialStart& start) {
     start.residual_rad = std::sqrt(squares / static_cast<double>(frames.size() - 1));
 }
 
-/// The IMU's readings added up along the frames, as if there were no gravity and no velocity at the
-/// first one.
+/// Sum of the IMU's readings along the frames, without gravity and without a velocity at the first
+/// frame.
 struct Sum {
     double time_s = 0.0;
     Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();

@@ -8,27 +8,27 @@
 
 namespace surefoot::odometry {
 
-/// A frame whose pose vision knows, and the IMU's motion from the frame before (of the first one,
-/// nothing).
+/// A frame whose pose is known from vision, and the IMU's motion from the previous frame (empty for
+/// the first frame).
 struct SeenMotion {
     Pose T_odom_imu;
     ImuMotion motion;
 };
 
-/// What vision and the IMU together tell about the last of some frames in a row.
+/// Result for the last of several frames in a row, estimated from vision and the IMU together.
 struct InertialStart {
     InertialState state;        ///< the accelerometer's bias stays zero
     double residual_m = 0.0;    ///< rms of the positions
     double residual_rad = 0.0;  ///< rms of the turns from frame to frame
-    double gravity_m_s2 = 0.0;  ///< as found; its direction is in the state
+    double gravity_m_s2 = 0.0;  ///< estimated magnitude; its direction is in the state
 };
 
-/// The bias of the gyroscope by linear least squares over the turns, then velocity and gravity over
-/// the positions: p_k = p_0 + v_0 t_k + g t_k^2 / 2 + what the IMU adds up. Holds for standing and
-/// for moving frames alike; odom need not be level. Nothing with fewer than four frames, or when
-/// there is no force to speak of.
+/// Estimates the gyroscope bias by linear least squares over the rotations, then velocity and
+/// gravity over the positions: p_k = p_0 + v_0 t_k + g t_k^2 / 2 + the integrated IMU readings.
+/// Works for standing and moving cameras; odom need not be level. Returns nothing with fewer than
+/// four frames or when the gravity found is too small.
 ///
-/// The linear start of Martinelli 2014 with poses that are known.
+/// The linear initialisation of Martinelli 2014, with known poses.
 [[nodiscard]] std::optional<InertialStart> start_inertial(std::span<const SeenMotion> frames);
 
 }  // namespace surefoot::odometry

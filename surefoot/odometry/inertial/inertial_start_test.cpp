@@ -22,7 +22,7 @@ struct Seen {
     InertialState truth;  ///< at the last frame
 };
 
-/// A second of motion (or of standing) in an odom that leans, seen with `noise_m`, `noise_rad`.
+/// A second of motion (or of standing) in a tilted odom, observed with `noise_m`, `noise_rad`.
 Seen second_of(bool moving, double noise_m, double noise_rad) {
     Rng rng(11);
     const auto noise = [&](double sigma) -> Eigen::Vector3d {

@@ -8,28 +8,29 @@
 namespace surefoot::odometry {
 namespace {
 
-/// 99.9 % of a chi-square variable with six degrees of freedom lies below.
+/// 99.9 % quantile of a chi-square variable with six degrees of freedom.
 constexpr double kChi2Limit = 22.46;
-/// So many frames in a row beyond the limit are a contradiction, not an accident.
+/// This many frames in a row beyond the limit are a contradiction, not chance.
 constexpr int kContradictions = 8;
-/// Fifteen sigma is no accident of either: a bias has jumped, or vision follows something else. It
-/// is said at once, whether or not the state learns to live with it.
+/// Fifteen sigma is not chance either: a bias has jumped, or vision tracks something else. The
+/// disagreement is reported at once, even if the state later adapts to it.
 constexpr double kChi2Jump = 225.0;
-constexpr int kAgreements = 20;  ///< and so many within it end one
-/// A start that fits worse is none: the rig's IMU is not where or what it is said to be.
+constexpr int kAgreements = 20;  ///< this many frames in a row within the limit end a contradiction
+/// An initialisation with larger residuals is rejected: the rig's IMU has another mount or another
+/// type than the calibration states.
 constexpr double kStartResidual_m = 0.02;
 constexpr double kStartResidual_rad = 0.02;
-/// Vision and IMU are never farther apart than this by mere jitter.
+/// Jitter alone never separates vision and IMU by more than this.
 constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
-constexpr double kDiscordShare = 0.05;    ///< of a frame in what is known of it
+constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimate
 constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first velocity
-constexpr double kStartTilt_rad = 0.005;  ///< sigma of gravity's direction, the bias apart
-/// Two seconds of a fast IMU; an interval that needs more has a gap.
+constexpr double kStartTilt_rad = 0.005;  ///< sigma of gravity's direction, without the bias
+/// Two seconds of a fast IMU. A longer interval has a gap.
 constexpr int kMostSamples = 4000;
 /// Sigma [m, rad] of a pose that is exact by definition.
 constexpr double kExact = 1e-6;
-/// Of a camera that stands: its pose may still creep by what the detector of standing lets pass.
+/// Sigmas of a standing camera, whose pose may still drift by what the still detector accepts.
 constexpr double kHeld_m = 2e-4;
 constexpr double kHeld_rad = 1e-4;
 constexpr double kStandingSpeed_m_s = 5e-3;
@@ -48,7 +49,7 @@ InertialTracker::InertialTracker(const InertialConfig& config, const Pose& T_imu
 void InertialTracker::keep(std::span<const ImuSample> samples) {
     watch_.listen(samples);
     samples_.insert(samples_.end(), samples.begin(), samples.end());
-    // A camera that hangs for good must not fill the memory.
+    // Limits the memory when the camera delivers no frames for a long time.
     if (std::ssize(samples_) > kMostSamples)
         samples_.erase(samples_.begin(), samples_.end() - kMostSamples);
 }
@@ -59,12 +60,12 @@ void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t t
     if (has_time_) {
         const ImuBias bias = belief_ ? belief_->state.bias : ImuBias{};
         step_ = preintegrate(config_.limits, config_.noise, samples_, time_ns_, time_ns, bias);
-        // No sample can lie between stamps of frames that do not grow.
+        // No sample can lie between stamps that do not increase.
         if (time_ns > time_ns_) watch_.finish(time_ns, step_.problem);
     }
     time_ns_ = time_ns;
     has_time_ = true;
-    // Of the past, the last sample at or before the frame is needed again.
+    // Of the past samples only the last one at or before the frame is needed again.
     auto needed =
         std::ranges::find_if(samples_, [&](const ImuSample& s) { return s.time_ns > time_ns; });
     if (needed != samples_.begin()) --needed;
@@ -97,7 +98,7 @@ std::optional<Pose> InertialTracker::predicted() const {
 std::optional<Vector6> InertialTracker::camera_velocity() const {
     if (!present_ || samples_.empty()) return std::nullopt;
     const InertialState& imu = present_->state;
-    // The first sample that is left is the last one at or before the frame.
+    // The first remaining sample is the last one at or before the frame.
     const Eigen::Vector3d turn_imu = samples_.front().angular_velocity_rad_s - imu.bias.gyro_rad_s;
     const Eigen::Vector3d speed_imu = imu.T_odom_imu.rotation.conjugate() * imu.velocity_m_s;
     const Pose& T_imu_camera = model_.T_imu_camera;
@@ -108,7 +109,7 @@ std::optional<Vector6> InertialTracker::camera_velocity() const {
     return velocity;
 }
 
-/// Of the predicted camera pose.
+/// Covariance of the predicted camera pose.
 Matrix6 InertialTracker::predicted_covariance() const {
     return carried_covariance(present_->covariance.topLeftCorner<6, 6>(), model_.T_imu_camera);
 }
@@ -120,7 +121,8 @@ Matrix6 InertialTracker::discord_covariance() const {
     return variance.asDiagonal();
 }
 
-/// Learns from how far vision is `off` the prediction, beyond what is `expected` without discord.
+/// Learns the discord from the difference `off` between vision and prediction, beyond the
+/// covariance `expected` without discord.
 void InertialTracker::listen(const Vector6& off, const Matrix6& expected) {
     const Vector6 excess = off.cwiseAbs2() - expected.diagonal();
     const auto learn = [](double& sigma, double excess_mean, double most) {
@@ -133,7 +135,7 @@ void InertialTracker::listen(const Vector6& off, const Matrix6& expected) {
 }
 
 bool InertialTracker::still_agrees(double chi2) {
-    const bool agrees = chi2 <= kChi2Limit;  // not so for NaN
+    const bool agrees = chi2 <= kChi2Limit;  // false for NaN
     contradictions_ = agrees ? 0 : contradictions_ + 1;
     agreements_ = agrees ? agreements_ + 1 : 0;
     if (agreements_ >= kAgreements) disagrees_ = false;
@@ -144,7 +146,7 @@ bool InertialTracker::still_agrees(double chi2) {
     return false;
 }
 
-/// `belief` is about the present frame, which was seen.
+/// Sets `belief` as the state of the present frame, which has visual evidence.
 void InertialTracker::believe(const InertialBelief& belief) {
     belief_ = belief;
     unseen_ = belief;
@@ -169,7 +171,7 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
     const double chi2 = squared_distance(off, expected + discord);
     listen(off, expected);
     if (!still_agrees(chi2)) return std::nullopt;
-    // An accident: neither the belief nor the readings are as sure as they claim.
+    // A single large difference: belief and readings are less certain than they state.
     const double doubt = std::max(chi2 / kChi2Limit, 1.0);
     InertialBelief before = *belief_;
     before.covariance *= doubt;
@@ -181,7 +183,7 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
              before,
              motion,
              PoseEvidence{visual.T_world_camera * T_camera_imu, covariance_imu + discord, {}});
-    // The camera itself is off the path by the discord.
+    // The camera itself deviates from the path by the discord.
     motion.covariance.topLeftCorner<3, 3>() += discord.bottomRightCorner<3, 3>();
     motion.covariance.bottomRightCorner<3, 3>() += discord.topLeftCorner<3, 3>();
     const InertialSolution camera = fuse(model_, before, motion, seen, visual.T_world_camera);
@@ -239,7 +241,7 @@ std::optional<CameraFix> InertialTracker::reckon() {
 
 void InertialTracker::place(const Pose& T_odom_camera) {
     if (!belief_) return;
-    // The map moved under the camera: the path moves with it.
+    // The map moved relative to the camera, so the path moves with it.
     const Pose T_new_old = T_odom_camera * T_odom_camera_.inverse();
     belief_->state.T_odom_imu = T_new_old * belief_->state.T_odom_imu;
     unseen_->state.T_odom_imu = belief_->state.T_odom_imu;

@@ -15,7 +15,7 @@ constexpr double kMinDepth_m = 0.02;
 
 struct Cost {
     double value = 0.0;
-    bool valid = true;  ///< no point went behind a camera that saw it
+    bool valid = true;  ///< no point is behind a camera that observed it
 };
 
 double robust(double norm_sigmas, double limit_sigmas) {
@@ -23,7 +23,7 @@ double robust(double norm_sigmas, double limit_sigmas) {
                                        : limit_sigmas * (2.0 * norm_sigmas - limit_sigmas);
 }
 
-/// Residual in sigmas (measured - predicted); infinite behind the camera. An unknown u_right is 0.
+/// Residual in sigmas (measured - predicted); infinite behind the camera. 0 for an unknown u_right.
 Eigen::Vector3d residual_of(const camera::RectifiedRig& rig,
                             const BundleSight& sight,
                             const Eigen::Vector3d& p_camera,
@@ -39,7 +39,7 @@ Eigen::Vector3d residual_of(const camera::RectifiedRig& rig,
     return residual / (sigma_px * sight.noise_factor);
 }
 
-/// The normal equations in blocks, and their solution.
+/// The normal equations in blocks, with their solution.
 class Solver {
   public:
     Solver(const camera::RectifiedRig& rig, const BundleConfig& config, BundleProblem& problem)
@@ -144,7 +144,7 @@ class Solver {
         cross_[index].noalias() = weight * J_pose.transpose() * J_point;
     }
 
-    /// Solves for one damped step and writes the trial state; false when that fails.
+    /// Solves one damped step and writes the trial state; returns false on failure.
     bool step(double damping) {
         reduced_ = H_pose_;
         reduced_.diagonal() *= 1.0 + damping;
@@ -153,7 +153,7 @@ class Solver {
         for (std::size_t i = 0; i < H_point_.size(); ++i) {
             Eigen::Matrix3d H = H_point_[i];
             H.diagonal() *= 1.0 + damping;
-            H.diagonal().array() += 1e-9;  // a point seen once without disparity stays where it is
+            H.diagonal().array() += 1e-9;  // a point observed once without disparity stays in place
             inverse_[i] = H.inverse();
         }
         eliminate_points();

@@ -9,7 +9,7 @@
 
 namespace surefoot::odometry {
 
-/// One measurement of a point from a pose.
+/// One observation of a point from a pose.
 struct BundleSight {
     int pose = 0;
     int point = 0;
@@ -17,7 +17,7 @@ struct BundleSight {
     double noise_factor = 1.0;
 };
 
-/// Poses and points that explain measurements together. `sights` is sorted by point.
+/// Poses and points that are adjusted together to fit observations. `sights` is sorted by point.
 struct BundleProblem {
     std::vector<Pose> T_world_camera;
     std::vector<std::uint8_t> fixed;  ///< one per pose; at least one must be 1
@@ -37,8 +37,8 @@ struct BundleResult {
     double cost_before = 0.0;  ///< robust, in squared sigmas
     double cost_after = 0.0;
     int steps = 0;                             ///< accepted
-    std::vector<Eigen::Matrix3d> information;  ///< of each point with the poses given [1/m^2]
-    std::vector<double> residual_sigmas;       ///< of each sight after the adjustment; inf behind
+    std::vector<Eigen::Matrix3d> information;  ///< of each point, given the poses [1/m^2]
+    std::vector<double> residual_sigmas;       ///< of each sight after the adjustment; inf = behind
 };
 
 /// Bundle adjustment: Levenberg-Marquardt with Huber weights on (u_left, v, u_right), the points

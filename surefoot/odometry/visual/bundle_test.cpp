@@ -27,7 +27,7 @@ Pose angle_axis_pose(const double* v) {
     return {exp_so3({v[0], v[1], v[2]}), {v[3], v[4], v[5]}};
 }
 
-/// Six poses on a curve that all see 60 points; poses and points start off the truth.
+/// Six poses on a curve that all see 60 points. Poses and points start away from the truth.
 BundleProblem make_problem(std::uint64_t seed, std::vector<Pose>* truth = nullptr) {
     Rng rng(seed);
     BundleProblem problem;
@@ -105,7 +105,7 @@ TEST(Bundle, AgreesWithCeres) {
     ceres::Solver::Summary summary;
     ceres::Solve(options, &ceres_problem, &summary);
     const BundleResult ours = adjust_bundle(test_rig(), config, problem);
-    // Ceres halves the cost; ours stops when a step gains less than 1e-4 of it.
+    // Ceres halves the cost; ours stops when a step gains less than 1e-4 of the cost.
     EXPECT_NEAR(ours.cost_after, 2.0 * summary.final_cost, 1e-3 * ours.cost_after);
     for (std::size_t i = 0; i < poses.size(); ++i)
         EXPECT_LT(difference(problem.T_world_camera[i], angle_axis_pose(poses[i].data())).norm(),
@@ -123,8 +123,8 @@ TEST(Bundle, BringsPosesToTheTruthAndLeavesFixedOnes) {
     const BundleResult result = adjust_bundle(test_rig(), config, problem);
     EXPECT_LT(result.cost_after, 0.2 * result.cost_before);
     EXPECT_EQ(problem.T_world_camera[0].translation_m, first.translation_m);
-    // 0.3 px / 400 px * 2.5 m / sqrt(60) = 0.25 mm for a pure shift; a shift that a turn hides
-    // costs up to ten times that with points in a narrow cone.
+    // 0.3 px / 400 px * 2.5 m / sqrt(60) = 0.25 mm for a pure translation. A translation that a
+    // rotation can hide costs up to ten times as much with points in a narrow cone.
     for (std::size_t i = 1; i < truth.size(); ++i)
         EXPECT_LT(difference(truth[i], problem.T_world_camera[i]).norm(), 3e-3) << "pose " << i;
 }
@@ -139,7 +139,7 @@ TEST(Bundle, OneWrongSightIsNamedAndHarmless) {
     static_cast<void>(adjust_bundle(test_rig(), config, good));
     const BundleResult result = adjust_bundle(test_rig(), config, bad);
     EXPECT_GT(result.residual_sigmas[10], 20.0);
-    // 100 sigmas off, it pulls like one of huber_sigmas among 360 sights.
+    // 100 sigmas off, it pulls like one residual of huber_sigmas among 360 sights.
     EXPECT_LT(difference(good.T_world_camera[5], bad.T_world_camera[5]).norm(), 1e-3);
 }
 

@@ -11,8 +11,8 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr int kBlock_px = 7;
-/// cv::cornerMinEigenVal works on derivatives scaled by 1/(2^(3-1) * block * 255) and sums over the
-/// block; a mean squared gradient g^2 (Sobel gives 8 g) therefore reads g^2 times this.
+/// cv::cornerMinEigenVal scales derivatives by 1/(2^(3-1) * block * 255) and sums over the block.
+/// For a mean squared gradient g^2 (Sobel gives 8 g) it therefore returns g^2 times this factor.
 constexpr double kEigenvaluePerGradientSq =
     64.0 * kBlock_px * kBlock_px / ((4.0 * kBlock_px * 255.0) * (4.0 * kBlock_px * 255.0));
 
@@ -30,7 +30,7 @@ Cell cell_bounds(int index, int width, int height, const CornerConfig& config) {
             std::min((row + 1) * height / config.grid_rows, height - margin)};
 }
 
-/// Up to `wanted` best corners of one cell that keep their distance from each other and `taken`.
+/// Finds up to `wanted` best corners of one cell, at a distance from each other and from `taken`.
 void detect_in_cell(const cv::Mat& image,
                     const Cell& cell,
                     int wanted,
@@ -79,10 +79,10 @@ void detect_corners(ImageView<const std::uint8_t> image,
     std::vector<std::vector<Eigen::Vector2d>> found(static_cast<std::size_t>(cells));
     executor.parallel_for(cells, [&](int index) {
         const Cell cell = cell_bounds(index, image.width, image.height, config);
-        // Shares of the cells add up to `most` exactly.
+        // The shares of all cells sum to `most` exactly.
         const int share = (index + 1) * config.most / cells - index * config.most / cells;
         if (cell.u1 - cell.u0 < kBlock_px || cell.v1 - cell.v0 < kBlock_px) return;
-        std::vector<Eigen::Vector2d> near;  // in the cell or close enough to matter
+        std::vector<Eigen::Vector2d> near;  // points in the cell, or near enough to matter
         int inside = 0;
         for (const Eigen::Vector2d& p : occupied) {
             const double out_u = std::max({cell.u0 - p.x(), p.x() - cell.u1, 0.0});

@@ -14,15 +14,15 @@ namespace surefoot::odometry {
 struct CornerConfig {
     int grid_columns = 16;
     int grid_rows = 10;
-    int most = 240;                ///< corners wanted together with the occupied ones
+    int most = 240;                ///< number of corners wanted, occupied ones included
     double min_gradient = 2.5;     ///< rms grey step per pixel in the weaker direction
     double min_distance_px = 8.0;  ///< from another corner
     int border_px = 14;            ///< no corner closer to the image border
 };
 
-/// Corners (Shi and Tomasi 1994: the weaker eigenvalue of the gradient's second moments) spread
-/// over a grid: a cell takes its share of `most`, less the points that it holds already
-/// (`occupied`). Cells are independent: any executor gives the same corners.
+/// Detects corners (Shi and Tomasi 1994: the weaker eigenvalue of the gradient's second moments),
+/// spread over a grid. Each cell gets its share of `most`, minus the points it already holds
+/// (`occupied`). Cells are independent, so every executor gives the same corners.
 void detect_corners(ImageView<const std::uint8_t> image,
                     std::span<const Eigen::Vector2d> occupied,
                     const CornerConfig& config,

@@ -11,21 +11,22 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr int kBlock = 32;              ///< alignments per piece of work
-constexpr double kTrackShift_px = 3.0;  ///< search radius around a followed point
+constexpr double kTrackShift_px = 3.0;  ///< search radius around a tracked point
 constexpr double kAgainShift_px = 5.0;  ///< search radius around a prediction
-/// A point that was followed but does not look like its patch any more is trusted less.
+/// Noise factor of a point that was tracked but no longer matches its patch.
 constexpr double kFollowedNoise = 2.5;
-constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is forgotten
+constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is removed
 constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
 
-/// With a depth at fewer tracks than this share it is asked whether the eyes are exchanged.
+/// If fewer tracks than this share have a depth, the front end checks whether the cameras are
+/// swapped.
 constexpr double kHardlyAnyDepth = 0.2;
-/// So many corners must tell whose they are, and this share of them be the other eye's. In proper
-/// images 1 to 6 % are, in exchanged ones 85 to 98 %.
+/// Least number of corners that show their camera, and least share of them from the other camera,
+/// to call the cameras swapped. Correct images have 1 to 6 %, swapped ones 85 to 98 %.
 constexpr double kEnoughTell = 20.0;
 constexpr double kExchangedShare = 0.7;
 
-/// Share of the other image's structure that makes an image worth to be looked at.
+/// An image is usable from this share of the other image's structure on.
 constexpr double kOtherStructure = 0.3;
 
 /// Mean square difference of pixels two columns apart, in every eighth row.
@@ -49,7 +50,7 @@ bool inside(const Eigen::Vector2d& px, ImageView<const std::uint8_t> image) {
 
 }  // namespace
 
-/// A landmark to align: where to start, and whether Lucas-Kanade brought us there.
+/// A landmark to align: the start position, and whether Lucas-Kanade found it.
 struct FrontEnd::Job {
     int slot = 0;
     Eigen::Vector2d start_px = Eigen::Vector2d::Zero();
@@ -159,7 +160,7 @@ void FrontEnd::align(LandmarkMap& map, const Pose& T_odom_camera, Executor& exec
     cameras_swapped_ = are_swapped(raw_px, executor);
 }
 
-/// The aligned track; slot -1 when the landmark is not there.
+/// Aligns one track; returns slot -1 when the landmark is not found.
 Track FrontEnd::align_one(const LandmarkMap& map, const Pose& T, const Job& job) const {
     const Landmark& landmark = map.at(job.slot);
     Track track;
@@ -211,7 +212,7 @@ void FrontEnd::measure_depth(const LandmarkMap& map,
 int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     drop_removed(map);
     for (const Track& track : tracks_)
-        if (track.correlation == 0.0)  // it does not look like its patch any more
+        if (track.correlation == 0.0)  // it no longer matches its patch
             map.renew_patch(track.slot, left_.image(), track.raw_px);
     std::vector<Eigen::Vector2d> occupied;
     for (const Track& track : tracks_) occupied.push_back(track.raw_px);

@@ -16,27 +16,27 @@ struct FrontEndConfig {
     CornerConfig corners;
     StereoPointConfig stereo;
     double min_correlation = 0.8;  ///< of an aligned patch
-    int most_tracks = 240;         ///< with those found again
-    int most_attempts = 60;        ///< landmarks looked for again per frame
+    int most_tracks = 240;         ///< including tracks that were found again
+    int most_attempts = 60;        ///< attempts per frame to find landmarks again
 };
 
 /// Turns images into tracks of landmarks. Keeps the pyramids of the present frame and of the last
-/// one whose tracks were good, which is where points are followed from.
+/// frame with good tracks, from which points are tracked.
 class FrontEnd final : public Tracks {
   public:
     FrontEnd(const FrontEndConfig& config, const camera::Rectifier& rectifier);
 
-    /// Takes the images of a new frame; false when their size is not that of the rig.
+    /// Takes the images of a new frame. Returns false when their size differs from the rig's.
     [[nodiscard]] bool load(const StereoFrame& frame, Executor& executor);
-    /// Follows the kept tracks by Lucas-Kanade, starting where `T_odom_camera` predicts them.
+    /// Tracks the kept points by Lucas-Kanade, starting where `T_odom_camera` predicts them.
     void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
-    /// Aligns the patches of the followed tracks, of tracks that were lost, and of landmarks that
-    /// should be in view again, in both eyes.
+    /// Aligns patches in both cameras: of the current tracks, of lost tracks, and of landmarks that
+    /// should be visible again.
     void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
-    /// Renews the patches that were not found, then looks for corners between the tracks. None
-    /// where the eyes are exchanged.
+    /// Renews the patches that were not found, then detects corners between the tracks. Adds
+    /// nothing while the cameras are swapped.
     int seed(LandmarkMap& map, Executor& executor) override;
-    /// `left()` is the older image afterwards.
+    /// After this call `left()` is the older image.
     void keep() override;
     /// See ImagePyramid::sharpness.
     [[nodiscard]] double sharpness() const override { return left_.sharpness(); }
@@ -67,8 +67,8 @@ class FrontEnd final : public Tracks {
     std::vector<KltResult> results_;
     bool right_shows_something_ = false;
     bool left_shows_something_ = false;
-    bool cameras_swapped_ = false;  ///< asked of frames that show hardly any depth
-    int next_attempt_ = 0;          ///< slot from which landmarks are looked for again
+    bool cameras_swapped_ = false;  ///< checked in frames with hardly any depth
+    int next_attempt_ = 0;          ///< slot at which the next search for landmarks starts
 };
 
 }  // namespace surefoot::odometry

@@ -92,7 +92,7 @@ TEST(KltTracker, SharpnessFallsWithDarkness) {
     EXPECT_LT(pyramid.sharpness(), 0.01 * sharp);
 }
 
-/// Corners of the scene against its exact depth.
+/// Corners of the scene, compared with its exact depth.
 TEST(StereoPoints, MatchedDepthIsTheDepthOfTheScene) {
     const auto rectifier = small_rectifier();
     const StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 1.0);
@@ -117,7 +117,7 @@ TEST(StereoPoints, MatchedDepthIsTheDepthOfTheScene) {
         close += std::abs(disparity_px(*pixel) - disparity_px(ideal)) < 0.5 ? 1 : 0;
     }
     EXPECT_GT(matched, 80);
-    EXPECT_GE(close, matched * 95 / 100);  // the rest lies across a crease of two walls
+    EXPECT_GE(close, matched * 95 / 100);  // the rest lies across the edge between two walls
 }
 
 TEST(StereoPoints, CornersTellWhichEyeSawThem) {
@@ -147,7 +147,7 @@ TEST(StereoPoints, CornersTellWhichEyeSawThem) {
     for (int v = 0; v < noise.height(); ++v)
         for (int u = 0; u < noise.width(); ++u)
             noise.at(u, v) = static_cast<std::uint8_t>(256.0 * rng.uniform());
-    EXPECT_EQ(count(left, std::as_const(noise).view()).size(), 1U) << "none of them tells";
+    EXPECT_EQ(count(left, std::as_const(noise).view()).size(), 1U) << "no corner shows its camera";
 }
 
 TEST(FrontEnd, MakesNothingOfExchangedEyes) {
@@ -245,7 +245,7 @@ TEST(LandmarkMap, PredictedViewIsTheDerivativeOfTheProjection) {
     for (const auto side : {camera::Side::left, camera::Side::right}) {
         const auto view = map.predict_view(map.at(*slot), side, T);
         ASSERT_TRUE(view);
-        // A neighbour of the host pixel, on the plane z = 2 m of the host, in this view.
+        // A neighbour of the host pixel, on the host's plane z = 2 m, in this view.
         const Eigen::Vector2d step(1.0, -0.5);
         const Eigen::Vector2d px = *rectifier.rectified_from_raw(camera::Side::left, raw + step);
         const auto& rig = rectifier.rig();
@@ -281,7 +281,7 @@ TEST(LandmarkMap, ForgetsWhatItMustAndNeverWhatIsUsed) {
     EXPECT_EQ(alive, 5);
     EXPECT_GE(map.at(0).id, 0);
     EXPECT_GE(map.at(9).id, 0);
-    for (int i = 0; i < 3; ++i) map.add_keyframe(Pose{});  // the first keyframe goes
+    for (int i = 0; i < 3; ++i) map.add_keyframe(Pose{});  // the first keyframe is removed
     EXPECT_EQ(map.keyframes(), 3);
     for (int slot = 0; slot < map.slots(); ++slot) EXPECT_LT(map.at(slot).id, 0);
 }

@@ -13,8 +13,7 @@ constexpr int kWindow_px = 15;
 constexpr int kSharpnessLevel = 2;
 constexpr int kBlock = 64;  ///< points per piece of work
 
-/// Sobel-like derivatives of OpenCV are 32 times the grey step per pixel (Scharr: 3 + 10 + 3,
-/// twice).
+/// OpenCV's derivatives are 32 times the grey step per pixel (Scharr: 3 + 10 + 3, twice).
 constexpr double kDerivativeScale = 32.0;
 
 }  // namespace
@@ -76,7 +75,7 @@ double ImagePyramid::sharpness() const {
 
 namespace {
 
-/// One-way tracking of one block; `points` holds the starts and receives the results.
+/// Tracks one block one way. `points` holds the start positions and receives the results.
 void track_block(const ImagePyramid& from,
                  const ImagePyramid& to,
                  const std::vector<cv::Point2f>& origins,
@@ -113,7 +112,7 @@ void track_there_and_back(const ImagePyramid& from,
     std::vector<std::uint8_t> found;
     std::vector<std::uint8_t> returned;
     track_block(from, to, origins, kLevels, config, points, found);
-    // Back from the result: the origin is a good start, so that one level suffices.
+    // Back from the result. The origin is a good start, so one level is enough.
     std::vector<cv::Point2f> back = origins;
     track_block(to, from, points, 1, config, back, returned);
     const auto limit_px = static_cast<float>(config.forward_backward_px);

@@ -12,8 +12,8 @@
 
 namespace surefoot::odometry {
 
-/// An image at full, half, quarter ... size with its derivatives, computed once per frame and used
-/// by every search from or into it. Keeps its buffers from frame to frame.
+/// Image pyramid (full, half, quarter ... size) with derivatives. It is computed once per frame and
+/// used by every search from or into that frame. Keeps its buffers from frame to frame.
 class ImagePyramid {
   public:
     ImagePyramid();
@@ -25,7 +25,7 @@ class ImagePyramid {
     [[nodiscard]] bool empty() const noexcept;
     /// The full-size image; valid until the next `build`.
     [[nodiscard]] ImageView<const std::uint8_t> image() const noexcept;
-    /// Mean squared derivative [grey^2/px^2] at quarter size: what is left of the texture. Blur and
+    /// Mean squared derivative [grey^2/px^2] at quarter size, a measure of texture. Blur and
     /// darkness make it small.
     [[nodiscard]] double sharpness() const;
 
@@ -38,10 +38,10 @@ class ImagePyramid {
 
 struct KltConfig {
     int iterations = 20;
-    double forward_backward_px = 0.7;  ///< tracked there and back, a point must return this close
+    double forward_backward_px = 0.7;  ///< largest error after tracking forward and back
 };
 
-/// One point to follow: where it was, and where it is expected.
+/// One point to track: its previous and its expected position.
 struct KltRequest {
     Eigen::Vector2f from_px;
     Eigen::Vector2f start_px;
@@ -52,8 +52,8 @@ struct KltResult {
     bool found = false;
 };
 
-/// Follows points from one image to the next (Lucas and Kanade 1981, pyramidal after Bouguet) and
-/// back again. The points are independent: any executor gives the same result.
+/// Tracks points from one image to the next (Lucas and Kanade 1981, pyramidal after Bouguet) and
+/// back. The points are independent, so every executor gives the same result.
 void track_points(const ImagePyramid& from,
                   const ImagePyramid& to,
                   std::span<const KltRequest> requests,

@@ -8,10 +8,10 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Step in the image by which the local deformation is measured: about the patch radius.
+/// Step in the image for measuring the local deformation: about the patch radius.
 constexpr double kWarpStep_px = 6.0;
 constexpr double kMinDepth_m = 0.05;
-/// A sighting this far off after an adjustment is a mismatch.
+/// An observation with a larger residual after an adjustment is a mismatch.
 constexpr double kGate_sigmas = 5.0;
 
 }  // namespace
@@ -138,7 +138,7 @@ void LandmarkMap::limit(const std::vector<std::uint8_t>& in_use) {
     }
     const int excess = alive - config_.most_landmarks;
     if (excess <= 0) return;
-    // Seldom seen and old go first.
+    // Landmarks with few observations go first, then old ones.
     std::sort(idle.begin(), idle.end(), [&](int a, int b) {
         const auto seen_a = std::min<std::size_t>(at(a).sightings.size(), 3);
         const auto seen_b = std::min<std::size_t>(at(b).sightings.size(), 3);
@@ -170,7 +170,8 @@ std::optional<PredictedView> LandmarkMap::predict_view(const Landmark& landmark,
     if (p.z() < kMinDepth_m || host_depth_m < kMinDepth_m) return std::nullopt;
     const auto centre = rectifier_.raw_from_point(side, p);
     if (!centre) return std::nullopt;
-    // A small piece of plane that faces the host, moved into this view.
+    // Approximates the surface by a small plane that faces the host, and projects it into this
+    // view.
     Eigen::Matrix2d view_from_host;
     for (int axis = 0; axis < 2; ++axis) {
         const Eigen::Vector3d step =

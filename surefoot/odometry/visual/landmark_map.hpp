@@ -11,34 +11,34 @@
 
 namespace surefoot::odometry {
 
-/// A remembered camera pose whose measurements hold the map together.
+/// A stored camera pose whose observations constrain the map.
 struct Keyframe {
     int id = 0;
     Pose T_odom_camera;
 };
 
-/// A keyframe's measurement of a landmark.
+/// Observation of a landmark by a keyframe.
 struct Sighting {
     int keyframe = 0;  ///< id
     StereoPixel pixel_px;
     double noise_factor = 1.0;
 };
 
-/// A point of the scene with the look by which it is found again.
+/// A point of the scene, with the image patch by which it is found again.
 struct Landmark {
     std::int64_t id = -1;  ///< never reused; -1 = empty slot
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, the keyframes given
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, given the keyframes
     HostPatch patch;
-    int host = -1;  ///< id of the keyframe that the patch is from; -1 = it has none
-    /// Steps along the host image's u and v at unit depth, in host camera axes, per pixel.
+    int host = -1;  ///< id of the keyframe that the patch is from; -1 = no patch
+    /// Change of the ray at unit depth per pixel of the host image's u and v, in host camera axes.
     Eigen::Matrix<double, 3, 2> host_axes = Eigen::Matrix<double, 3, 2>::Zero();
     std::vector<Sighting> sightings;
-    int failures = 0;  ///< times in a row that it was in view and not found
-    int agreed = 0;    ///< frames whose pose it agreed with
+    int failures = 0;  ///< frames in a row in which it should be visible but was not found
+    int agreed = 0;    ///< number of frames whose pose it agreed with
 };
 
-/// Where a landmark should appear and how its patch is deformed there.
+/// Predicted position of a landmark in an image, and the deformation of its patch there.
 struct PredictedView {
     Eigen::Vector2d raw_px;
     Eigen::Matrix2d host_from_view;
@@ -51,32 +51,32 @@ struct LandmarkMapConfig {
     BundleConfig bundle;
 };
 
-/// The scene that odometry remembers: keyframes and landmarks in odom. Landmarks keep their slot
-/// for life; a slot may be reused by another landmark with another id.
+/// The map of the odometry: keyframes and landmarks in odom. A landmark keeps its slot as long as
+/// it exists; later another landmark with another id may reuse the slot.
 class LandmarkMap {
   public:
     LandmarkMap(const LandmarkMapConfig& config, const camera::Rectifier& rectifier);
 
     void clear();
-    /// One sigma of a measurement that comes from now on, and of those that are remembered when
-    /// they are adjusted next.
+    /// Sets one sigma [px] of new observations. The next adjustment also uses it for stored
+    /// observations.
     void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
-    /// Appends a keyframe and forgets the oldest when there are too many, with what it hosts.
+    /// Appends a keyframe. Beyond the limit the oldest one is removed with the landmarks it hosts.
     int add_keyframe(const Pose& T_odom_camera);
-    /// Makes a landmark that the newest keyframe sees at `raw_px` = `pixel`; its slot, or nothing
-    /// when its patch would leave the image.
+    /// Adds a landmark that the newest keyframe observes at `raw_px` = `pixel`. Returns its slot,
+    /// or nothing when its patch would leave the image.
     std::optional<int> add_landmark(ImageView<const std::uint8_t> left,
                                     const Eigen::Vector2d& raw_px,
                                     const StereoPixel& pixel);
-    /// The same without a look: what is found again by other means than its patch. Its slot.
+    /// The same without a patch, for points that are found by other means. Returns the slot.
     int add_point(const StereoPixel& pixel);
-    /// Takes the patch anew from the newest keyframe's image.
+    /// Replaces the landmark's patch by one from the newest keyframe's image.
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
     void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);
     void remove(int slot);
-    /// Bundle adjustment of the newest keyframes and all they see; drops sightings that disagree.
+    /// Bundle adjustment of the newest keyframes and their landmarks; drops outlier observations.
     void adjust();
-    /// Removes the least useful landmarks beyond the limit, never one that `in_use` marks.
+    /// Removes the least useful landmarks beyond the limit, but none that `in_use` marks.
     void limit(const std::vector<std::uint8_t>& in_use);
 
     [[nodiscard]] bool empty() const noexcept { return keyframes_.empty(); }
@@ -88,7 +88,7 @@ class LandmarkMap {
     [[nodiscard]] const Keyframe& newest() const { return keyframes_.back(); }
     [[nodiscard]] int keyframes() const noexcept { return static_cast<int>(keyframes_.size()); }
 
-    /// The landmark as `side` sees it from a camera pose; nothing when behind or out of the lens.
+    /// Pixel of a landmark in a camera at a given pose; nothing when behind or outside the lens.
     [[nodiscard]] std::optional<Eigen::Vector2d> predict_pixel(const Landmark& landmark,
                                                                camera::Side side,
                                                                const Pose& T_odom_camera) const;

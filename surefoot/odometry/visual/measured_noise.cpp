@@ -6,14 +6,14 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Thrice the noise of a fitted ZED. Beyond, it is not noise that keeps points from a pose.
+/// Three times the noise of a calibrated ZED. Larger residuals have another cause than noise.
 constexpr double kMostNoise = 3.0;
-/// Scenes of one camera differ by this much: its configured noise holds up to here. Beyond, what
-/// was measured counts, from kMeasured times the expected on in full. Beginning at 1.5 left twice
-/// the ZED's noise with a NEES of 14 (corridor, seeds 21-24).
+/// Scenes of one camera differ by up to this factor: below it the configured noise holds. Above it
+/// the measured noise gains weight, and from kMeasured on it counts fully. With a start at 1.5,
+/// twice the ZED's noise gave a NEES of 14 (corridor, seeds 21-24).
 constexpr double kTolerated = 1.2;
 constexpr double kMeasured = 1.5;
-constexpr double kShare = 0.1;  ///< of a frame in what is known, after the first ten
+constexpr double kShare = 0.1;  ///< weight of one frame in the estimate, after the first ten
 
 }  // namespace
 

@@ -8,19 +8,19 @@
 
 namespace surefoot::odometry {
 
-/// How noisy the points of this camera are, learnt from how far they are off the poses.
+/// Estimates the pixel noise of this camera's points from their residuals.
 ///
-/// The residuals that a gate lets pass say little of a noise that the gate is too narrow for. The
-/// median of all of them, outliers included, says it while less than half are outliers. It is
-/// learnt slowly, so that somebody who walks by does not open the gates for himself.
+/// The residuals inside a gate say little about noise that is too large for the gate. The median of
+/// all residuals, outliers included, measures it while less than half are outliers. The estimate
+/// changes slowly, so that a person who walks by does not widen the gates.
 class MeasuredNoise {
   public:
-    /// `expected_px`: one sigma of a point, per eye and axis. The noise is never taken for less,
-    /// nor for more than thrice that; what is measured counts where it is clearly more.
+    /// `expected_px`: one sigma of a point, per camera and axis. The result is at least this value
+    /// and at most three times this value; a measurement counts only when it is clearly larger.
     explicit MeasuredNoise(double expected_px)
         : expected_px_(expected_px), measured_px_(expected_px) {}
 
-    /// A frame whose pose is known; `config.sigma_px` is `sigma_px()`.
+    /// Adds a frame with known pose. `config.sigma_px` must be `sigma_px()`.
     void listen(const camera::RectifiedRig& rig,
                 const PoseSolverConfig& config,
                 std::span<const PointMatch> matches,

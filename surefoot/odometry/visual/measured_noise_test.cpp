@@ -14,7 +14,7 @@ using testing::World;
 
 constexpr double kExpected_px = 0.2;
 
-/// What the odometry makes of measurements with `noise_px` that it takes for `sigma_px`.
+/// Result of the odometry for measurements with `noise_px`, configured as `sigma_px`.
 World taken_for(World world, double noise_px, double sigma_px) {
     const double share = sigma_px / noise_px;
     world.config.sigma_px = sigma_px;
@@ -39,7 +39,7 @@ struct Honesty {
     double sigma_px = 0.0;
 };
 
-/// 300 pairs of frames. `learns`: by what is measured, else by what was expected.
+/// 300 pairs of frames. `learns`: uses the measured noise, else the expected noise.
 Honesty honesty(double noise_px, bool learns) {
     constexpr int kTrials = 300;
     MeasuredNoise noise(kExpected_px);

@@ -10,10 +10,10 @@ namespace {
 
 constexpr int kMaxIterations = 15;
 constexpr double kConverged_px = 0.01;
-/// Weaker of the two mean squared gradients [grey^2/px^2] that still locates a patch.
+/// Lower limit of the weaker of the two mean squared gradients [grey^2/px^2] of a patch.
 constexpr double kMinGradientSq = 3.0;
 
-/// Bilinear value; the caller guarantees that all four pixels exist.
+/// Bilinear interpolation; the caller guarantees that all four pixels exist.
 inline float sample(const std::uint8_t* corner, std::ptrdiff_t stride, float a, float b) {
     const float top =
         static_cast<float>(corner[0]) * (1.0F - a) + static_cast<float>(corner[1]) * a;
@@ -22,7 +22,7 @@ inline float sample(const std::uint8_t* corner, std::ptrdiff_t stride, float a, 
     return top * (1.0F - b) + low * b;
 }
 
-/// Subtracts the mean and returns the norm of what is left.
+/// Subtracts the mean and returns the norm of the remainder.
 float remove_mean(std::array<float, PatchTemplate::kCount>& values) {
     float sum = 0.0F;
     for (const float value : values) sum += value;
@@ -48,7 +48,7 @@ void remove_gain(std::array<float, PatchTemplate::kCount>& gradient, const Patch
     for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] -= share * patch.value[i];
 }
 
-/// Fills `step_u`, `step_v` from the gradients; false without texture.
+/// Computes `step_u` and `step_v` from the gradients; returns false without texture.
 bool invert_gradients(PatchTemplate& patch,
                       std::array<float, PatchTemplate::kCount>& gradient_u,
                       std::array<float, PatchTemplate::kCount>& gradient_v) {
@@ -72,7 +72,7 @@ bool invert_gradients(PatchTemplate& patch,
     return true;
 }
 
-/// The image around a position without its mean; false when it reaches over the border.
+/// Reads the image around a position and removes its mean; false beyond the image border.
 bool read_window(ImageView<const std::uint8_t> image,
                  const Eigen::Vector2d& centre_px,
                  std::array<float, PatchTemplate::kCount>& window,
@@ -168,8 +168,8 @@ std::optional<Alignment> align_patch(const PatchTemplate& patch,
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
         if (!read_window(image, at_px, window, norm)) return std::nullopt;
         product = dot(window, patch.value);
-        if (!(product > 0.0F)) return std::nullopt;  // looks like the negative: no gain fits
-        // window = gain * (template shifted): bring it to the template's contrast first.
+        if (!(product > 0.0F)) return std::nullopt;  // the image shows the negative of the template
+        // window = gain * (template shifted): first scale it to the template's contrast.
         const double inverse_gain = static_cast<double>(patch.norm * patch.norm / product);
         const Eigen::Vector2d step =
             -inverse_gain * Eigen::Vector2d(static_cast<double>(dot(window, patch.step_u)),

@@ -10,8 +10,8 @@
 
 namespace surefoot::odometry {
 
-/// The surroundings of a point in the image where it was first seen, so that it can be found again
-/// without that image.
+/// Image patch around a point, from the image in which the point was first seen. With it the point
+/// is found again without that image.
 struct HostPatch {
     static constexpr int kRadius = 13;
     static constexpr int kSize = 2 * kRadius + 1;
@@ -19,23 +19,23 @@ struct HostPatch {
     Eigen::Vector2f centre = Eigen::Vector2f::Zero();  ///< of the point, in patch pixels
 };
 
-/// Copies the patch around `raw_px`; nothing when it does not lie inside the image.
+/// Copies the patch around `raw_px`; returns nothing when it does not lie inside the image.
 [[nodiscard]] std::optional<HostPatch> cut_patch(ImageView<const std::uint8_t> image,
                                                  const Eigen::Vector2d& raw_px);
 
-/// A host patch warped to how another view should see it, ready for alignment.
+/// A host patch, warped to its expected appearance in another view and ready for alignment.
 struct PatchTemplate {
     static constexpr int kRadius = 4;
     static constexpr int kSize = 2 * kRadius + 1;
     static constexpr int kCount = kSize * kSize;
-    std::array<float, kCount> value;   ///< without mean
+    std::array<float, kCount> value;   ///< mean removed
     std::array<float, kCount> step_u;  ///< rows of the pseudo-inverse: grey difference -> pixels
     std::array<float, kCount> step_v;
     float norm = 0.0F;  ///< of `value`
 };
 
-/// `host_from_view` maps pixel offsets of the view into offsets of the host image. Nothing when the
-/// warp leaves the patch or the template has no texture in some direction.
+/// Warps a patch. `host_from_view` maps pixel offsets of the view to offsets of the host image.
+/// Nothing when the warp leaves the patch or the template has no texture in some direction.
 [[nodiscard]] std::optional<PatchTemplate> warp_patch(const HostPatch& host,
                                                       const Eigen::Matrix2d& host_from_view);
 
@@ -44,7 +44,7 @@ struct Alignment {
     double correlation = 0.0;  ///< normalised cross-correlation at the result, [-1, 1]
 };
 
-/// Moves `start_px` to where the image looks most like the template, up to gain and offset:
+/// Moves `start_px` to the best match of the template in the image, up to gain and offset. Method:
 /// inverse-compositional Gauss-Newton (Baker and Matthews 2004) with the two photometric parameters
 /// projected out. Nothing when it leaves the image or moves farther than `max_shift_px`.
 [[nodiscard]] std::optional<Alignment> align_patch(const PatchTemplate& patch,

@@ -9,11 +9,11 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr int kSize_px = 96;
-/// Both images are rounded to whole grey levels: about 0.3 grey of noise on gradients of some grey
-/// per pixel, averaged over 81 pixels; the rest is bilinear interpolation.
+/// Both images are rounded to whole grey levels: about 0.3 grey of noise on gradients of a few grey
+/// levels per pixel, averaged over 81 pixels. The rest is the error of bilinear interpolation.
 constexpr double kAlignment_px = 0.05;
 
-/// A texture seen by a view: pixel p shows the texture at `A p + shift`.
+/// A texture in a view: pixel p shows the texture at `A p + shift`.
 GreyImage draw(const Eigen::Matrix2d& A,
                const Eigen::Vector2d& shift,
                double gain = 1.0,
@@ -50,7 +50,7 @@ TEST(Patch, FindsAShiftBelowAPixel) {
 TEST(Patch, ThereIsNoneOutsideOfTheImageHoweverFar) {
     const GreyImage image = draw(Eigen::Matrix2d::Identity(), {0.0, 0.0});
     EXPECT_TRUE(cut_patch(image.view(), {48.0, 48.0}));
-    // 2^32 + 48 was taken for pixel 48.
+    // The column 2^32 + 48 must not wrap around to 48.
     for (const double far : {4294967344.0, -4294967248.0, 1e300, -1.0, std::nan("")}) {
         EXPECT_FALSE(cut_patch(image.view(), {far, 48.0})) << far;
         EXPECT_FALSE(cut_patch(image.view(), {48.0, far})) << far;
@@ -83,7 +83,7 @@ TEST(Patch, WarpUndoesRotationAndScale) {
 TEST(Patch, NothingWithoutTextureOrOutside) {
     const GreyImage flat(kSize_px, kSize_px, 77);
     EXPECT_FALSE(warp_patch(*cut_patch(flat.view(), {48.0, 48.0}), Eigen::Matrix2d::Identity()));
-    GreyImage edge(kSize_px, kSize_px, 20);  // an edge leaves the direction along it open
+    GreyImage edge(kSize_px, kSize_px, 20);  // an edge leaves its own direction open
     for (int v = 0; v < kSize_px; ++v)
         for (int u = kSize_px / 2; u < kSize_px; ++u) edge.at(u, v) = 200;
     EXPECT_FALSE(warp_patch(*cut_patch(edge.view(), {48.0, 48.0}), Eigen::Matrix2d::Identity()));

@@ -12,23 +12,23 @@
 
 namespace surefoot::odometry {
 
-/// Turns points that were found elsewhere into tracks of landmarks: a point is the landmark that
-/// was made of its id, wherever it is seen. Points whose eyes do not fit together (rows, order) and
-/// points without a right eye have no depth: they become no landmark, but find one.
+/// Turns points from another source into tracks of landmarks. A point's id identifies its landmark,
+/// wherever the point is seen. Points whose two pixels contradict each other (rows, order) and
+/// points without a right pixel have no depth: they track a landmark but never create one.
 class PointFrontEnd final : public Tracks {
   public:
     /// `rectifier` must outlive the front end.
     explicit PointFrontEnd(const camera::Rectifier& rectifier);
 
-    /// Takes the points of a new frame. Pixels that are not finite are left out.
+    /// Takes the points of a new frame. Points whose left pixel is not finite are left out.
     void load(std::span<const SeenPoint> points);
-    /// All points of known landmarks. No prediction is needed.
+    /// Makes tracks of all points with a known landmark. Needs no prediction.
     void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
-    /// As `follow`: the points are as good as they come.
+    /// The same as `follow`, because points cannot be aligned any better.
     void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
     int seed(LandmarkMap& map, Executor& executor) override;
     void clear() override;
-    /// Of points nothing is known: always the same.
+    /// Constant, because the sharpness of points is unknown.
     [[nodiscard]] double sharpness() const override { return 1.0; }
     [[nodiscard]] bool right_shows_something() const override { return right_shows_something_; }
 
@@ -40,12 +40,12 @@ class PointFrontEnd final : public Tracks {
     };
     struct Known {
         int slot;
-        std::int64_t landmark;  ///< id: a slot may be used again
+        std::int64_t landmark;  ///< id, because another landmark may reuse the slot
     };
 
     std::vector<Point> points_;  ///< of the present frame
     bool right_shows_something_ = false;
-    std::map<std::int64_t, Known> known_;  ///< by the point's id; may hold removed landmarks
+    std::map<std::int64_t, Known> known_;  ///< by the point's id; may name removed landmarks
 };
 
 }  // namespace surefoot::odometry

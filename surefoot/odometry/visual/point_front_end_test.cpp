@@ -16,14 +16,15 @@ camera::Rectifier small_rectifier() {
     return std::move(camera::Rectifier::make(testing::small_rig())).value();
 }
 
-/// 0.3 m/s and up to 0.4 rad/s at 20 Hz.
+/// Curve at 0.3 m/s and up to 0.4 rad/s, 20 Hz.
 Pose truth_at(int index) {
     const double t = 0.05 * index;
     return {exp_so3({0.10 * std::sin(2.0 * t), 0.15 * std::sin(1.3 * t), 0.12 * std::sin(1.7 * t)}),
             {0.2 * std::sin(1.1 * t), 0.08 * std::sin(1.9 * t), 0.15 * t}};
 }
 
-/// Sixty points 2 to 4 m ahead, as the left camera at `truth_at(index)` and the right one see them.
+/// Sixty points 2 to 4 m ahead, observed by the left camera at `truth_at(index)` and by the right
+/// one.
 PointFrame seen_at(const camera::Rectifier& rectifier, int index, double noise_px) {
     const Pose T_left_rectified =
         testing::small_rig().body_from_left().inverse() * rectifier.rig().T_body_camera;
@@ -64,26 +65,26 @@ TEST(PointFrontEnd, APointIsTheLandmarkOfItsId) {
     EXPECT_TRUE(front.tracks().empty());
     map.add_keyframe(Pose{});
     EXPECT_EQ(front.seed(map, serial), 60);
-    EXPECT_EQ(front.seed(map, serial), 0);  // each once
+    EXPECT_EQ(front.seed(map, serial), 0);  // each point only once
 
     std::vector<SeenPoint> points{frame.points[7], frame.points[3], frame.points[7]};
     points[1].raw_right_px.reset();
-    points.push_back({999, frame.points[5].raw_left_px, std::nullopt});  // nobody's
+    points.push_back({999, frame.points[5].raw_left_px, std::nullopt});  // an unknown point
     front.load(points);
     front.follow(map, Pose{}, serial);
-    ASSERT_EQ(front.tracks().size(), 2U);  // the second sight of one id does not count
+    ASSERT_EQ(front.tracks().size(), 2U);  // the second observation of one id does not count
     EXPECT_EQ(front.tracks()[0].slot, 7);
     EXPECT_EQ(front.tracks()[1].slot, 3);
     EXPECT_FALSE(front.tracks()[0].pixel_px.hasNaN());
     EXPECT_TRUE(std::isnan(front.tracks()[1].pixel_px.z()));
     EXPECT_EQ(front.seed(map, serial), 0);  // no depth, no landmark
 
-    map.remove(7);  // forgotten: made anew under the same id
+    map.remove(7);  // removed: created again under the same id
     front.load(frame.points);
     EXPECT_EQ(front.seed(map, serial), 1);
 }
 
-/// The lenses of such a rig pass any pixel through.
+/// The lenses of such a rig do not change any pixel.
 camera::StereoRig rig_of_rectified_images() {
     camera::PinholeRadTan lens;
     lens.fx_px = lens.fy_px = 220.0;
@@ -131,7 +132,7 @@ TEST(PointFrontEnd, RowsOfARollingShutterAreBroughtToTheStamp) {
     Vector6 velocity;
     velocity << 0.2, -0.1, 0.4, 0.3, -0.5, 0.2;
     const Eigen::Vector3d p(0.4, 0.5, 2.0);
-    SeenPoint seen;  // where its row is when it is exposed
+    SeenPoint seen;  // pixel at the exposure time of its row
     for (int round = 0; round < 8; ++round) {
         const double offset_s = rectifier.row_offset_s(seen.raw_left_px.y());
         const Eigen::Vector3d p_then = perturbed(Pose{}, velocity * offset_s).inverse() * p;
@@ -183,7 +184,7 @@ TEST(PointOdometry, FollowsAHandHeldCurve) {
     double worst_m = 0.0;
     for (int i = 0; i < 60; ++i) {
         PointFrame frame = seen_at(rectifier, i, kNoise_px);
-        // One in five is somebody else's today.
+        // One point in five has a wrong id in this frame.
         for (std::size_t k = static_cast<std::size_t>(i % 5); i > 0 && k + 5 < 60; k += 5)
             std::swap(frame.points[k].id, frame.points[k + 5].id);
         const MotionEstimate m = odometry.update(frame);
@@ -197,7 +198,7 @@ TEST(PointOdometry, FollowsAHandHeldCurve) {
     EXPECT_LT(worst_m, 0.010);
 }
 
-/// Gates of half the noise would leave out a third of the points.
+/// Gates for half the noise would exclude a third of the points.
 TEST(PointOdometry, TwiceTheExpectedNoiseCostsNoPoints) {
     const auto rectifier = small_rectifier();
     const auto mean_inliers = [&](double expected_px) {
@@ -228,7 +229,7 @@ TEST(PointOdometry, FramesWithoutPointsAreLostForWantOfTracks) {
         if (empty) frame.points.clear();
         const MotionEstimate m = odometry.update(frame);
         EXPECT_TRUE(m.T_odom_body.all_finite());
-        // The first frame with points finds no landmark yet; the one after LOST is said to be that.
+        // The first frame with points finds no landmark yet. The frame after a LOST one says so.
         const bool recovered = i == 3 || i == 13;
         EXPECT_EQ(m.health,
                   empty || i == 2 ? Health::lost

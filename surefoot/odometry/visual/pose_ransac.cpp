@@ -10,7 +10,7 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Wanted probability that one sample was free of outliers; decides when to stop early.
+/// Probability that one sample is free of outliers at which the search stops early.
 constexpr double kConfidence = 0.9999;
 
 struct Consensus {
@@ -49,7 +49,7 @@ std::array<std::size_t, 3> three_different(std::size_t n, Rng& rng) {
     return index;
 }
 
-/// Up to four camera poses that see three points exactly where they are.
+/// Up to four camera poses that map three points exactly to their observations.
 std::vector<Pose> three_point_poses(const camera::RectifiedRig& rig,
                                     std::span<const PointMatch> matches,
                                     const std::array<std::size_t, 3>& sample) {

@@ -12,12 +12,12 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr double kMinDepth_m = 0.02;
-/// Weakest direction of the information relative to the strongest after scaling to unit diagonal;
-/// below it the points lie on a line or in one spot.
+/// Lower limit of the weakest direction of the information relative to the strongest, after scaling
+/// to unit diagonal. Below it the points lie on a line or in one spot.
 constexpr double kMinConditioning = 1e-7;
-/// So many points with a full vote lead alone until the pose is near.
+/// From this many points with a full vote on, they alone determine the pose in the first rounds.
 constexpr int kMinTrusted = 20;
-/// Medians of the norm of two and of three normal errors: roots of those of chi-square.
+/// Medians of the norm of two and of three normal errors: roots of the chi-square medians.
 constexpr double kMedianOfTwo = 1.1774;
 constexpr double kMedianOfThree = 1.5382;
 
@@ -25,8 +25,8 @@ constexpr double kMedianOfThree = 1.5382;
 struct Residual {
     int rows = 0;
     Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< measured - predicted [px]
-    Eigen::Matrix<double, 3, 6> d_pose;               ///< of the prediction
-    Eigen::Matrix3d d_camera;                         ///< of the prediction by the camera point
+    Eigen::Matrix<double, 3, 6> d_pose;               ///< derivative of the prediction
+    Eigen::Matrix3d d_camera;                         ///< the same by the camera point
 };
 
 Residual residual_of(const camera::RectifiedRig& rig, const PointMatch& match, const Pose& T) {
@@ -42,7 +42,7 @@ Residual residual_of(const camera::RectifiedRig& rig, const PointMatch& match, c
     return residual;
 }
 
-/// Inverse covariance of the residual: pixel noise plus the point's own uncertainty.
+/// Inverse covariance of the residual: pixel noise plus the covariance of the point.
 Eigen::Matrix3d weight_of(const Residual& residual,
                           const PointMatch& match,
                           const Eigen::Matrix3d& R_camera_world,
@@ -61,7 +61,7 @@ double huber_weight(double norm_sigmas, double limit_sigmas) {
     return norm_sigmas <= limit_sigmas ? 1.0 : limit_sigmas / norm_sigmas;
 }
 
-/// True when the information fixes all six directions, judged without units.
+/// Whether the information determines all six directions, independent of units.
 bool well_conditioned(const Matrix6& H) {
     const Vector6 diagonal = H.diagonal();
     if (!(diagonal.minCoeff() > 0.0)) return false;
@@ -72,7 +72,7 @@ bool well_conditioned(const Matrix6& H) {
            eigen.eigenvalues().minCoeff() > kMinConditioning * eigen.eigenvalues().maxCoeff();
 }
 
-/// Those that are to lead: with a full vote; none where they are too few.
+/// Matches with a full vote; empty if there are too few.
 std::vector<PointMatch> trusted_of(std::span<const PointMatch> matches) {
     std::vector<PointMatch> trusted;
     std::ranges::copy_if(
@@ -81,7 +81,7 @@ std::vector<PointMatch> trusted_of(std::span<const PointMatch> matches) {
     return trusted;
 }
 
-/// Levenberg-Marquardt at a fixed gate; false when the points do not fix the pose.
+/// Levenberg-Marquardt with a fixed gate; false when the points do not determine the pose.
 bool iterate(const camera::RectifiedRig& rig,
              const PoseSolverConfig& config,
              std::span<const PointMatch> matches,
@@ -160,8 +160,8 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     PoseSolution solution;
     solution.inlier.assign(matches.size(), 0);
     Pose T = T_world_camera_start;
-    // A wide gate first: the start may be a few pixels off. So may somebody who walks in: what is
-    // new in the view must fit to what was there.
+    // First a wide gate, because the start may be a few pixels off. Points of a person who walks in
+    // may be equally far off, so only points that agreed with earlier poses take part.
     const std::vector<PointMatch> trusted = trusted_of(matches);
     if (!iterate(rig,
                  config,

@@ -12,26 +12,26 @@
 
 namespace surefoot::odometry {
 
-/// A known point and where the camera sees it now.
+/// A landmark with known position and its observation in the present frame.
 struct PointMatch {
     Eigen::Vector3d p_world_m;
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
     StereoPixel pixel_px;
     double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
-    double vote = 1.0;          ///< what it counts when poses are compared by those that agree
+    double vote = 1.0;          ///< weight when poses are compared by their agreeing points
 };
 
 struct PoseSolverConfig {
     double sigma_px = 0.3;  ///< of each of (u_left, v, u_right)
     int ransac_rounds = 150;
     double ransac_threshold_px = 3.0;
-    double gate_sigmas = 3.5;   ///< residuals beyond are outliers of the refinement
-    double huber_sigmas = 1.0;  ///< residuals beyond count linearly, not squared
+    double gate_sigmas = 3.5;   ///< larger residuals are outliers of the refinement
+    double huber_sigmas = 1.0;  ///< larger residuals count linearly, not squared
     int iterations = 12;
 };
 
 struct PoseSolution {
-    bool found = false;  ///< else nothing below means anything
+    bool found = false;  ///< if false, the other members are invalid
     Pose T_world_camera;
     Matrix6 covariance =
         Matrix6::Zero();               ///< of T_world_camera (see pose.hpp), scaled by the residual
@@ -41,12 +41,12 @@ struct PoseSolution {
     double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
 };
 
-/// Minimal number of points for a pose with at least one to spare.
+/// Minimal number of points for a pose, with at least one to spare.
 inline constexpr int kMinimalPoseMatches = 5;
 
-/// Pose with the most votes of points within `ransac_threshold_px` of their (u_left, v):
-/// `T_predicted` first, then three-point poses of random samples (P3P). The same seed gives the
-/// same pose.
+/// Finds the pose with the most votes of points within `ransac_threshold_px` of their (u_left, v).
+/// It tries `T_predicted` first, then three-point poses of random samples (P3P). The same seed
+/// gives the same pose.
 ///
 /// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.
 [[nodiscard]] PoseSolution find_pose(const camera::RectifiedRig& rig,
@@ -56,39 +56,39 @@ inline constexpr int kMinimalPoseMatches = 5;
                                      Rng rng);
 
 /// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
-/// weights and a gate, which is wide first; then only matches with a full vote count, if enough.
-/// Each residual is weighted by its pixel noise plus the projected uncertainty of its point, the
-/// points taken as independent. The covariance is the inverse information, scaled up (never down
-/// below kMinResidualScale) by the residuals.
+/// weights and a gate. The first rounds use a wide gate and only matches with a full vote, if there
+/// are enough. Each residual is weighted by its pixel noise plus the projected covariance of its
+/// point; points count as independent. The covariance is the inverse information, scaled by the
+/// residuals (by no less than kMinResidualScale).
 ///
-/// Not found when fewer than kMinimalPoseMatches points agree or they leave a direction open.
+/// Not found when fewer than kMinimalPoseMatches points agree or a direction stays unconstrained.
 [[nodiscard]] PoseSolution refine_pose(const camera::RectifiedRig& rig,
                                        const PoseSolverConfig& config,
                                        std::span<const PointMatch> matches,
                                        const Pose& T_world_camera_start);
 
-/// How many times as far as expected the matches are off a pose: the median of their residuals in
-/// sigmas over that of normal errors. No gate: this is the noise as long as fewer than half are
-/// outliers; those beyond `ransac_threshold_px` are left out. Matches with a full vote count, if
-/// enough. Nothing when too few are left.
+/// Ratio of actual to expected residuals of the matches at a pose: the median of the residuals in
+/// sigmas over the median of normal errors. Without a gate, this measures the noise while fewer
+/// than half are outliers. Residuals beyond `ransac_threshold_px` are left out. Uses matches with a
+/// full vote, if there are enough. Nothing when too few remain.
 [[nodiscard]] std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
                                                           const PoseSolverConfig& config,
                                                           std::span<const PointMatch> matches,
                                                           const Pose& T_world_camera);
 
-/// Normal equations of all matches at one pose, H step = b for a perturbation of the camera pose.
+/// Normal equations of all matches at one pose: H step = b for a perturbation of the camera pose.
 struct VisualNormalEquations {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
     double cost = 0.0;       ///< robust
-    double chi2 = 0.0;       ///< of the gated-in residuals, not robust
+    double chi2 = 0.0;       ///< of the residuals inside the gate, not robust
     double square_px = 0.0;  ///< of their pixel components
     int rows = 0;
     int inliers = 0;
 };
 
-/// One step of `refine_pose`, for solvers that know more than the points; `inlier` has one entry
-/// per match and is overwritten.
+/// One step of `refine_pose`, for solvers with further evidence. `inlier` has one entry per match
+/// and is overwritten.
 [[nodiscard]] VisualNormalEquations visual_normal_equations(const camera::RectifiedRig& rig,
                                                             const PoseSolverConfig& config,
                                                             std::span<const PointMatch> matches,
@@ -96,7 +96,7 @@ struct VisualNormalEquations {
                                                             double gate_sigmas,
                                                             std::span<std::uint8_t> inlier);
 
-/// The covariance shrinks with small residuals down to this share of the configured sigmas only.
+/// Lower limit of the factor by which small residuals shrink the sigmas of the covariance.
 inline constexpr double kMinResidualScale = 0.5;
 
 /// How a perturbation of T_x_b moves T_x_a = T_x_b * T_b_a, given T_a_b (both on the right).

@@ -19,7 +19,7 @@ double pose_error(const Pose& a, const Pose& b) {
     return difference(a, b).norm();
 }
 
-/// Consensus, then refinement, knowing nothing beforehand.
+/// Consensus, then refinement, without prior knowledge.
 PoseSolution solve(const World& world, const Rng& rng) {
     const auto rough = find_pose(world.rig, world.config, world.matches, Pose{}, rng);
     return refine_pose(world.rig, world.config, world.matches, rough.T_world_camera);
@@ -35,8 +35,8 @@ TEST(PoseSolver, ExactDataGivesTheExactPose) {
     EXPECT_LT(pose_error(refined.T_world_camera, world.T_world_camera), 1e-9);
 }
 
-/// Two-frame motion with noise in both frames: the squared error in units of the reported
-/// covariance is 6 on average; 300 trials leave 0.2 of scatter, the rest of the band is for Huber
+/// Two-frame motion with noise in both frames. The squared error in units of the reported
+/// covariance is 6 on average; 300 trials leave a scatter of 0.2. The rest of the band is for Huber
 /// and gate.
 TEST(PoseSolver, CovarianceIsHonest) {
     constexpr int kTrials = 300;
@@ -118,7 +118,7 @@ TEST(PoseSolver, SameSeedSamePose) {
     EXPECT_EQ(a.T_world_camera.rotation.coeffs(), b.T_world_camera.rotation.coeffs());
 }
 
-/// The same least-squares problem for Ceres, by automatic differentiation.
+/// The same least-squares problem in Ceres, with automatic differentiation.
 struct CeresResidual {
     const camera::RectifiedRig& rig;
     const PointMatch& match;

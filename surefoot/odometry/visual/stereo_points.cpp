@@ -15,10 +15,10 @@ namespace {
 constexpr int kRadius = 4;  ///< of the coarse search window
 constexpr int kSize = 2 * kRadius + 1;
 constexpr int kCount = kSize * kSize;
-constexpr int kKnot_px = 8;      ///< the epipolar curve is straight enough between knots
-constexpr int kSamePeak_px = 3;  ///< places this close belong to one maximum
+constexpr int kKnot_px = 8;      ///< between knots the epipolar curve is nearly straight
+constexpr int kSamePeak_px = 3;  ///< positions this close belong to one maximum
 constexpr double kCorrelationNoise =
-    0.05;  ///< of whole-pixel windows: smaller differences mean nothing
+    0.05;  ///< of whole-pixel windows: smaller differences are noise
 constexpr double kCoarseCorrelation = 0.6;  ///< before the sub-pixel refinement
 constexpr double kRefineShift_px = 2.0;
 constexpr double kDepthEdge = 0.03;  ///< relative depth step within the 3x3 neighbourhood
@@ -56,8 +56,8 @@ double correlation(const Window& a, const Window& b) {
 
 using Curve = std::vector<std::optional<Eigen::Vector2d>>;
 
-/// Raw pixels in the other eye at disparities 0, 1, 2 ... of one rectified pixel of this `eye`, by
-/// linear pieces.
+/// Raw pixels in the other camera at disparities 0, 1, 2 ... of one rectified pixel of this camera.
+/// The curve is approximated by line segments.
 Curve epipolar_curve(const camera::Rectifier& rectifier,
                      camera::Side camera,
                      const Eigen::Vector2d& px,
@@ -66,7 +66,7 @@ Curve epipolar_curve(const camera::Rectifier& rectifier,
     const bool is_left = camera == camera::Side::left;
     const auto knot = [&](double disparity) {
         const double u_left = is_left ? px.x() : px.x() + disparity;
-        // Disparity 0 is infinitely far: as good as a very small one.
+        // Disparity 0 is infinitely far; a very small disparity gives the same direction.
         return rectifier.raw_from_point(is_left ? camera::Side::right : camera::Side::left,
                                         rig.point(u_left, px.y(), std::max(disparity, 1e-3)));
     };
@@ -85,7 +85,7 @@ Curve epipolar_curve(const camera::Rectifier& rectifier,
     return curve;
 }
 
-/// Correlation with each place of the curve, -1 where there is no image.
+/// Correlation at each position of the curve, -1 outside the image.
 std::vector<double> scores_along(ImageView<const std::uint8_t> right,
                                  const Window& patch,
                                  const Curve& curve) {
@@ -97,7 +97,7 @@ std::vector<double> scores_along(ImageView<const std::uint8_t> right,
     return score;
 }
 
-/// Start of the refinement: the best place, if it is better than any other.
+/// Start of the refinement: the best position, if it is clearly better than all others.
 std::optional<Eigen::Vector2d> best_place(ImageView<const std::uint8_t> right,
                                           const Window& patch,
                                           const Curve& curve,
@@ -144,7 +144,7 @@ std::optional<StereoPixel> match_corner(const camera::Rectifier& rectifier,
         epipolar_curve(rectifier, camera::Side::left, *left_px, config.max_disparity_px);
     const auto start = best_place(right, patch, curve, config.uniqueness);
     if (!start) return std::nullopt;
-    // Lenses of one rig are alike: locally the eyes differ by a shift.
+    // The lenses of one rig are similar: locally the two images differ by a shift.
     const auto warped = warp_patch(*host, Eigen::Matrix2d::Identity());
     if (!warped) return std::nullopt;
     const auto aligned = align_patch(*warped, right, *start, kRefineShift_px);
@@ -164,7 +164,7 @@ std::optional<camera::Side> camera_of_corner(const camera::Rectifier& rectifier,
         if (!px) return -1.0;
         const auto score = scores_along(
             other, patch, epipolar_curve(rectifier, camera, *px, config.max_disparity_px));
-        // What is far lies the same way for both.
+        // Small disparities lie in the same direction for both cameras.
         const auto near = score.begin() + std::min<std::ptrdiff_t>(kSamePeak_px, std::ssize(score));
         return near == score.end() ? -1.0 : *std::max_element(near, score.end());
     };

@@ -8,16 +8,16 @@
 
 namespace surefoot::odometry {
 
-/// Measurement of a point by an ideal stereo camera in rectified pixels: (u_left, v, u_right). The
-/// three err independently because each eye is aligned on its own. A u_right of NaN is unknown:
-/// then only (u_left, v) counts. The disparity is u_left - u_right.
+/// Measurement of a point by an ideal stereo camera in rectified pixels: (u_left, v, u_right).
+/// Their errors are independent, because each camera is aligned separately. If u_right is NaN
+/// (unknown), only (u_left, v) counts. The disparity is u_left - u_right.
 using StereoPixel = Eigen::Vector3d;
 
 [[nodiscard]] inline double disparity_px(const StereoPixel& pixel) noexcept {
     return pixel.x() - pixel.z();
 }
 
-/// What the rectified stereo camera measures of a point in the rectified left optical frame, z > 0.
+/// Projects a point of the rectified left optical frame (z > 0) into both rectified images.
 [[nodiscard]] inline StereoPixel project_stereo(const camera::RectifiedRig& rig,
                                                 const Eigen::Vector3d& p_camera,
                                                 Eigen::Matrix3d* d_pixel_d_point = nullptr) {
@@ -33,13 +33,13 @@ using StereoPixel = Eigen::Vector3d;
     return {rig.fx_px * x + rig.cx_px, rig.fy_px * y + rig.cy_px, rig.fx_px * x_right + rig.cx_px};
 }
 
-/// Point in the rectified left optical frame of a measurement with disparity > 0.
+/// Point in the rectified left optical frame, from a measurement with disparity > 0.
 [[nodiscard]] inline Eigen::Vector3d triangulate(const camera::RectifiedRig& rig,
                                                  const StereoPixel& pixel) {
     return rig.point(pixel.x(), pixel.y(), disparity_px(pixel));
 }
 
-/// Covariance [m^2] of the triangulated point to first order; `sigma_px` holds for each component.
+/// Covariance [m^2] of the triangulated point to first order; `sigma_px` applies to each component.
 [[nodiscard]] inline Eigen::Matrix3d point_covariance(const camera::RectifiedRig& rig,
                                                       const StereoPixel& pixel,
                                                       double sigma_px) {
@@ -56,8 +56,8 @@ using StereoPixel = Eigen::Vector3d;
     return sigma_px * sigma_px * J * J.transpose();
 }
 
-/// How far a point moves in the image in `dt_s`, to first order, while the camera moves with
-/// `velocity` per second (translation, rotation; in camera axes, as a right perturbation).
+/// Image motion of a point during `dt_s`, to first order, while the camera moves with `velocity`
+/// per second (translation, rotation; in camera axes, as a right perturbation).
 [[nodiscard]] inline StereoPixel pixel_motion(const camera::RectifiedRig& rig,
                                               const Eigen::Vector3d& p_camera,
                                               const Vector6& velocity,

@@ -4,8 +4,8 @@
 namespace surefoot::odometry {
 namespace {
 
-/// A landmark that agreed with so many poses belongs to the scene that stands; one that has just
-/// come into view may belong to somebody who walks in, however many there are.
+/// A landmark that agreed with this many poses belongs to the static scene. A landmark that has
+/// just appeared may belong to a person who walks in, however many such landmarks there are.
 constexpr int kEstablished = 5;
 constexpr double kNewVote = 0.2;
 

@@ -12,55 +12,55 @@
 
 namespace surefoot::odometry {
 
-/// A landmark as it is seen in the present frame.
+/// Observation of a landmark in the present frame.
 struct Track {
     int slot = 0;          ///< of the landmark in the map
-    std::int64_t id = -1;  ///< of the landmark: a slot may be used again
+    std::int64_t id = -1;  ///< of the landmark, because a slot may be reused
     Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< in the raw left image
-    /// At the stamp of the frame, whenever its row was exposed; u_right is NaN where unknown.
+    /// Pixel at the stamp of the frame, whenever its row was exposed; u_right NaN = unknown.
     StereoPixel pixel_px = StereoPixel::Zero();
     double noise_factor = 1.0;  ///< sigma relative to that of an aligned point
-    double correlation = 0.0;   ///< with the landmark's patch; 0 = followed but not aligned
+    double correlation = 0.0;   ///< with the landmark's patch; 0 = tracked but not aligned
 };
 
-/// The landmarks that the present frame shows, whatever they are found by: `FrontEnd` finds them in
-/// images, `PointFrontEnd` is told. Order of a frame: its own `load`, `follow`, `align`, `select`,
-/// at a keyframe `seed`, then `keep`. A frame that is not kept leaves the kept tracks as they were.
+/// The landmarks that the present frame shows. `FrontEnd` finds them in images, `PointFrontEnd`
+/// gets them from another source. Order of calls in a frame: `load`, `follow`, `align`, `select`,
+/// at a keyframe `seed`, then `keep`. A frame without `keep` leaves the kept tracks unchanged.
 class Tracks {
   public:
     /// `rectifier` must outlive the tracks.
     explicit Tracks(const camera::Rectifier& rectifier) : rectifier_(rectifier) {}
     virtual ~Tracks() = default;
 
-    /// How the camera moves at the present frame, per second (right perturbation of its pose):
-    /// brings what a rolling shutter sees to the stamp, from the next `follow` or `align` on.
+    /// Sets the camera's velocity in the present frame, per second (right perturbation of its
+    /// pose). The next `follow` or `align` uses it to move rolling-shutter pixels to the stamp.
     void move(const Vector6& velocity) { velocity_ = velocity; }
-    /// Finds the landmarks in the present frame; `T_odom_camera` is where it is predicted to be.
+    /// Finds the landmarks in the present frame; `T_odom_camera` is the predicted camera pose.
     virtual void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Finds them as well as can be; `T_odom_camera` is good to about a pixel.
+    /// Finds them as precisely as possible; `T_odom_camera` must be good to about a pixel.
     virtual void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Makes landmarks of what has none; the map's newest keyframe is the present frame. Returns
-    /// how many.
+    /// Makes landmarks of points without one. The map's newest keyframe must be the present frame.
+    /// Returns the number of new landmarks.
     virtual int seed(LandmarkMap& map, Executor& executor) = 0;
-    /// Makes the present frame the one to follow from.
+    /// Makes the present frame the reference from which the next frame is tracked.
     virtual void keep();
     /// Forgets all tracks.
     virtual void clear();
-    /// Of the present frame until `keep`; means something beside that of another frame only.
+    /// Sharpness of the present frame until `keep`. Meaningful only relative to other frames.
     [[nodiscard]] virtual double sharpness() const = 0;
-    /// The right eye sees about as much as the left one in the present frame.
+    /// The right camera shows about as much as the left camera in the present frame.
     [[nodiscard]] virtual bool right_shows_something() const = 0;
-    /// Each eye sees what the other one should, as `align` or `seed` found in the present frame.
+    /// The cameras are swapped, as `align` or `seed` found in the present frame.
     [[nodiscard]] virtual bool cameras_swapped() const { return false; }
 
     /// Drops the tracks that are not marked.
     void select(std::span<const std::uint8_t> inlier);
     /// Drops tracks of landmarks that the map removed.
     void drop_removed(const LandmarkMap& map);
-    /// Lets the map forget landmarks beyond its limit, but none that is tracked.
+    /// Lets the map remove landmarks beyond its limit, but none that has a track.
     void forget_excess(LandmarkMap& map);
 
-    /// The present frame can be looked at.
+    /// The present frame has data to track.
     [[nodiscard]] bool loaded() const noexcept { return loaded_; }
     /// Present tracks, in the order of `matches`.
     [[nodiscard]] const std::vector<Track>& tracks() const noexcept { return tracks_; }
@@ -68,7 +68,7 @@ class Tracks {
     [[nodiscard]] int kept() const noexcept { return static_cast<int>(kept_.size()); }
 
   protected:
-    /// A pixel of the point, seen when its row was exposed, as it would have been at the stamp.
+    /// Pixel of the point at the stamp, computed from its pixel when its row was exposed.
     [[nodiscard]] StereoPixel at_stamp(const StereoPixel& pixel_px,
                                        const Eigen::Vector2d& raw_px,
                                        const Eigen::Vector3d& p_camera) const;
