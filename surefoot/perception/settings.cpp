@@ -59,7 +59,7 @@ Result<Settings> load_settings(const SettingsRequest& request) {
 
 Status apply_overrides(const SettingsRequest& request, const io::DescribeConfig& describe) {
     if (!request.config_file.empty()) {
-        // A settings file that cannot be read is a wrong call, as a wrong key in it is.
+        // An unreadable settings file is a usage error, like a wrong key in the file.
         if (auto status = io::read_config(request.config_file, describe); !status)
             return usage_error(status.error().message);
     }

@@ -8,15 +8,17 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Of the known height: far more than a mount or a kerb brings about.
+/// Largest accepted difference, as a share of the known height. No mount and no kerb explains so
+/// much.
 constexpr double kMostHeightShare = 0.35;
 constexpr double kDegPerRad = 180.0 / M_PI;
 
-/// Rotation that takes `up_body` to odom z and keeps the heading of base_link at zero yaw.
+/// Returns the rotation that turns `up_body` to odom z and keeps the heading of base_link at zero
+/// yaw.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     const Eigen::Vector3d z = up_body.normalized();
     Eigen::Vector3d x = Eigen::Vector3d::UnitX() - z.x() * z;
-    // A base_link that looks straight up or down has no heading: take its y axis instead.
+    // If base_link points straight up or down, its x axis has no heading. Use its y axis instead.
     if (x.norm() < 1e-3) x = Eigen::Vector3d::UnitY().cross(z);
     x.normalize();
     Eigen::Matrix3d R_odom_body;
@@ -30,7 +32,7 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// What hinders the best plane of a search.
+/// Returns the text that names the obstacle to the best plane of a search.
 const char* obstacle(ground::GroundReason reason) {
     switch (reason) {
         case ground::GroundReason::rough: return ", too uneven for a plane";
@@ -39,7 +41,7 @@ const char* obstacle(ground::GroundReason reason) {
     }
 }
 
-/// Why there is no plane, and what helps.
+/// Returns the text that says why there is no plane, and what helps.
 std::string without_plane(ground::CalibrationReason reason, const GroundView& look) {
     if (reason == ground::CalibrationReason::disagreement)
         return fmt::format(
@@ -66,7 +68,8 @@ std::string sightings(const ground::GroundAlignment& ground) {
     return fmt::format("{} sightings agree, {} do not", ground.agreeing, ground.rejected);
 }
 
-/// Up by whatever tells it; fills the source, the uncertainty and the reason.
+/// Finds the up direction from the available sources; sets the source, the uncertainty and the
+/// reason.
 Direction find_up(const AlignmentConfig& config,
                   const ground::GroundAlignment& ground,
                   const std::optional<Direction>& up_imu,
@@ -201,7 +204,7 @@ Alignment place_odom(const AlignmentConfig& config,
     const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
     if (alignment.has_ground && expected_height_m > 0.0 &&
         off_m > kMostHeightShare * expected_height_m) {
-        // Everything else would be off by as much, and nothing else shows it.
+        // All lengths would be wrong by the same factor, and nothing else reveals it.
         alignment.gravity_source = grid::GravitySource::assumed;
         alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(
