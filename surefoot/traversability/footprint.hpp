@@ -117,12 +117,12 @@ struct PathScratch {
     std::vector<grid::CellRun> runs;
 };
 
-/// The same for all that the footprint overlaps on its way from pose to pose, each cell once:
-/// straight between neighbours while it turns the short way at an even rate (also on the spot).
+/// As `query`, for all cells overlapped on the way along the poses, each cell once. Between poses
+/// the footprint moves straight and turns the short way at an even rate (also on the spot).
 ///
-/// A turn is cut into pieces of at most kMaxTurn_rad; each is the convex hull of its two ends,
-/// grown by what the arcs bulge out of it. So no cell on the way is missed; beside a turn, what
-/// lies within turn / 2 of the footprint's reach (6 mm for 0.25 m) may count too.
+/// A turn is cut into pieces of at most kMaxTurn_rad. Each piece is the convex hull of its two
+/// ends, enlarged by the bulge of the arcs. So no cell is missed; cells beside a turn may count
+/// too, within turn / 2 of the footprint's reach (6 mm for 0.25 m).
 [[nodiscard]] FootprintReport query_path(const Footprint& footprint,
                                          std::span<const FootprintPose> poses,
                                          const FootprintLayers& layers,

@@ -97,7 +97,8 @@ class Reachability {
     std::vector<std::int32_t> stance_;  ///< candidates, then the cells of the stance
     std::vector<std::int32_t> sorted_;  ///< heights of the candidates
     std::vector<double> distance_m_;    ///< of all known cells from the body
-    std::vector<std::int32_t> bucket_;  ///< first entry per step; the last ones discard entries
+    std::vector<std::int32_t>
+        bucket_;  ///< first entry per step; the last buckets discard their entries
     std::vector<Waiting> waiting_;
 };
 

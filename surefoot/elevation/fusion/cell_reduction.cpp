@@ -9,7 +9,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A sum in sixteen columns: sample i goes into column i modulo 16.
+/// Sum in sixteen columns: sample i goes into column i modulo 16.
 class LaneSum {
   public:
     void add(std::size_t index, float value) noexcept { column_[index % 16] += value; }
@@ -19,7 +19,8 @@ class LaneSum {
     float column_[16] = {};
 };
 
-/// Height with `rank` samples at or above it (rank 1 = the maximum). Zero has no sign.
+/// Returns the height with `rank` samples at or above it (rank 1 = the maximum). Adding 0 removes
+/// the sign of zero.
 float upper_quantile(std::vector<float> z_m, int rank) {
     const auto nth = z_m.begin() + (rank - 1);
     std::nth_element(z_m.begin(), nth, z_m.end(), std::greater<>());

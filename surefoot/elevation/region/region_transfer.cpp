@@ -9,7 +9,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A variance or drift that has left the range of a float says nothing any more.
+/// Makes cells unknown whose variance or drift has left the range of a float.
 void forget_boundless(grid::MapRegion& region) {
     for (std::size_t cell = 0; cell < region.height_m.size(); ++cell) {
         if (std::isnan(region.height_m.data()[cell])) continue;
