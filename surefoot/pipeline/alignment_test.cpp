@@ -87,7 +87,7 @@ TEST(Alignment, a_search_says_what_it_saw_and_what_to_do) {
               std::string::npos);
     const Alignment found = place_odom({}, plane({0.0, 0.0, 1.0}, 1.0), std::nullopt, 0.0, look);
     EXPECT_EQ(found.gravity_source, grid::GravitySource::plane);
-    EXPECT_NE(found.reason.find("mount not known"), std::string::npos) << found.reason;
+    EXPECT_NE(found.reason.find("mounting unknown"), std::string::npos) << found.reason;
 }
 
 TEST(Alignment, a_ground_where_the_machine_cannot_stand_is_a_wrong_scale) {

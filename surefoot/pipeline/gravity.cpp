@@ -102,8 +102,8 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    sloped_floor_deg,
                    0.001,
                    20.0,
-                   "one sigma of the slope of all other floors; without an accelerometer the "
-                   "vertical is known no better");
+                   "one sigma of the slope of all other floors, and of the vertical without "
+                   "an accelerometer");
     visitor.number("sloped_share",
                    sloped_share,
                    0.001,

@@ -18,13 +18,13 @@ constexpr double kLongest_s = 1.0;
 }  // namespace
 
 void LevelConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled", enabled, "turns poses back that have drifted from the vertical");
-    visitor.number("slew_deg_s", slew_deg_s, 0.0, 0.05, "fastest turn");
+    visitor.boolean("enabled", enabled, "correct poses whose tilt has drifted from the vertical");
+    visitor.number("slew_deg_s", slew_deg_s, 0.0, 0.05, "fastest correction");
     visitor.number("max_tilt_deg", max_tilt_deg, 0.1, 5.0, "steeper ground is a slope, not drift");
-    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt within it is left alone");
-    visitor.number("average_s", average_s, 1.0, 600.0, "time that tilts are averaged over");
+    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt up to this is not corrected");
+    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
     visitor.number(
-        "agreeing_share", agreeing_share, 0.0, 1.0, "sightings that must be nearly level");
+        "agreeing_share", agreeing_share, 0.0, 1.0, "required share of nearly level sightings");
 }
 
 void TiltDriftCorrection::start_at(const Pose& T_odom_body, double ground_lean_rad) {

@@ -378,28 +378,38 @@ bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
 void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
     visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "shorter side of a foot");
-    visitor.number("margin_m", margin_m, 0.0, 1.0, "edges may lie beside where the map has them");
-    visitor.number("band_m", band_m, 0.0, 1.0, "solid ground wanted beyond the foot");
-    visitor.number("corner_m", corner_m, 0.0, 1.0, "drops begin up to so far before the map's");
-    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+    visitor.number("margin_m", margin_m, 0.0, 1.0, "position error of edges in the map");
+    visitor.number("band_m", band_m, 0.0, 1.0, "required solid ground beyond the foot");
     visitor.number(
-        "max_slope", max_slope, 0.001, 10.0, "of the plane under the foot, rise over run");
-    visitor.number("patch_side_m", patch_side_m, 0.001, 1.0, "what the foot is cut into");
-    visitor.number("max_residual_m", max_residual_m, 0.001, 1.0, "of a patch to that plane");
-    visitor.number("sigma_factor", sigma_factor, 0.0, 100.0, "everything is to be sure by so many");
+        "corner_m", corner_m, 0.0, 1.0, "a drop may begin this far before its edge in the map");
+    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+    visitor.number("max_slope",
+                   max_slope,
+                   0.001,
+                   10.0,
+                   "largest slope of the plane under the foot, rise over run");
+    visitor.number(
+        "patch_side_m", patch_side_m, 0.001, 1.0, "side of the square patches of a foot");
+    visitor.number("max_residual_m",
+                   max_residual_m,
+                   0.001,
+                   1.0,
+                   "largest distance of a patch mean from that plane");
+    visitor.number(
+        "sigma_factor", sigma_factor, 0.0, 100.0, "sigmas by which every limit must be met");
     visitor.number("independent_cells",
                    independent_cells,
                    1.0,
                    10000.0,
-                   "at most so many independent errors in a patch");
+                   "largest number of independent errors in a patch");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
-    visitor.number("clearance_m", clearance_m, 0.0, 100.0, "free height wanted over the foot");
+        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+    visitor.number("clearance_m", clearance_m, 0.0, 100.0, "required free height over the foot");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "what hangs over less than a square of this side may be a wrong match");
+                   "overhead objects smaller than a square of this side may be wrong matches");
 }
 
 std::optional<std::string> FootholdConfig::problem() const {

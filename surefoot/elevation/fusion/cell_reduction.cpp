@@ -113,7 +113,7 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                     min_face_points,
                     1,
                     1000000,
-                    "so many points of a cell without a common height are a vertical face");
+                    "this many points of a cell without a common height are a vertical face");
     visitor.number("systematic_sigma_m",
                    systematic_sigma_m,
                    0.0,
@@ -124,7 +124,7 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "a cell that reaches beyond the image needs this share of the points of level "
-                   "ground; 0 = min_points do");
+                   "ground; 0 = min_points suffice");
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

@@ -51,9 +51,8 @@ bool agrees(const HeightResidual& residual, double offset_m) {
 }  // namespace
 
 void HeightDriftConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled",
-                    enabled,
-                    "move old parts of the map by the height that the body drifted (keys below)");
+    visitor.boolean(
+        "enabled", enabled, "correct old parts of the map by the body's height drift (keys below)");
     visitor.integer(
         "min_motions",
         min_motions,
@@ -64,29 +63,30 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                    min_drift_m,
                    0.0,
                    1.0,
-                   "... and these may have moved them by this (1 sigma)");
+                   "... and the motions may have moved them by this (1 sigma)");
     visitor.number("level_m",
                    level_m,
                    0.0,
                    1.0,
-                   "cells count where the map two cells beside them differs by no more");
+                   "largest height difference to the map two cells aside of a cell that "
+                   "counts");
     visitor.integer("kept_motions",
                     kept_motions,
                     0,
                     100000,
-                    "what frames say of old cells is kept for so many uncertain motions");
+                    "residuals of old cells are kept for this many uncertain motions");
     visitor.integer("min_cells",
                     min_cells,
                     1,
                     4096,
-                    "old cells that an offset needs, every fourth being asked");
+                    "old cells that an offset needs; one cell of four is used");
     visitor.integer(
         "min_tiles", min_tiles, 4, 1000000, "squares of 8 x 8 cells that an offset needs");
     visitor.number("min_spread_m",
                    min_spread_m,
                    0.0,
                    100.0,
-                   "standard deviation of their places along the longer axis");
+                   "standard deviation of the cells' positions along the longer axis");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.5,
@@ -96,7 +96,7 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                    significance_sigmas,
                    0.1,
                    100.0,
-                   "an offset that stands out this far moves the map [sigma of the offset]");
+                   "smallest offset that corrects the map [sigma of the offset]");
     visitor.number("motion_sigmas",
                    motion_sigmas,
                    0.0,

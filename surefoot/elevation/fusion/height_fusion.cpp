@@ -52,7 +52,7 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
                    multi_height_var_m2,
                    0.0,
                    100.0,
-                   "largest that is added to a cell's variance when a measurement is gated out");
+                   "largest addition to a cell's variance when a measurement is gated out");
     visitor.number("contradiction_growth",
                    contradiction_growth,
                    1.0,
@@ -86,7 +86,8 @@ std::optional<std::string> FusionConfig::problem() const {
     }
     if (!(contradiction_growth > 1.0)) {
         return fmt::format(
-            "elevation.contradiction_growth = {} must exceed 1, or no changed scene is ever learnt",
+            "elevation.contradiction_growth = {} must exceed 1: otherwise the map never adopts a "
+            "changed scene",
             contradiction_growth);
     }
     return std::nullopt;

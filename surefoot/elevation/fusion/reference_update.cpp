@@ -23,8 +23,11 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
     visitor.number("start_y_m", start_y_m, -1e6, 1e6, "the same along y");
     visitor.number("start_time_s", start_time_s, -1e12, 1e12, "the time layer counts from here");
     visitor.number("min_variance_m2", min_variance_m2, 0.0, 100.0, "smaller variances become this");
-    visitor.number(
-        "max_variance_m2", max_variance_m2, 0.0, 100.0, "larger ones become infinite: forgotten");
+    visitor.number("max_variance_m2",
+                   max_variance_m2,
+                   0.0,
+                   100.0,
+                   "larger variances become infinite: the cell is overwritten");
     visitor.number("mahalanobis_threshold",
                    mahalanobis_threshold,
                    0.0,

@@ -60,7 +60,7 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    matcher_lateral_px,
                    0.0,
                    50.0,
-                   "matcher: one sigma of where in the image a disparity belongs");
+                   "matcher: one sigma of a disparity's image position");
     visitor.number(
         "laser_min_radius_m", laser_min_radius_m, 0.0, 1.0, "laser: sigma along the beam");
     visitor.number(

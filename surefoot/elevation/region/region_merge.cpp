@@ -153,8 +153,8 @@ std::optional<std::string> problem_of(const MapRegion& into,
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(
-            "the maps are of two runs, whose frames {0} were placed at {1} and at {2} ns: each run "
-            "has an {0} of its own",
+            "the maps come from two runs, whose frames {0} were placed at {1} and at "
+            "{2} ns: each run places its own {0}",
             into.frame,
             into.frame_since_ns,
             from.frame_since_ns);

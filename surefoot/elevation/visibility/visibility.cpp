@@ -18,8 +18,8 @@ constexpr int kEndRings = 3;
 
 void VisibilityConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
-        "cleanup", cleanup, "forget surfaces that lines of sight pass through (keys below)");
-    visitor.boolean("drops", drops, "lines of sight over unknown ground say how deep it must lie");
+        "cleanup", cleanup, "remove surfaces that lines of sight pass through (keys below)");
+    visitor.boolean("drops", drops, "lines of sight over unknown ground bound its depth");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
@@ -30,12 +30,12 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                    neighbour_s,
                    0.0,
                    60.0,
-                   "a cell beside it, as high, that was seen this lately vouches for a cell");
+                   "a neighbour of equal height, confirmed this recently, keeps a cell");
     visitor.integer("frames",
                     frames,
                     1,
                     255,
-                    "frames with such a line until a height that every look had shown is gone");
+                    "frames with such a line that remove a height shown by every observation");
 }
 
 void FreeSpaceRays::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
