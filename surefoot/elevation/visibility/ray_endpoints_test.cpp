@@ -144,7 +144,7 @@ TEST(RayEndpoints, SayNothingWithoutADirection) {
 }
 
 /// Marches along the line in small steps, in doubles, over a fully observed map. Returns where the
-/// line ends; within the map it must end at least `clear_cells` from the border.
+/// line ends: `inside` is more than 3 cells from the border, `near_the_border` is closer.
 enum class End : std::uint8_t { inside, outside, near_the_border };
 End march(const RayEndpoints& ends, grid::Cell cell, double z_m) {
     const grid::GridGeometry g = geometry();
