@@ -32,9 +32,9 @@ struct Start {
 ///   height of base_link over its ground is known, the search goes on, five frames later each time,
 ///   for `mount.wait_for_ground_s` at most.
 /// * If the mounting is unknown, a person may still be lifting the camera. The search goes on in
-///   the
-///   same way, for `mount.wait_for_search_s` at most. The frames are kept; without any ground in
-///   the recording, the first frames place odom.
+///   the same way, for `mount.wait_for_search_s` at most. The frames are kept,
+///   because a recording may show no ground at all. In that case the first kept frames
+///   place odom.
 /// Otherwise, at the end of the source or of the wait, the last frames place odom in any case.
 /// Holds `Pipeline::kAlignmentFrames` frames at a time, plus the kept frames. Not thread-safe.
 ///
