@@ -61,8 +61,8 @@ class ElevationMap {
     /// cells.
     ///
     /// A remembered map is as accurate as its placement. `placement_covariance` belongs to the body
-    /// at `T_odom_body` in the region's frame (right perturbation, see pose.hpp). Every cell pays
-    /// for it as for a motion. The floor of the height variance and the horizontal variance of
+    /// at `T_odom_body` in the region's frame (right perturbation, see pose.hpp). It blurs every
+    /// cell like a motion does. The floor of the height variance and the horizontal variance of
     /// rounding to a cell (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells
     /// becomes 0, because clocks differ. Allocates; do not call it for every frame.
     [[nodiscard]] Result<std::int64_t> insert(const grid::MapRegion& region,
