@@ -24,14 +24,14 @@
 namespace surefoot {
 
 /// Opens a recording: a folder in the layout of EuRoC, KITTI or TUM RGB-D, a folder of side-by-side
-/// images, or a side-by-side video. `rig_file`: a calibration in any format that
-/// docs/get_started/own_camera.md names; empty = the one of the recording. Errors name file and
-/// cause.
+/// images, or a side-by-side video. `rig_file` is a calibration in any format that
+/// docs/get_started/own_camera.md names. If it is empty, the calibration of the recording is used.
+/// An error names the file and the cause.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_recording(
     const std::string& path, const std::string& rig_file = {});
 
-/// A machine file by path, or a built-in machine by name ("rex"). Errors name file, line, key and
-/// limit.
+/// Loads a machine file by path, or a built-in machine by name ("rex"). An error names the file,
+/// the line, the key and the limit.
 [[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
 
 /// The whole chain behind one object: from frames of a stereo or depth camera to a rated map of the
@@ -49,22 +49,22 @@ namespace surefoot {
 /// a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
 class Perception {
   public:
-    /// `rig`: the camera; where it does not say how it is mounted, the machine's mount counts.
-    /// `machine`: needed for verdicts. `threads`: 0 = one for each core. Fails with the first
-    /// problem of rig or settings.
+    /// `rig`: the camera. If it does not state its mounting, the mounting of the machine is used.
+    /// `machine`: needed for verdicts. `threads`: 0 = one per core. Fails with the first problem of
+    /// the rig or of the settings.
     [[nodiscard]] static Result<Perception> make(const camera::StereoRig& rig,
                                                  std::optional<io::MachineFile> machine = {},
                                                  Settings settings = {},
                                                  int threads = 0);
 
-    /// Takes the next frame in time order. Returns the reports of all frames that were processed by
-    /// this call: none during start-up, several at its end, then one. They are valid until the next
-    /// call. `Work::odometry` measures the motion alone, at a fraction of the time.
+    /// Processes the next frame in time order. Returns the reports of all frames processed in this
+    /// call: none during start-up, several at its end, then one. The reports are valid until the
+    /// next call. `Work::odometry` estimates the motion only, in a fraction of the time.
     std::span<const FrameReport> process(const StereoFrame& frame, Work work = Work::full);
-    /// Call when the source ends: a recording that is shorter than the start-up is processed now.
+    /// Call this when the source ends. It processes a recording that is shorter than the start-up.
     std::span<const FrameReport> finish();
 
-    /// Whether odom is placed: before, map and features are empty.
+    /// True once odom is placed. Before that, the map and the features are empty.
     [[nodiscard]] bool is_started() const noexcept { return !start_.has_value(); }
     /// The map of the ground, robot-centric, in odom.
     [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return pipeline_->map(); }
@@ -76,12 +76,12 @@ class Perception {
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept {
         return pipeline_->features();
     }
-    /// What the gate may know, as of the last frame. An error names what does not fit.
+    /// The data that the gate reads, as of the last frame. An error names the wrong value.
     [[nodiscard]] Result<std::unique_ptr<grid::MapSnapshot>> snapshot() const;
-    /// "May the machine make this movement from where it is now?" as of the last frame. Everything
-    /// that is missing inhibits: no machine, no map, an unknown command. For tests and analysis: a
-    /// machine that moves asks the gate process (surefoot-gate), which also watches the age of the
-    /// map and the health of perception.
+    /// Answers "may the machine make this movement from its present pose?" as of the last frame.
+    /// Every missing input inhibits: no machine, no map, an unknown command. Use this for tests and
+    /// analysis only. A moving machine asks the gate process (surefoot-gate), which also checks the
+    /// age of the map and the health of perception.
     [[nodiscard]] gate::Verdict verdict(std::uint8_t command) const;
     /// The verdict as one sentence: what, where, value and limit.
     [[nodiscard]] std::string text_of(const gate::Verdict& verdict) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Everything that a program needs that gives frames to Surefoot and asks what the ground is.
+/// Includes all that a program needs to pass frames to Surefoot and to read the rated ground.
 /// Programs that use a single module include its header instead (docs/index.md).
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/gate/gate.hpp"

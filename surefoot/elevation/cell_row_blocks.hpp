@@ -8,7 +8,7 @@
 
 namespace surefoot::elevation {
 
-/// The cells of a grid in blocks of rows, each one piece of work for an executor.
+/// Splits the cells of a grid into blocks of rows; each block is one work item of an executor.
 class RowBlocks {
   public:
     explicit RowBlocks(const grid::GridGeometry& geometry) : nx_(geometry.nx), ny_(geometry.ny) {}
@@ -18,7 +18,7 @@ class RowBlocks {
     [[nodiscard]] int first(int block) const noexcept { return block * kRows; }
     [[nodiscard]] int last(int block) const noexcept { return std::min(first(block) + kRows, ny_); }
     [[nodiscard]] static int of_row(int iy) noexcept { return iy / kRows; }
-    /// Calls f(place, index) for the cells of a block.
+    /// Calls f(cell, index) for the cells of a block.
     template <typename F>
     void for_each_cell(int block, const F& f) const {
         auto cell = static_cast<std::size_t>(first(block)) * static_cast<std::size_t>(nx_);

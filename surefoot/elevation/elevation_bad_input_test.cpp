@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nobody measures must be counted as left out, or refused with a sentence; no cell may come
-// out of it half known. Pixels: depth_fusion_test; regions: map_region_test; lost motion:
+// Invalid measurements must be counted as rejected, or refused with a message; no cell may become
+// partly known. Pixels: depth_fusion_test; regions: map_region_test; lost motion:
 // elevation_map_test.
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ std::vector<MeasuredPoint> floor_ahead(const Eigen::Vector3f& off_m = Eigen::Vec
     return points;
 }
 
-/// Unknown cells know nothing, known ones have a finite height, a variance and a count.
+/// Unknown cells hold no values; known cells have a finite height, a variance and a count.
 void expect_whole(const ElevationMap& map, const std::string& after) {
     const ElevationLayers& layers = map.layers();
     for (std::size_t i = 0; i < layers.height_m.size(); ++i) {
@@ -55,7 +55,7 @@ void expect_whole(const ElevationMap& map, const std::string& after) {
     }
 }
 
-/// Smallest variance of a known cell; NaN where none is.
+/// Returns the smallest variance of a known cell; NaN without known cells.
 float least_variance(const ElevationMap& map) {
     float least_m2 = kNanF;
     for (std::size_t i = 0; i < map.layers().height_m.size(); ++i)
@@ -63,7 +63,7 @@ float least_variance(const ElevationMap& map) {
     return least_m2;
 }
 
-/// Both cuts off: nothing but the map itself stands against the points.
+/// Both cuts are off: only the map itself protects against the points.
 ElevationConfig open_config() {
     ElevationConfig config;
     config.prefilter.range = false;
@@ -177,7 +177,8 @@ TEST(BadInput, ABodyBeyondAllBoundsIsFollowedWithoutHarmAndSoIsItsWayBack) {
         map.add_points(floor_ahead(), {}, body_at(x_m, -x_m), 1);
         expect_whole(map, "a body at " + std::to_string(x_m));
     }
-    // Coordinates that far no longer tell one cell from the next: come back and start anew.
+    // So far away, coordinates cannot distinguish neighbouring cells. Come back and start with an
+    // empty map.
     for (int step = 0; step < 8; ++step) map.follow(body_at(0.0), Matrix6::Zero());
     map.add_points(floor_ahead(), {}, body_at(0.0), 2);
     EXPECT_EQ(map.known_cells(), 1);

@@ -10,17 +10,18 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Trust in what hangs over a cell: a sighting adds two, a line of sight through it takes one away.
-/// Two sightings are believed, one may be a wrong match; what was the cell's height, for more than
-/// one look, before the ground below it was found is believed longest. ASSUMPTION, all three.
+/// Trust in an overhead object: an observation adds two, a line of sight through the object
+/// subtracts one. Two observations are believed; a single one may be a wrong match. A former height
+/// of the cell with more than one observation gets the largest trust. ASSUMPTION, all three.
 constexpr int kOverheadSeen = 2;
 constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
 
-/// Weight of a new look in confidence and density ratio, and the confidence in a first look.
+/// Weight of a new observation in confidence and density ratio, and the confidence after the first
+/// observation.
 constexpr float kNewObservation = 0.25F;
 constexpr float kFirstObservation = 0.5F;
-/// Evidence that a surface is gone, per frame, for one that every look showed.
+/// Evidence per frame that a surface is gone, for a surface that every observation showed.
 constexpr int kGone = 16;
 
 }  // namespace
@@ -87,8 +88,7 @@ void ElevationCells::update(std::size_t cell,
     const CellMeasurement& measured = seen.measured;
     ++counts.cells_measured;
     const float height_m = layers_.height_m.data()[cell];
-    // A height that may be anywhere says nothing: its variance left the range of a float on the
-    // way.
+    // A height whose variance has left the range of a float carries no information.
     if (std::isnan(height_m) || !std::isfinite(layers_.height_var_m2.data()[cell])) {
         ++counts.cells_new;
         start(cell, seen, look);
@@ -194,7 +194,8 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
     bottom_m_.data()[cell] = height_m;
     seen_through_.data()[cell] = 0;
-    // As when a height is first measured: what this run saw hang here stays, unless this is it.
+    // As for a new height: an overhead object observed in this run stays, unless it is this
+    // surface.
     forget_overhead_near(cell);
     const float clearance_m = region.clearance_m.data()[from];
     if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost, true);
@@ -217,8 +218,8 @@ void ElevationCells::forget(std::size_t cell) {
     layers_.density_ratio.data()[cell] = kNanF;
     forget_overhead(cell);
     seen_through_.data()[cell] = 0;
-    // What stood here may have been a thing that one sees under. Until lines of sight have passed
-    // through it a few times, it bounds the clearance.
+    // The removed surface may have hung over the ground. It bounds the clearance until lines of
+    // sight have passed through it a few times.
     see_above(cell, before_m, trust, true);
 }
 
@@ -294,7 +295,7 @@ void ElevationCells::start(std::size_t cell,
     viewpoint_.data()[cell] = look.view;
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
-    // What hangs over an unknown cell stays there, unless this is it.
+    // An overhead object of an unknown cell stays, unless it is this surface.
     forget_overhead_near(cell);
     set_clearance(cell);
 }
@@ -325,14 +326,14 @@ void ElevationCells::agree(std::size_t cell,
     remember_density(cell, seen.density_ratio);
     bottom_m_.data()[cell] = std::min(bottom_m_.data()[cell], seen.bottom_m);
     seen_through_.data()[cell] = 0;
-    // Ground is seen under a table top, but not through a person.
+    // A camera observes ground under a table top, but not through a person.
     if (overhead_hangs_.data()[cell] == 0) see_no_more_above(cell);
     set_clearance(cell);
 }
 
 void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
-    // The nearest sixteenth, halves away from zero.
+    // Rounds to the nearest sixteenth, halves away from zero.
     const float share = kGone * confidence;
     // in range: confidence is in [0, 1]: recall() checks it, observations mix it with 1
     const int whole = static_cast<int>(share);
@@ -351,7 +352,8 @@ void ElevationCells::repeat(std::size_t cell,
                             const CellMeasurement& measured,
                             const FrameObservation& look) {
     // The cell and the measurement share an unknown part of their errors. Covariance intersection
-    // (Julier and Uhlmann 1997) in one dimension: keep whichever is surer, gain nothing.
+    // (Julier and Uhlmann 1997) in one dimension: keep the estimate of smaller variance, gain
+    // nothing.
     float& var_m2 = layers_.height_var_m2.data()[cell];
     float& settled_m2 = settled_var_m2_.data()[cell];
     const float measured_m2 = std::max(measured.var_m2, settled_m2);

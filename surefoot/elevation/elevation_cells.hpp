@@ -14,24 +14,24 @@
 
 namespace surefoot::elevation {
 
-/// What the looks of one frame share.
+/// Data that all observations of one frame share.
 struct FrameObservation {
     const ViewpointHistory& views;
-    ViewpointHistory::Id view = ViewpointHistory::kNever;  ///< where it was taken from
+    ViewpointHistory::Id view = ViewpointHistory::kNever;  ///< viewpoint of the frame
     std::int64_t time_ns = 0;
 };
 
-/// What one frame says about one cell.
+/// Observation of one cell by one frame.
 struct CellObservation {
     CellMeasurement measured;
     float density_ratio = 0.0F;  ///< see ElevationLayers; NaN = not known
-    /// Where what has the height begins: a face that is seen from the side reaches down to its
-    /// lowest points, anything else begins at the height.
+    /// Lower end of the observed surface. A face seen from the side reaches down to its lowest
+    /// points; every other surface begins at its height.
     float bottom_m = 0.0F;
 };
 
-/// The cells of an elevation map and what a look does to one of them. Cells do not know of each
-/// other: different ones may be updated side by side. A cell is named by iy * nx + ix.
+/// The cells of an elevation map, and their update by observations. Cells are independent: threads
+/// may update different cells at the same time. A cell has the index iy * nx + ix.
 class ElevationCells {
   public:
     ElevationCells(const ElevationConfig& config, int nx, int ny);
@@ -40,8 +40,8 @@ class ElevationCells {
     void clear();
     void shift(grid::Shift shift);
 
-    /// Remembered cells of a row pay for the body's motion, see `MotionNoise`: writes height
-    /// variance and drift.
+    /// Remembered cells of a row, into which `MotionNoise` writes: the body's motion increases
+    /// their height variance and drift.
     struct Memory {
         const float* height_m;
         float* height_var_m2;
@@ -54,48 +54,48 @@ class ElevationCells {
     [[nodiscard]] CellAlignment alignment() noexcept {
         return {aligned_var_m2_.data(), aligned_step_.data(), is_asked_.data()};
     }
-    /// A known cell, and all that was seen in it, stands `offset_m` higher than it was thought to;
-    /// it is aligned with the present body. `var_m2`: of the offset.
+    /// Raises a known cell, and all that was observed in it, by `offset_m`, and aligns the cell
+    /// with the present body. `var_m2`: variance of the offset.
     void lift(std::size_t cell, double offset_m, double var_m2);
 
-    /// Fuses a measurement; its height and variance are finite.
+    /// Fuses an observation. Its height and its variance must be finite.
     void update(std::size_t cell,
                 const CellObservation& seen,
                 const FrameObservation& look,
                 FusionCounts& counts);
-    /// The height of the cell is clearly above a line of sight over it.
+    /// True if the height of the cell is clearly above a line of sight over the cell.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
-    /// A line of sight passes through the surface of the cell: often enough, without a look that
-    /// agrees, and it is gone. Returns whether it is. For cells that no look agreed with in this
-    /// frame.
+    /// Counts one frame whose line of sight passes through the surface of the cell. Returns true if
+    /// the surface is gone: enough such frames without an agreeing observation. Call only for cells
+    /// without an agreeing observation in this frame.
     bool see_through(std::size_t cell);
-    /// The same over an unknown cell: whatever is there is lower.
+    /// Notes a line of sight over an unknown cell: the ground there is lower.
     void see_over(std::size_t cell, float line_z_m);
-    /// Where the remembered surface of a cell begins, see `Seen`.
+    /// Lower end of the remembered surface of a cell, see `CellObservation`.
     [[nodiscard]] float bottom_m(std::size_t cell) const noexcept { return bottom_m_.data()[cell]; }
-    /// The lowest thing that was seen above the height of a cell, or where a surface was that is
-    /// gone; NaN if there is none.
+    /// Lowest object observed above the height of a cell, or the lower end of a surface that was
+    /// removed from the cell; NaN if there is none.
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// The highest surface of each cell as a person sees it: the height, or the lowest top that was
-    /// seen of a thing that stands on known ground, in two frames (somebody stepped in). NaN =
-    /// unknown cell. `out_m` gets the size of the layers.
+    /// Writes the highest visible surface of each cell: the height, or the lowest observed top of
+    /// an object that stands on known ground in two frames (a person stepped in). NaN = unknown
+    /// cell. `out_m` takes the size of the layers.
     void surface(grid::Layer& out_m) const;
-    /// A line of sight passed through the lowest thing above a cell.
+    /// Notes that a line of sight passed through the lowest object above a cell.
     void see_no_more_above(std::size_t cell);
-    /// The cell is unknown; what its height was may still hang over it.
+    /// Makes the cell unknown. Its former surface may still count as an overhead object.
     void forget(std::size_t cell);
 
-    /// An unknown cell takes what cell `from` of a region knew: as never seen in this run, so that
-    /// the first look at it is new information.
+    /// Copies cell `from` of a region into an unknown cell. The cell counts as not observed in this
+    /// run, so its first observation is new information.
     void recall(std::size_t cell, const grid::MapRegion& region, std::size_t from);
 
   private:
-    /// Calls f(layer, value of unknown cells) for those that are read in unknown cells too ...
+    /// Calls f(layer, value of unknown cells) for layers that are also read in unknown cells ...
     template <typename F>
     void for_each_layer(const F& f);
-    /// ... and for those that are written whenever a cell becomes known, and not read before.
+    /// ... and for the layers that are written when a cell becomes known, and not read before.
     template <typename F>
     void for_each_layer_of_known(const F& f);
 
@@ -108,12 +108,12 @@ class ElevationCells {
     void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
-    /// In the height of a cell, should it turn out to hang over ground.
+    /// Initial trust in the present height if it turns out to hang over ground.
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     [[nodiscard]] bool is_sure_of_overhead(std::size_t cell) const;
     void forget_overhead(std::size_t cell);
-    /// If it does not hang over the height of the cell, but is that surface, or below it.
+    /// Forgets the overhead object if it does not hang over the height of the cell.
     void forget_overhead_near(std::size_t cell);
     void set_clearance(std::size_t cell);
     void align(std::size_t cell);
@@ -124,22 +124,22 @@ class ElevationCells {
     /// Variance after the last fusion that brought new information; repeated views of the same
     /// errors never lower a cell's variance below it.
     ElevationLayers::Layer settled_var_m2_;
-    // See CellAlignment; empty unless the height drift is looked after.
+    // See CellAlignment; empty unless height drift is corrected.
     ElevationLayers::Layer aligned_var_m2_;
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
-    /// Lowest surface seen above the height, and how far it is believed.
+    /// Lowest surface observed above the height, and the trust in it.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
-    /// Of a known cell, see `Seen`; of an unknown one the lowest line of sight over it.
+    /// Known cell: see `CellObservation`. Unknown cell: lowest line of sight over it.
     ElevationLayers::Layer bottom_m_;
-    /// A surface seen in a share s of the looks is missed in n of them by chance with (1 - s)^n: so
-    /// that 1/s times as many frames are asked of it before it counts as gone.
-    grid::SlidingLayer<std::uint8_t> steady_;         ///< s at the last look that agreed, in 1/16
-    grid::SlidingLayer<std::uint16_t> seen_through_;  ///< its sum over frames since then
+    /// A surface that a share s of the observations shows is missed n times by chance with (1 -
+    /// s)^n. So it needs 1/s times as many frames before it counts as gone.
+    grid::SlidingLayer<std::uint8_t> steady_;         ///< s at the last agreement, in 1/16
+    grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` over frames since then
 };
 
 }  // namespace surefoot::elevation

@@ -34,7 +34,7 @@ struct ElevationConfig {
     HeightDriftConfig height_drift;
 
     void describe(ConfigVisitor& visitor);
-    /// First reason why this config cannot be used, or nothing.
+    /// Returns the first reason why this config cannot be used, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

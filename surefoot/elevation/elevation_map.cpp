@@ -15,19 +15,20 @@
 namespace surefoot::elevation {
 namespace {
 
-/// So many times the points that level ground would show at the height of the lowest ones are a
-/// face, seen from the side. Floor under a table top and the top together bring twice as many at
-/// most. ASSUMPTION.
+/// A cell with this many times the points of level ground at its lowest height is a face, seen from
+/// the side. The floor under a table top and the top together give at most twice as many.
+/// ASSUMPTION.
 constexpr float kFaceDensity = 3.0F;
 
-/// Where the body looks, level; along x if it looks straight up or down.
+/// Returns the horizontal forward direction of the body; x if the body points straight up or down.
 Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
     const Eigen::Vector2d ahead = T_odom_body.R().col(0).head<2>();
     const double length = std::sqrt(ahead.squaredNorm());
     return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
 }
 
-/// Sums over a cell that left the range of a float do not: no height, no end of a line of sight.
+/// False for a measurement whose sums left the range of a float: it is no height and no ray
+/// endpoint.
 bool says_something(const CellMeasurement& measured) {
     return measured.points > 0 && std::isfinite(measured.z_m) && std::isfinite(measured.var_m2);
 }
@@ -184,7 +185,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
         const ExpectedPoints* expected = nullptr;
         FrameObservation look;
     } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
-    // One reference, so that std::function needs no memory for it.
+    // A single reference, so std::function needs no memory for the closure.
     executor.parallel_for(rows.count(),
                           [&job](int block) { job.map.fuse_block(block, job.expected, job.look); });
     for (const FusionCounts& block : block_counts_) counts += block;
@@ -227,7 +228,7 @@ void ElevationMap::align_heights(const Pose& T_odom_body,
             continue;
         const float motion_m2 =
             motion_variance(layers().height_var_m2.data()[cell], alignment.var_m2[cell]);
-        // False for what is not finite.
+        // False for values that are not finite.
         if (!drift_.allows(report.offset_m, static_cast<double>(motion_m2))) continue;
         cells_.lift(cell, report.offset_m, report.sigma_m * report.sigma_m);
         ++height_drift_.moved_cells;

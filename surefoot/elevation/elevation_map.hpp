@@ -29,23 +29,23 @@ namespace surefoot::elevation {
 
 /// Robot-centric elevation map in odom (Fankhauser 2014): one height with its variance per cell, in
 /// a window that moves with the body. Call `follow` for every motion, then `add` for a frame that
-/// has depth. Variances are relative to the present body: what the body's drift blurs, `follow`
-/// inflates.
+/// has depth. Variances are relative to the present body: `follow` increases them by the drift of
+/// the body.
 ///
-/// Not thread-safe. After the first frames of a size neither call allocates. `config.problem()`
+/// Not thread-safe. After the first frames of one size, neither call allocates. `config.problem()`
 /// must be empty.
 class ElevationMap {
   public:
     explicit ElevationMap(const ElevationConfig& config);
 
-    /// Moves the window with the body and lets every remembered cell pay for the motion.
-    /// `relative_covariance`: of the motion since the last call, see `MotionEstimate`. If it is not
-    /// bounded (`MotionNoise::is_bounded`) nothing is known about where the cells are now: the map
-    /// is cleared. A pose that is not finite clears too.
+    /// Moves the window with the body and adds the uncertainty of the motion to every remembered
+    /// cell. `relative_covariance`: of the motion since the last call, see `MotionEstimate`. If it
+    /// is not bounded (`MotionNoise::is_bounded`), the position of the cells is unknown and the map
+    /// is cleared. A pose that is not finite clears the map too.
     void follow(const Pose& T_odom_body, const Matrix6& relative_covariance);
 
-    /// Fuses a depth image taken at the pose last followed; every cell takes one measurement at
-    /// most.
+    /// Fuses a depth image taken at the pose of the last `follow`. Each cell takes at most one
+    /// measurement.
     FusionCounts add(const camera::RectifiedRig& rig,
                      const Pose& T_odom_body,
                      const DepthImage& depth,
@@ -57,14 +57,14 @@ class ElevationMap {
                             const Pose& T_odom_body,
                             std::int64_t time_ns,
                             Executor& executor = serial());
-    /// Fills unknown cells, and them alone, from an earlier map that lies in this odom; how many.
+    /// Fills only unknown cells, from an earlier map in this odom. Returns the number of filled
+    /// cells.
     ///
-    /// A remembered map is as good as the pose that places it: `placement_covariance` is that of
-    /// the body at `T_odom_body` in the region's frame (right perturbation, see pose.hpp), and
-    /// every cell pays for it as for a motion. To it are added, whatever the caller states, the
-    /// floor of the height variance and the horizontal variance of rounding to a cell
-    /// (resolution^2 / 12 along each axis). `seen_ns` of the cells is 0: other clocks mean
-    /// nothing here. Allocates; not for every frame.
+    /// A remembered map is as accurate as its placement. `placement_covariance` belongs to the body
+    /// at `T_odom_body` in the region's frame (right perturbation, see pose.hpp). It blurs every
+    /// cell like a motion does. The floor of the height variance and the horizontal variance of
+    /// rounding to a cell (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells
+    /// becomes 0, because clocks differ. Allocates; do not call it for every frame.
     [[nodiscard]] Result<std::int64_t> insert(const grid::MapRegion& region,
                                               const Pose& T_odom_body,
                                               const Matrix6& placement_covariance);
@@ -73,14 +73,14 @@ class ElevationMap {
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
-    /// The highest surface of each cell in odom, as it is to be shown and rated: `height_m`, or the
-    /// top of a thing that stands on known ground and was seen in two frames. `height_m` stays the
-    /// ground below it until enough frames contradict it, and `clearance_m` says how low the thing
-    /// begins. NaN = unknown. No allocation when `out_m` has the size of the map.
+    /// Writes the highest surface of each cell in odom, for display and rating: `height_m`, or the
+    /// top of an object that stands on known ground and was observed in two frames. `height_m`
+    /// stays the ground below the object until enough frames contradict it; `clearance_m` tells how
+    /// low the object begins. NaN = unknown. Does not allocate if `out_m` has the size of the map.
     void surface(grid::Layer& out_m) const { cells_.surface(out_m); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;
-    /// What the last frame said of the height drift.
+    /// Result of the height drift check of the last frame.
     [[nodiscard]] const HeightDriftReport& height_drift() const noexcept { return height_drift_; }
 
   private:
@@ -92,13 +92,13 @@ class ElevationMap {
                       std::int64_t time_ns,
                       Executor& executor,
                       FusionCounts& counts);
-    /// Moves old cells by what the height has drifted, if the frame can tell.
+    /// Corrects the height of old cells by the drift, if the frame shows the drift.
     void align_heights(const Pose& T_odom_body,
                        const Eigen::Vector3d& camera_m,
                        Executor& executor);
     void reduce_block(int block);
     void reduce_row(int iy, CellMeasurement* measured) const;
-    /// Where a row is reduced to: its own place where heights are aligned, else its block's.
+    /// Output of the reduction of a row: its own cells if heights are aligned, else its block's.
     CellMeasurement* measurements_of_row(int iy);
     void fuse_block(int block, const ExpectedPoints* expected, const FrameObservation& look);
 
@@ -111,7 +111,7 @@ class ElevationMap {
     DepthSampler sampler_;
     CellSamples samples_;
     CellGroups groups_;
-    /// A row of cells per block; all cells where heights are aligned.
+    /// One row of cells per block, or all cells if heights are aligned.
     std::vector<CellMeasurement> measured_;
     VisibilityCleanup sight_;
     float lowest_z_m_ = 0.0F;                 ///< of this frame: the lower height cut in odom

@@ -19,8 +19,8 @@ Pose body_at(double x_m, double y_m, double z_m = 1.0) {
     return {Eigen::Quaterniond::Identity(), {x_m, y_m, z_m}};
 }
 
-/// Points on a lattice of 5 mm over a square of flat ground, as a sensor in the body's origin sees
-/// them from `T_odom_body`.
+/// Points on a lattice of 5 mm over a square of flat ground, as measured from `T_odom_body` by a
+/// sensor in the body's origin.
 std::vector<MeasuredPoint> flat_patch(
     const Pose& T_odom_body, double x_m, double y_m, double z_m, float sigma_m = 0.005F) {
     std::vector<MeasuredPoint> points;
@@ -125,7 +125,8 @@ TEST(ElevationMap, RememberedCellsPayForEveryMotionAndSeenOnesDoNot) {
     const double height_var_m2 =
         2.5e-5 + kFrames * 1e-6 * (1.0 + 1.9875 * 1.9875 + 0.0125 * 0.0125);
     EXPECT_NEAR(sigma_at(map, -1.99, 0.01), std::sqrt(height_var_m2), 1e-5);
-    // Horizontally worst across the line of sight: 1 mm, roll 1 mrad * 1 m, yaw 2 mrad * 1.9875 m.
+    // Largest horizontal error, across the line of sight: 1 mm, roll 1 mrad * 1 m, yaw 2 mrad *
+    // 1.9875 m.
     const double drift_m = std::sqrt(kFrames * (1e-6 + 1e-6 + 4e-6 * 1.9875 * 1.9875));
     EXPECT_NEAR(at(map, map.layers().horizontal_drift_m, -1.99, 0.01), drift_m, 1e-5);
 
@@ -156,7 +157,7 @@ TEST(ElevationMap, StandingStillNeitherLowersTheVarianceNorPullsTheHeight) {
     map.add_points(flat_patch(T_odom_body, 1.0, 0.0, 0.0), {}, T_odom_body, 0);
     const float before_m = sigma_at(map, 1.01, 0.01);
     for (int frame = 1; frame <= 200;
-         ++frame) {  // 4 mm off, surer than before: still the same view
+         ++frame) {  // 4 mm off, smaller variance than before: still the same viewpoint
         map.add_points(
             flat_patch(T_odom_body, 1.0, 0.0, 0.004, 0.004F), {}, T_odom_body, frame * kFrame_ns);
     }
@@ -165,7 +166,8 @@ TEST(ElevationMap, StandingStillNeitherLowersTheVarianceNorPullsTheHeight) {
     EXPECT_EQ(map.layers().count.at(map.geometry().cell_at(1.01, 0.01)->ix,
                                     map.geometry().cell_at(1.01, 0.01)->iy),
               201U);
-    // Drift while standing is seen: the view replaces what has become less sure than it.
+    // Drift while standing counts: the observation replaces an estimate that has become less
+    // certain than the observation.
     Matrix6 covariance = Matrix6::Zero();
     covariance(2, 2) = 1e-4;
     map.follow(T_odom_body, covariance);
@@ -182,7 +184,7 @@ TEST(ElevationMap, NewViewsLowerTheVarianceDownToItsFloor) {
         map.add_points(
             flat_patch(T_odom_body, 1.0, 0.0, 0.0, 0.01F), {}, T_odom_body, view * kFrame_ns);
     }
-    EXPECT_NEAR(sigma_at(map, 1.01, 0.01), 0.01F / 2.0F, 1e-5F);  // four independent views
+    EXPECT_NEAR(sigma_at(map, 1.01, 0.01), 0.01F / 2.0F, 1e-5F);  // four independent viewpoints
     for (int view = 4; view < 40; ++view) {
         const Pose T_odom_body = body_at(0.006 * view, 0);
         map.add_points(
@@ -246,7 +248,7 @@ TEST(ElevationMap, GroundBelowTheHeightCutIsADropAndNoHeight) {
     map.add_points(deep, {}, T_odom_body, 1);
     EXPECT_EQ(map.known_cells(), 0);
     EXPECT_EQ(at(map, map.layers().free_above_m, 1.01, 0.01), -2.0F);
-    // What is known stays known: the map does not take a mirrored lamp for a pit.
+    // A known cell stays known: the map does not take the mirror image of a lamp for a pit.
     map.add_points(flat_patch(T_odom_body, 1.0, 0.0, 0.0), {}, T_odom_body, 2);
     for (int time_ns = 3; time_ns < 9; ++time_ns) map.add_points(deep, {}, T_odom_body, time_ns);
     EXPECT_EQ(height_at(map, 1.01, 0.01), 0.0F);
@@ -254,8 +256,8 @@ TEST(ElevationMap, GroundBelowTheHeightCutIsADropAndNoHeight) {
 }
 
 TEST(ElevationMap, LinesOfSightShowDropsAsSurelyAsTheirEndsAreKnown) {
-    // From 1 m up, half the lines to a patch 2 m ahead and 0.6 m below the floor are 0.2 m below it
-    // at 1.5 m. Whose end may as well lie 0.9 m higher says nothing of a drop.
+    // From 1 m up, half the lines to a patch 2 m ahead and 0.6 m below the floor are 0.2 m below
+    // the floor at 1.5 m. A ray endpoint that may lie 0.9 m higher is no evidence of a drop.
     const Pose T_odom_body = body_at(0, 0);
     constexpr double kEnd_m = -0.6;
     const auto line_m = [](double end_m) { return static_cast<float>(1.0 - 0.75 * (1.0 - end_m)); };
@@ -273,13 +275,14 @@ TEST(ElevationMap, LinesOfSightShowDropsAsSurelyAsTheirEndsAreKnown) {
 }
 
 TEST(ElevationMap, WrongMatchesThatNoOtherLookAgreesWithShowNoDrop) {
-    // As sure as any, each somewhere else: the same lines of sight as those of a lower floor.
+    // Each wrong match has a small sigma and another position; the lines of sight equal those of a
+    // lower floor.
     const Pose T_odom_body = body_at(0, 0);
     ElevationMap map(exact_config());
     for (int i = 0; i < 6; ++i)
         map.add_points(flat_patch(T_odom_body, 1.8 + 0.15 * i, 0.0, -0.6), {}, T_odom_body, i);
     EXPECT_TRUE(std::isnan(at(map, map.layers().free_above_m, 1.51, 0.01)));
-    // Nor does one in a cell whose height others agreed on.
+    // A wrong match in a cell with an agreed height shows no drop either.
     const auto floor = flat_patch(T_odom_body, 2.3, 0.0, 0.0);
     for (int i = 0; i < 3; ++i) map.add_points(floor, {}, T_odom_body, 6 + i);
     const float over_floor_m = at(map, map.layers().free_above_m, 1.51, 0.01);
@@ -338,12 +341,12 @@ TEST(ElevationMap, ConfigurationDescribesItself) {
         << *config.problem();
 }
 
-/// A machine that moves 0.1 m between its looks, so that each of them counts; its camera is 1 m
+/// A machine that moves 0.1 m between its observations, so each of them counts; its camera is 1 m
 /// over the ground.
 class Overhead : public ::testing::Test {
   protected:
-    /// At a patch of ground, and at one where the lines of sight through the patch at `through_m`
-    /// end.
+    /// Observes a patch of ground, and a patch where the lines of sight through the first patch at
+    /// `through_m` end.
     void look(double z_m, std::optional<double> through_m = {}) {
         const Pose T_odom_body = body_at(0.1 * observations_ - 0.5, 0.0);
         const Eigen::Vector3d& camera_m = T_odom_body.translation_m;

@@ -4,15 +4,15 @@
 namespace surefoot {
 namespace {
 
-/// RGB-D cameras bring the Kinect's error model unless the user chose one.
+/// Selects the Kinect error model for RGB-D cameras unless the user chose a model.
 void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
     auto& model = settings.pipeline.elevation.sensor.model;
     if (!rig.right && model == elevation::SensorModel::matcher)
         model = elevation::SensorModel::kinect;
 }
 
-/// Where base_link stands over its own ground, and how fast it can move, is known from the machine
-/// file, unless the user said otherwise.
+/// Takes the height of base_link over its ground and the speed limits from the machine file. Values
+/// that the user set stay.
 void expect_machine(const std::optional<io::MachineFile>& machine, Settings& settings) {
     if (!machine) return;
     const auto unless_set = [](double& value, double known) {

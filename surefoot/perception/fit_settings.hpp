@@ -9,12 +9,12 @@
 
 namespace surefoot {
 
-/// What the camera and the machine file know goes into settings that the user left alone.
+/// Fills settings that the user did not set with values of the camera and the machine file.
 void fit_settings(const camera::StereoRig& rig,
                   const std::optional<io::MachineFile>& machine,
                   Settings& settings);
 
-/// The rig; where it does not say how the camera is mounted, with the mount of the machine.
+/// Returns `rig`. If it does not state its mounting, the result has the mounting of the machine.
 [[nodiscard]] camera::StereoRig mounted_rig(const camera::StereoRig& rig,
                                             const std::optional<io::MachineFile>& machine);
 

@@ -61,8 +61,8 @@ Status apply_overrides(const SettingsRequest& request,
                        const io::DescribeConfig& describe,
                        io::Notes* notes) {
     if (!request.config_file.empty()) {
-        // A settings file that cannot be read is a wrong call, as a wrong key in it is.
-        if (auto status = io::read_config(request.config_file, describe, notes); !status)
+        // An unreadable settings file is a usage error, like a wrong key in the file.
+        if (auto status = io::read_config(request.config_file, describe); !status)
             return usage_error(status.error().message);
     }
     for (const std::string& setting : request.overrides) {

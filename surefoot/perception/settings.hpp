@@ -23,24 +23,22 @@ struct Settings {
     pipeline::PipelineConfig pipeline;
     eval::EvalMapsConfig maps;
     eval::M3c2Config m3c2;
-    sim::SceneOptions sim;          ///< how simulated scenes are seen
-    sim::LaserScannerConfig laser;  ///< and scanned
-    io::CameraConfig live;          ///< how live cameras are used
+    sim::SceneOptions sim;          ///< rendering of simulated scenes
+    sim::LaserScannerConfig laser;  ///< laser scanner in simulated scenes
+    io::CameraConfig live;          ///< live cameras
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Where settings come from. Later sources win: defaults, preset, file, overrides.
+/// Sources of the settings. A later source wins: defaults, preset, file, overrides.
 struct SettingsRequest {
     std::string preset;                  ///< of traversability, see traversability::kPresetNames
     std::string config_file;             ///< YAML, as `surefoot config` writes it
     std::vector<std::string> overrides;  ///< "elevation.resolution_m=0.02"
 };
 
-/// The settings, checked. Every problem is a usage error that names file, line, key and limit.
-/// `notes`, if given, receives a sentence for each key that has a new name.
-[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {},
-                                             io::Notes* notes = nullptr);
+/// Loads and checks the settings. Each problem is a usage error with file, line, key and limit.
+[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {});
 /// Applies the file and the overrides of `request` to a configuration object.
 [[nodiscard]] Status apply_overrides(const SettingsRequest& request,
                                      const io::DescribeConfig& describe,
@@ -48,7 +46,7 @@ struct SettingsRequest {
 /// Hash of every setting. The map snapshot and each verdict carry it.
 [[nodiscard]] std::uint64_t hash_of(const Settings& settings);
 
-/// An executor on this many threads; 0 = one for each core of the computer.
+/// Returns an executor with this many threads; 0 = one per core of the computer.
 [[nodiscard]] std::unique_ptr<Executor> make_executor(int threads = 0);
 /// Steady clock for stage times [ns].
 [[nodiscard]] std::int64_t steady_now_ns();

@@ -6,8 +6,8 @@
 namespace surefoot {
 namespace {
 
-/// Looks a while whether there is something to do before a thread goes to sleep: to wake it takes
-/// longer than many a piece of work. Whoever else wants the processor gets it meanwhile.
+/// Polls `ready` for a while before the thread sleeps: waking a thread takes longer than many work
+/// items. The loop yields the processor to other threads.
 template <typename Ready>
 void look_a_while(const Ready& ready) {
     constexpr int kLooks = 100;

@@ -13,9 +13,9 @@
 
 namespace surefoot {
 
-/// Executor on `threads` threads, the calling one included. A call from within another (nested, or
-/// from a second thread) runs on its own thread alone. When a piece of work throws, the pieces that
-/// have begun are finished, the rest is left out, and the call rethrows the first exception.
+/// Executor with `threads` threads, the caller included. A call during another call (nested, or
+/// from a second thread) runs on its own thread only. If an item throws, the items already started
+/// finish, the others do not run, and the call rethrows the first exception.
 class ThreadPool final : public Executor {
   public:
     explicit ThreadPool(int threads);
@@ -35,10 +35,10 @@ class ThreadPool final : public Executor {
     std::mutex mutex_;
     std::condition_variable wake_;
     std::condition_variable done_;
-    const std::function<void(int)>* work_ = nullptr;  ///< null when no call is under way
+    const std::function<void(int)>* work_ = nullptr;  ///< null while no call runs
     int count_ = 0;
     int next_ = 0;
-    // Changed with the mutex held; looked at without it.
+    // Written with the mutex held; read without the mutex.
     std::atomic<int> running_ = 0;
     std::atomic<int> calls_ = 0;
     bool stopping_ = false;

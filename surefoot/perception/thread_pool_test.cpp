@@ -29,7 +29,7 @@ TEST(ThreadPool, CallsEachIndexOnce) {
 
 TEST(ThreadPool, ReturnsOnlyWhenAllIsDone) {
     ThreadPool pool(3);
-    for (int round = 0; round < 3000; ++round) {  // short jobs: workers wake late, or never
+    for (int round = 0; round < 3000; ++round) {  // short jobs: workers wake late or not at all
         std::atomic<int> done = 0;
         pool.parallel_for(4, [&](int) { done.fetch_add(1, std::memory_order_relaxed); });
         ASSERT_EQ(done.load(), 4) << "round " << round;
@@ -39,7 +39,7 @@ TEST(ThreadPool, ReturnsOnlyWhenAllIsDone) {
 TEST(ThreadPool, UsesMoreThanOneThread) {
     ThreadPool pool(2);
     std::atomic<int> arrived = 0;
-    // Each piece waits for the other: one thread alone would never return.
+    // Each item waits for the other item, so a single thread would never return.
     pool.parallel_for(2, [&](int) {
         ++arrived;
         while (arrived.load() < 2) std::this_thread::yield();

@@ -10,14 +10,16 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Of the known height: far more than a mount or a kerb brings about.
+/// Largest accepted difference, as a share of the known height. No mount and no kerb explains so
+/// much.
 constexpr double kMostHeightShare = 0.35;
 
-/// Rotation that takes `up_body` to odom z and keeps the heading of base_link at zero yaw.
+/// Returns the rotation that turns `up_body` to odom z and keeps the heading of base_link at zero
+/// yaw.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     const Eigen::Vector3d z = up_body.normalized();
     Eigen::Vector3d x = Eigen::Vector3d::UnitX() - z.x() * z;
-    // A base_link that looks straight up or down has no heading: take its y axis instead.
+    // If base_link points straight up or down, its x axis has no heading. Use its y axis instead.
     if (x.norm() < 1e-3) x = Eigen::Vector3d::UnitY().cross(z);
     x.normalize();
     Eigen::Matrix3d R_odom_body;
@@ -31,7 +33,7 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// What hinders the best plane of a search.
+/// Returns the text that names the obstacle to the best plane of a search.
 const char* obstacle(ground::GroundReason reason) {
     switch (reason) {
         case ground::GroundReason::rough: return ", too uneven for a plane";
@@ -40,7 +42,7 @@ const char* obstacle(ground::GroundReason reason) {
     }
 }
 
-/// Why there is no plane, and what helps.
+/// Returns the text that says why there is no plane, and what helps.
 std::string without_plane(ground::CalibrationReason reason, const GroundView& look) {
     if (reason == ground::CalibrationReason::disagreement)
         return fmt::format(
@@ -49,7 +51,7 @@ std::string without_plane(ground::CalibrationReason reason, const GroundView& lo
             to_string(reason));
     if (look.searched)
         return fmt::format(
-            "ground plane: {}: tilt 0-{:.0f} deg is searched; {:.0f} % of the image looks like "
+            "ground plane: {}: tilt 0-{:.0f} deg was searched; {:.0f} % of the image looks like "
             "floor{}: point the camera lower so that more level floor is in view of the first "
             "frames, or give mount.pitch_deg or a machine file",
             to_string(reason),
@@ -57,8 +59,8 @@ std::string without_plane(ground::CalibrationReason reason, const GroundView& lo
             100.0 * look.image_share,
             obstacle(look.reason));
     return fmt::format(
-        "ground plane: {}: let more level floor be in view of the first frames, or give a machine "
-        "file with the height and pitch of the mount, or set mount.pitch_deg (and "
+        "ground plane: {}: show more level floor in the first frames, or give a machine file with "
+        "the height and pitch of the mount, or set mount.pitch_deg (and "
         "ground.expected_height_m, of base_link)",
         to_string(reason));
 }
@@ -67,7 +69,8 @@ std::string sightings(const ground::GroundAlignment& ground) {
     return fmt::format("{} sightings agree, {} do not", ground.agreeing, ground.rejected);
 }
 
-/// Up by whatever tells it; fills the source, the uncertainty and the reason.
+/// Finds the up direction from the available sources; sets the source, the uncertainty and the
+/// reason.
 Direction find_up(const AlignmentConfig& config,
                   const ground::GroundAlignment& ground,
                   const std::optional<Direction>& up_imu,
@@ -102,20 +105,21 @@ Direction find_up(const AlignmentConfig& config,
         alignment.tilt_sigma_rad = up.sigma_rad();
         alignment.reason = fmt::format(
             "tilt and height from the ground plane, {}{}; the plane itself is known within "
-            "{:.2f} deg, but nothing tells its slope: 1 sigma of the vertical {:.1f} deg, which "
-            "the gate takes off its tilt limit (an IMU would tell)",
+            "{:.2f} deg, but its slope is unknown: 1 sigma of the vertical {:.1f} deg, which the "
+            "gate subtracts from its tilt limit (an IMU measures the vertical)",
             sightings(ground),
-            look.searched ? fmt::format(" (mount not known: tilt 0-{:.0f} deg was searched, {:.0f} "
-                                        "% of the image is ground)",
-                                        look.search_down_deg,
-                                        100.0 * look.image_share)
-                          : "",
+            look.searched
+                ? fmt::format(" (mounting unknown: tilt 0-{:.0f} deg was searched, {:.0f} "
+                              "% of the image is ground)",
+                              look.search_down_deg,
+                              100.0 * look.image_share)
+                : "",
             kDegPerRad * normal.sigma_rad(),
             kDegPerRad * alignment.tilt_sigma_rad);
     } else {
         alignment.reason = fmt::format(
-            "tilt assumed from mount.pitch_deg = {:.1f}, and the gate answers ERROR on such a map: "
-            "no accelerometer at rest; {}",
+            "tilt assumed from mount.pitch_deg = {:.1f}, so the gate answers ERROR on"
+            " this map: no accelerometer at rest; {}",
             config.pitch_deg,
             without_plane(ground.reason, look));
     }
@@ -125,17 +129,17 @@ Direction find_up(const AlignmentConfig& config,
 }  // namespace
 
 void AlignmentConfig::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "pitch_deg",
-        pitch_deg,
-        -90.0,
-        90.0,
-        "base_link looks this far below the horizon; used when neither plane nor IMU tells");
+    visitor.number("pitch_deg",
+                   pitch_deg,
+                   -90.0,
+                   90.0,
+                   "pitch of base_link below the horizon; used if neither plane nor IMU "
+                   "measures it");
     visitor.number("still_gyro_rad_s",
                    still_gyro_rad_s,
                    0.0,
                    1.0,
-                   "turning faster than this, the accelerometer is not taken for gravity");
+                   "above this turn rate the accelerometer does not measure gravity");
     visitor.number("still_force_m_s2",
                    still_force_m_s2,
                    0.0,
@@ -146,8 +150,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    max_lean_deg,
                    0.1,
                    45.0,
-                   "base_link may lean so far from how it stood at the start for long");
-    visitor.number("max_sway_deg", max_sway_deg, 0.1, 90.0, "farther than any gait leans");
+                   "largest lasting lean of base_link against its first attitude");
+    visitor.number("max_sway_deg", max_sway_deg, 0.1, 90.0, "lean beyond any gait");
     visitor.number("max_lean_before_step_deg",
                    max_lean_before_step_deg,
                    0.1,
@@ -158,24 +162,24 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    max_lean_walking_s,
                    0.1,
                    600.0,
-                   "longest lean in all without having stood upright");
-    visitor.number("wait_for_exposure_s",
-                   wait_for_exposure_s,
+                   "longest total lean without an upright phase");
+    visitor.number("wait_for_light_s",
+                   wait_for_light_s,
                    0.0,
                    600.0,
-                   "frames too bright or too dark are waited out so long before odom is placed");
+                   "longest wait for well-exposed frames before odom is placed");
     visitor.number("wait_for_ground_s",
                    wait_for_ground_s,
                    0.0,
                    600.0,
-                   "so long the ground is looked for where nothing else tells gravity and "
+                   "longest search for the ground if nothing else gives gravity and "
                    "ground.expected_height_m is known");
     visitor.number("wait_for_search_s",
                    wait_for_search_s,
                    0.0,
                    10.0,
-                   "so long it is looked for where nobody says how the camera is mounted; if none "
-                   "is found, odom is placed by the first frames all the same");
+                   "longest search for the ground if the mounting of the camera is unknown; "
+                   "without ground, the first frames place odom");
 }
 
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
@@ -202,14 +206,14 @@ Alignment place_odom(const AlignmentConfig& config,
     const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
     if (alignment.has_ground && expected_height_m > 0.0 &&
         off_m > kMostHeightShare * expected_height_m) {
-        // Everything else would be off by as much, and nothing else shows it.
+        // All lengths would be wrong by the same factor, and nothing else reveals it.
         alignment.gravity_source = grid::GravitySource::assumed;
         alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(
-            "the ground lies {:.2f} m below base_link, {:.2f} m are known "
-            "(ground.expected_height_m, from the machine file; limit {:.0f} % off): the rig's "
-            "baseline or focal length is wrong, or the machine file, or no near ground is in view; "
-            "the gate answers ERROR on such a map",
+            "the ground lies {:.2f} m below base_link, but {:.2f} m are expected "
+            "(ground.expected_height_m, from the machine file; limit {:.0f} % off): "
+            "check the rig's baseline, its focal length and the machine file, and "
+            "show near ground; the gate answers ERROR on this map",
             alignment.ground_height_m,
             expected_height_m,
             100.0 * kMostHeightShare);

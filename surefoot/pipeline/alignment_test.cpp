@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-/// Up in a base_link that is pitched down and rolled.
+/// Returns the up direction in a base_link that is pitched down and rolled.
 Eigen::Vector3d up_in_body(double pitch_down_rad, double roll_rad) {
     const Eigen::Quaterniond R_odom_body =
         Eigen::Quaterniond(Eigen::AngleAxisd(pitch_down_rad, Eigen::Vector3d::UnitY()) *
@@ -29,7 +29,7 @@ ground::GroundAlignment plane(const Eigen::Vector3d& normal, double height_m) {
     return ground;
 }
 
-/// By an accelerometer that errs by 0.12 deg.
+/// Direction measured by an accelerometer with an error of 0.12 deg.
 Direction measured(const Eigen::Vector3d& up) {
     constexpr double kSigma_rad = 0.002;
     return {up, kSigma_rad * kSigma_rad * (Eigen::Matrix3d::Identity() - up * up.transpose())};
@@ -78,7 +78,7 @@ TEST(Alignment, says_how_sure_the_vertical_is) {
 TEST(Alignment, a_search_says_what_it_saw_and_what_to_do) {
     GroundView look{true, 60.0, 0.09, ground::GroundReason::few_inliers};
     const Alignment failed = place_odom({}, {}, std::nullopt, 0.0, look);
-    for (const char* words : {"tilt 0-60 deg is searched",
+    for (const char* words : {"tilt 0-60 deg was searched",
                               "9 % of the image looks like floor",
                               "point the camera lower",
                               "mount.pitch_deg"})
@@ -88,7 +88,7 @@ TEST(Alignment, a_search_says_what_it_saw_and_what_to_do) {
               std::string::npos);
     const Alignment found = place_odom({}, plane({0.0, 0.0, 1.0}, 1.0), std::nullopt, 0.0, look);
     EXPECT_EQ(found.gravity_source, grid::GravitySource::plane);
-    EXPECT_NE(found.reason.find("mount not known"), std::string::npos) << found.reason;
+    EXPECT_NE(found.reason.find("mounting unknown"), std::string::npos) << found.reason;
 }
 
 TEST(Alignment, a_ground_where_the_machine_cannot_stand_is_a_wrong_scale) {
@@ -119,7 +119,7 @@ TEST(Alignment, without_a_plane_stays_at_base_link_and_says_what_it_used) {
     EXPECT_EQ(assumed.gravity_source, grid::GravitySource::assumed);
     for (const char* advice : {"machine file", "mount.pitch_deg", "more level floor"})
         EXPECT_NE(assumed.reason.find(advice), std::string::npos) << assumed.reason;
-    // base_link looks 30 deg down: its x axis points below the horizon by that.
+    // base_link is pitched down by 30 deg, so its x axis points 30 deg below the horizon.
     const Eigen::Vector3d forward = assumed.T_odom_body.rotation * Eigen::Vector3d::UnitX();
     EXPECT_NEAR(std::asin(-forward.z()), 30 * kRadPerDeg, kRounding);
 }

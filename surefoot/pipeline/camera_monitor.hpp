@@ -7,20 +7,20 @@
 
 namespace surefoot::pipeline {
 
-/// Turns how frames come in into a state of the camera: inhibits at once, releases slowly. A single
-/// bad frame is left out and changes nothing; what ages meanwhile is seen by its stamp. A camera
-/// that sends nothing at all is seen by the age of its last frame, too: nobody calls a monitor
-/// then.
+/// Derives the state of the camera from the status of its frames: a bad state starts after
+/// kBadFrames, and ends only after kFreshFrames. A single bad frame changes nothing. This monitor
+/// runs only when a frame arrives. If no frame arrives, the gate detects the fault by the age of
+/// the last frame.
 class CameraMonitor {
   public:
-    /// Images in a row that bring nothing new, nothing whole or nothing to see: two, as hazard H1
-    /// says.
+    /// Consecutive images that are repeated, damaged, too bright or too dark and start a bad state:
+    /// two, as hazard H1 requires.
     static constexpr int kBadFrames = 2;
-    /// New, whole and lit images in a row that end it. ASSUMPTION: three, 200 ms at 15 Hz, as long
-    /// as the gate believes an old frame.
+    /// Consecutive new, whole and well-exposed images that end a bad state. ASSUMPTION: three,
+    /// which is 200 ms at 15 Hz, as long as the gate accepts an old frame.
     static constexpr int kFreshFrames = 3;
 
-    /// Frames in the order in which they came; returns the state after this one.
+    /// Takes the frames in order of arrival. Returns the state after this frame.
     CameraState add(const FrameStatus& frame_status,
                     ExposureState light = ExposureState::well_exposed) noexcept;
     [[nodiscard]] CameraState state() const noexcept { return state_; }

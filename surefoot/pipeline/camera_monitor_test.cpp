@@ -9,9 +9,9 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// States after each frame of a script: n = new, r = repeated, t = torn, d = new behind one damaged
-/// image, D = new behind two, l = new and too light, x = new and dark; states: u(nknown), o(k),
-/// f(rozen), c(orrupt), l(ight), x = dark.
+/// States after each frame of a script. Frames: n = new, r = repeated, t = torn, d = new after one
+/// damaged image, D = new after two, l = new and overexposed, x = new and dark. States: u(nknown),
+/// o(k), f(rozen), c(orrupt), l = overexposed, x = dark.
 std::string states(std::string_view script) {
     CameraMonitor monitor;
     std::string result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pipeline does with frames whose image is repeated or torn. (Hazards H1 and H2.)
+// Handling of frames with a repeated or torn image by the pipeline (hazards H1 and H2).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,14 +18,14 @@ constexpr int kWidth = 160;
 constexpr int kHeight = 120;
 constexpr std::int64_t kPeriod_ns = 66'000'000;
 
-/// One metre above the ground, looking straight down.
+/// A camera one metre above the ground that points straight down.
 camera::StereoRig small_rig() {
     camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, 120.0);
     rig.T_body_left = Pose{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {0.0, 0.0, 1.0}};
     return rig;
 }
 
-/// Depth and motion as given: the machine moves `step_m` forward in each frame.
+/// A frame with known depth and motion: the machine moves `step_m` forward in each frame.
 StereoFrame moving_frame(int index, double step_m) {
     StereoFrame frame;
     frame.index = index;
@@ -66,7 +66,7 @@ TEST(ExposureState, AFrameInGlaringLightIsFollowedButNotFused) {
     EXPECT_EQ(snapshot.camera, CameraState::overexposed);
 }
 
-/// Hazards H3 and H20: frames come, the motion is known, and the depth of all pixels is no number.
+/// Hazards H3 and H20: frames arrive and the motion is known, but no pixel has a valid depth.
 TEST(Blind, AFrameThatMeasuresNothingIsNoLookAtTheGround) {
     Serial serial;
     auto pipeline = Pipeline::make({}, small_rig(), serial);
@@ -153,7 +153,7 @@ TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {
         1e-9);
 }
 
-/// Nothing is marked: the pipeline compares the images itself.
+/// The source marks no frame: the pipeline compares the images itself.
 TEST(Watching, AnOldImageIsSeenByThePipeline) {
     Serial serial;
     auto pipeline = Pipeline::make({}, small_rig(), serial);

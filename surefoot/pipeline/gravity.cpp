@@ -16,7 +16,7 @@ constexpr double kGravity_m_s2 = 9.81;
 
 using Basis = Eigen::Matrix<double, 3, 2>;
 
-/// Two unit vectors across a direction and across each other.
+/// Returns two unit vectors that are perpendicular to the direction and to each other.
 Basis across(const Eigen::Vector3d& unit) {
     Basis basis;
     basis.col(0) = unit.unitOrthogonal();
@@ -28,7 +28,7 @@ double square(double x) {
     return x * x;
 }
 
-/// One kind of floor after the measurement, in the plane across the accelerometer's up.
+/// Posterior of one kind of floor, in the plane across the accelerometer's up direction.
 struct Update {
     double log_weight = 0.0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -55,7 +55,7 @@ Update update_with(double share,
 struct Force {
     Eigen::Vector3d mean_m_s2 = Eigen::Vector3d::Zero();
     double mean_gyro_rad_s = 0.0;
-    /// Half of what the mean changed from the first half of the samples to the second.
+    /// Half of the change of the mean between the first and the second half of the samples.
     double moved_m_s2 = 0.0;
 };
 
@@ -103,8 +103,8 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    sloped_floor_deg,
                    0.001,
                    20.0,
-                   "one sigma of the slope of all other floors; without an accelerometer the "
-                   "vertical is known no better");
+                   "one sigma of the slope of all other floors, and of the vertical without "
+                   "an accelerometer");
     visitor.number("sloped_share",
                    sloped_share,
                    0.001,
@@ -123,8 +123,8 @@ std::optional<Direction> up_from_imu(const GravityConfig& config,
     const bool still =
         force->mean_gyro_rad_s <= still_gyro_rad_s && std::abs(excess_m_s2) <= still_force_m_s2;
     if (!still) return std::nullopt;
-    // The bias along gravity is measured: one sample of the spread of all three. The setting
-    // counts as three more.
+    // The length of the force measures the bias along gravity: one sample of the spread of all
+    // three axes. The setting counts as three more samples.
     constexpr double kPriorSamples = 3.0;
     const double bias_var = (kPriorSamples * square(config.accel_bias_m_s2) + square(excess_m_s2)) /
                             (kPriorSamples + 1.0);
@@ -155,7 +155,7 @@ FusedUp fuse_up(const GravityConfig& config, const Direction& normal, const Dire
     const Update level = with(1.0 - config.sloped_share, config.level_floor_deg);
     const Update sloped = with(config.sloped_share, config.sloped_floor_deg);
     FusedUp fused;
-    const double odds = sloped.log_weight - level.log_weight;  // far below 0: surely level
+    const double odds = sloped.log_weight - level.log_weight;  // far below 0: the floor is level
     fused.level_probability = 1.0 / (1.0 + std::exp(odds));
     const double p = fused.level_probability;
     const Eigen::Vector2d mean = p * level.mean + (1.0 - p) * sloped.mean;

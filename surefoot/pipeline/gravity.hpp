@@ -11,20 +11,20 @@
 
 namespace surefoot::pipeline {
 
-/// A direction in base_link and how sure it is.
+/// A direction in base_link with its uncertainty.
 struct Direction {
     Eigen::Vector3d unit_body = Eigen::Vector3d::UnitZ();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the unit vector [rad^2], rank 2
 
-    /// One sigma about any axis across the direction: the root of the mean of both variances.
+    /// One sigma about any axis across the direction: root of the mean of the two variances.
     [[nodiscard]] double sigma_rad() const;
 };
 
-/// What is known of the direction of gravity before a start.
+/// Prior knowledge about the direction of gravity before a start.
 ///
-/// The plane of the ground measures the floor, not gravity: between them lies the slope of the
-/// floor. Most floors are built level, some are ramps or fall to one side. The slope about each
-/// horizontal axis is therefore drawn from one of two normal distributions.
+/// The ground plane measures the floor, not gravity; the difference is the slope of the floor. Most
+/// floors are built level, some are ramps or fall to one side. The slope about each horizontal axis
+/// is therefore drawn from one of two normal distributions.
 struct GravityConfig {
     /// One sigma of the constant error of the accelerometer along each axis, alignment with the
     /// camera included. Calibrated MEMS parts keep 0.02; parts that were never calibrated err by
@@ -36,35 +36,35 @@ struct GravityConfig {
     /// The same for all other floors: 3.4 sigma reach the steepest ramp of the accessible building
     /// codes, 1:12. ASSUMPTION.
     double sloped_floor_deg = 1.4;
-    double sloped_share = 0.2;  ///< of the places where a run starts. ASSUMPTION
+    double sloped_share = 0.2;  ///< share of starts on sloped floors. ASSUMPTION
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Up as the accelerometer measures it while the rig stands still: nothing without samples, or
-/// while it turns faster than `still_gyro_rad_s` or its force is off 9.81 m/s^2 by more than
-/// `still_force_m_s2`. The uncertainty is that of a constant error, larger where the length of the
-/// force shows a larger one, and of what the direction changed between the first and the second
-/// half of the samples.
+/// Returns the up direction that the accelerometer measures while the rig stands still. Empty
+/// without samples, if the rig turns faster than `still_gyro_rad_s`, or if the force differs from
+/// 9.81 m/s^2 by more than `still_force_m_s2`. The uncertainty covers a constant error, which grows
+/// if the length of the force shows a larger one, and the change of direction between the two
+/// halves of the samples.
 [[nodiscard]] std::optional<Direction> up_from_imu(const GravityConfig& config,
                                                    double still_gyro_rad_s,
                                                    double still_force_m_s2,
                                                    const Pose& T_body_imu,
                                                    std::span<const StereoFrame> frames);
 
-/// Up where nothing but the plane of the ground is known: its normal. Nothing tells a level floor
-/// from a ramp, so that the uncertainty is that of sloped floors.
+/// Returns the up direction if only the ground plane is known: its normal. The plane alone cannot
+/// distinguish a level floor from a ramp, so the uncertainty is that of sloped floors.
 [[nodiscard]] Direction up_from_plane(const GravityConfig& config, const Direction& normal);
 
-/// Up from both, and how likely the floor is one that was built level.
+/// Up direction from both sources, and the probability that the floor was built level.
 struct FusedUp {
     Direction up;
     double level_probability = 0.0;
 };
 
-/// Bayes' rule for the two kinds of floor, both of them linear and normal (a mixture of two Kalman
-/// updates, put together by its first two moments): the plane corrects the accelerometer's constant
-/// error on a floor that may be level, and has hardly a say on a ramp.
+/// Fuses the two sources by Bayes' rule over the two kinds of floor. Each kind is a linear Kalman
+/// update; their mixture is reduced to its first two moments. On a probably level floor, the plane
+/// corrects the accelerometer's constant error; on a ramp, the plane has little weight.
 [[nodiscard]] FusedUp fuse_up(const GravityConfig& config,
                               const Direction& normal,
                               const Direction& up_imu);

@@ -20,7 +20,7 @@ Direction direction(const Eigen::Vector3d& unit, double sigma_rad) {
     return {unit, sigma_rad * sigma_rad * (Eigen::Matrix3d::Identity() - unit * unit.transpose())};
 }
 
-/// The z axis leant by small angles about x and y.
+/// Returns the z axis, tilted by small angles about x and y.
 Eigen::Vector3d leant(double about_x_deg, double about_y_deg) {
     return exp_so3({about_x_deg * kRadPerDeg, about_y_deg * kRadPerDeg, 0.0}) *
            Eigen::Vector3d::UnitZ();
@@ -30,7 +30,7 @@ double between_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b)) / kRadPerDeg;
 }
 
-/// Of two unknowns.
+/// NEES of a direction, which has two unknowns.
 double nees(const Direction& found, const Eigen::Vector3d& truth) {
     Eigen::Matrix<double, 3, 2> across;
     across.col(0) = found.unit_body.unitOrthogonal();
@@ -45,8 +45,8 @@ struct Outcome {
     double sigma_deg = 0.0;
 };
 
-/// Many starts: an accelerometer with a drawn bias, and a plane with an error of 0.1 deg, on floors
-/// whose slope about x and y `slope_deg(rng)` draws.
+/// Many starts: an accelerometer with a random bias, and a plane with an error of 0.1 deg, on
+/// floors whose slope about x and y comes from `slope_deg(rng)`.
 template <typename Slope>
 Outcome many_starts(const Slope& slope_deg) {
     constexpr int kStarts = 4000;
@@ -75,14 +75,14 @@ Outcome many_starts(const Slope& slope_deg) {
 TEST(FuseUp, ALevelFloorCorrectsTheAccelerometer) {
     const auto level = [](Rng&) { return Eigen::Vector2d(0.0, 0.0); };
     const Outcome outcome = many_starts(level);
-    // Alone the accelerometer errs by 0.117 deg about each axis, 0.146 deg on the average.
+    // The accelerometer alone errs by 0.117 deg about each axis, 0.146 deg on average.
     EXPECT_LT(outcome.mean_deg, 0.105);
     EXPECT_LT(outcome.sigma_deg, 0.10);
     EXPECT_LT(outcome.nees_per_unknown, 1.1);
 }
 
-/// A cross-fall of 1:50, a ramp of 2.9 deg, one of 1:12: taken for level they would lean the map
-/// by 20, 50 and 83 mm a metre.
+/// A cross-fall of 1:50, a ramp of 2.9 deg, a ramp of 1:12: if they counted as level, they would
+/// tilt the map by 20, 50 and 83 mm per metre.
 TEST(FuseUp, ASlopeIsNotTakenForLevel) {
     for (const double slope : {1.146, 2.9, 4.76}) {
         SCOPED_TRACE(slope);

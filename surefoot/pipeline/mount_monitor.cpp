@@ -9,12 +9,13 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Between two frames: above the noise of odometry, below any sway.
+/// Motion between two frames that still counts as standing: above the noise of odometry, below any
+/// sway.
 constexpr double kStanding_m = 1e-3;
 constexpr double kStanding_rad = 5e-4;
-/// A sway passes through the upright in less, a stand between two steps takes longer.
+/// A sway passes through the upright attitude in less time; a pause between two steps takes longer.
 constexpr double kHome_s = 1.0;
-/// Longer than the ringing after a foot strike.
+/// This is longer than the ringing after a foot strike.
 constexpr double kSway_s = 0.5;
 
 bool stands(const MotionEstimate& motion) {
@@ -30,7 +31,7 @@ void MountMonitor::compare(const Pose& T_odom_body, const Eigen::Vector3d& norma
     const Eigen::Vector3d by_ground = normal_body - normal_body_;
     const bool same = (by_odom - by_ground).norm() <= config_.max_lean_deg * kRadPerDeg;
     lean_rad_ = same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
-    // The plane of one frame is uncertain by some 0.1 deg: it need only take sides.
+    // The plane of one frame is uncertain by about 0.1 deg, so it only has to agree in direction.
     leans_ = by_odom.norm() > config_.max_lean_before_step_deg * kRadPerDeg &&
              by_ground.dot(by_odom) > 0.5 * by_odom.squaredNorm();
 }

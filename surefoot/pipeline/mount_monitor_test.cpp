@@ -18,8 +18,8 @@ Eigen::Quaterniond leaning(double roll_deg, double pitch_deg) {
            Eigen::AngleAxisd(roll_deg * kRadPerDeg, Eigen::Vector3d::UnitX());
 }
 
-/// How the machine leans against gravity, how the camera leans on the machine, and how the ground
-/// leans, at a time; each as a rotation.
+/// Tilt of the machine against gravity, of the camera on the machine, and of the ground, at a time;
+/// each as a rotation.
 struct World {
     std::function<Eigen::Quaterniond(double)> machine;
     std::function<Eigen::Quaterniond(double)> knock;
@@ -30,8 +30,9 @@ Eigen::Quaterniond upright(double /*time_s*/) {
     return Eigen::Quaterniond::Identity();
 }
 
-/// A step in ten seconds as the simulated REX makes it: sways to both sides for 8.5 s and stands
-/// upright for the rest, while its frame still rings a little. Never at exact rest.
+/// One step in ten seconds, as the simulated REX makes it: it sways to both sides for 8.5 s and
+/// stands upright for the rest, while its frame still vibrates a little. It is never exactly at
+/// rest.
 Eigen::Quaterniond gait(double time_s, double sway_deg) {
     const double phase_s = std::fmod(time_s, 10.0);
     const double ringing_deg = 0.1 * std::sin(20.0 * time_s);
@@ -40,7 +41,7 @@ Eigen::Quaterniond gait(double time_s, double sway_deg) {
     return leaning(sway_deg * std::clamp(1.2 * swing, -1.0, 1.0) + ringing_deg, ringing_deg);
 }
 
-/// When the monitor says so, or nothing within a minute.
+/// Returns the time at which the monitor reports a moved mount, or nothing within a minute.
 std::optional<double> said_at_s(const World& world, const AlignmentConfig& config = {}) {
     MountMonitor monitor(config);
     Eigen::Quaterniond before = world.machine(0.0) * world.knock(0.0);
@@ -88,7 +89,7 @@ TEST(MountMonitor, AKnockIsSaidWithinFourSecondsOfRestOrTwoSteps) {
     EXPECT_LE(*hard, 12.7) << "farther than any gait";
 }
 
-/// Of a minute: when it leans first, and for how long in all.
+/// Leaning within a minute: its first time, and its total duration.
 struct Leaning {
     std::optional<double> first_s;
     double lasts_s = 0.0;
@@ -105,7 +106,7 @@ Leaning leaning_of(const World& world) {
         motion.T_odom_body.rotation = world.machine(time_s) * world.knock(time_s);
         GroundObservation plane;
         plane.accepted = true;
-        // What a plane of one frame is off by, from side to side.
+        // Error of the plane of one frame, to alternating sides.
         const Eigen::Quaterniond wrong = leaning(i % 2 == 0 ? 0.3 : -0.3, i % 3 == 0 ? 0.3 : -0.3);
         plane.normal = motion.T_odom_body.rotation.conjugate() *
                        (world.ground(time_s) * wrong * Eigen::Vector3d::UnitZ());
@@ -153,7 +154,7 @@ TEST(MountMonitor, SlopesAndDriftLeanAloneAndAreNoKnock) {
     EXPECT_FALSE(said_at_s({from(10.0, ramp), upright, from(10.0, ramp)})) << "square to it";
     EXPECT_FALSE(said_at_s({from(10.0, leaning(2.0, 0.0)), upright, from(10.0, ramp)}))
         << "both lean, but not by the same turn";
-    // The odometry leans, and the ground seems to lean with it.
+    // The odometry tilts, and the ground seems to tilt with it.
     const Eigen::Quaterniond drift = leaning(1.5, 1.0);
     EXPECT_FALSE(said_at_s({from(10.0, drift), upright, from(10.0, drift)}));
 }

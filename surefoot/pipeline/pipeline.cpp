@@ -16,10 +16,10 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// The second round takes away what interpolated rows hide from the first.
+/// The second round removes errors that interpolated rows hide from the first round.
 constexpr int kSelfCalibrationRounds = 2;
-constexpr int kSelfCalibrationRows_px = 6;  ///< farthest that rows are looked for
-constexpr std::uint64_t kGroundSeed = 1;    ///< the same points always give the same plane
+constexpr int kSelfCalibrationRows_px = 6;  ///< search range of rows
+constexpr std::uint64_t kGroundSeed = 1;    ///< equal points always give the same plane
 
 /// Measures the stages of one frame; without a clock all times are zero.
 class StageTimer {
@@ -138,7 +138,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
         T_odom_first_body ? known_alignment(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
     tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
-    feature_tracker_.forget();  // odom is another one
+    feature_tracker_.forget();  // odom is a new frame
     mirror_watch_.forget();
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
@@ -160,7 +160,7 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
     odometry::Odometry scout(config_.odometry, *rectifier_);
     scout.start_at(Pose{});
     ground::GroundConfig wanted = config_.ground;
-    // A source of a few frames has no more to show: all of them must agree then.
+    // A source of a few frames has no more to show, so all of them must agree.
     wanted.min_agreeing = std::clamp(static_cast<int>(first_frames.size()), 1, wanted.min_agreeing);
     ground::GroundCalibration calibration(wanted);
     for (const StereoFrame& frame : first_frames) {
@@ -188,7 +188,7 @@ bool Pipeline::is_mount_unknown() const {
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
     std::vector<stereo::CornerShift> corners;
-    // First, middle and last one: neighbours show the same.
+    // First, middle and last frame, because neighbours show the same scene.
     const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
@@ -213,7 +213,7 @@ bool Pipeline::see_with(const camera::StereoRig& rig) {
 }
 
 void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
-    if (self_calibration_) {  // of an earlier alignment
+    if (self_calibration_) {  // result of an earlier alignment
         see_with(nominal_rig_);
         self_calibration_.reset();
     }
@@ -334,14 +334,14 @@ const DepthImage& Pipeline::measure_depth(const StereoFrame& frame,
     return depth_;
 }
 
-/// The matcher's errors hang together over more.
+/// The matcher's errors are correlated over more pixels than this.
 constexpr int kGroundStep_px = 6;
 
 ground::GroundSighting Pipeline::observe_ground(const DepthImage& depth,
                                                 const Pose& T_level_body,
                                                 const Eigen::Vector3d& up_level) {
-    // The plane is looked for in base_link: its height is that of the machine, not of odom.
-    ground::sample_points(rectifier_->rig(), depth, kGroundStep_px, ground_points_);
+    // The plane is searched in base_link, because its height is that of the machine, not of odom.
+    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
 }
@@ -385,8 +385,15 @@ void Pipeline::hide_mirrored_ground() {
     specular::hide_behind(panes(), config_.specular, geometry, hidden_.view());
 }
 
-FusionCounts Pipeline::fuse(const DepthImage& depth, const MotionEstimate& motion) {
-    if (motion.health == Health::lost) return {};  // where would it go?
+void Pipeline::follow(const MotionEstimate& motion) {
+    map_.follow(motion.T_odom_body, motion.relative_covariance);
+    feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
+    if (motion.health == Health::lost) feature_tracker_.forget();
+    last_motion_ = motion;
+}
+
+FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
+    if (motion.health == Health::lost) return {};  // the pose is unknown
     const FusionCounts counts =
         map_.add(rectifier_->rig(), motion.T_odom_body, depth, motion.time_ns, *executor_);
     if (!shows_ground(counts, map_.geometry().resolution_m)) return counts;

@@ -33,7 +33,7 @@
 
 namespace surefoot::pipeline {
 
-/// The clock that stage times are read from [ns]; the library owns none. Null leaves them at zero.
+/// Clock for stage times [ns]; the library has no own clock. Null leaves the times at zero.
 using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
@@ -57,7 +57,7 @@ class Pipeline {
                                                Executor& executor,
                                                Clock clock = nullptr);
 
-    /// Most frames that `align` looks at; callers buffer no more.
+    /// Largest number of frames that `align` uses; callers buffer no more.
     static constexpr std::size_t kAlignmentFrames = 10;
 
     /// Corrects the right eye's calibration by the rows of the first frames (pair_trim.hpp), finds
@@ -73,7 +73,7 @@ class Pipeline {
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
-    /// Neither rig nor settings say how the camera is mounted.
+    /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
     /// What was corrected; nothing where the calibration fits or nothing could be said.
     [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
@@ -87,14 +87,14 @@ class Pipeline {
     /// What is rated and to be shown: the highest surface of each cell in odom, somebody who
     /// stepped onto mapped ground included (`ElevationMap::surface`). Allocates.
     [[nodiscard]] grid::Layer surface_m() const;
-    /// Edges, drops, stairs, followed over time, as of the last full frame.
+    /// Edges, drops and stairs, tracked over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
     /// Upright planes that are suspected to be mirrors or glass, in odom. The map knows what is
     /// seen in them; the snapshot hides it from the gate.
     [[nodiscard]] std::span<const specular::SuspectedPane> panes() const noexcept {
         return mirror_watch_.panes();
     }
-    /// The camera at the last frame.
+    /// View of the camera at the last frame.
     [[nodiscard]] stairs::View view() const;
     /// Rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
@@ -102,14 +102,14 @@ class Pipeline {
 
     /// base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
-    /// Which ground can be walked to from there, see Reachability. Allocates.
+    /// Ground that the machine can reach from its stance, see Reachability. Allocates.
     [[nodiscard]] grid::Layer reach_step_m() const;
-    /// What the ground is at each cell of the map, given its features. Allocates.
+    /// Ground class of each cell of the map, from the features. Allocates.
     [[nodiscard]] stairs::GroundClasses ground_classes() const;
-    /// Where a foot may stand, as of now. Allocates, takes milliseconds: not for every frame.
+    /// Present footholds. Allocates and takes milliseconds: do not call it for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 
-    /// What the gate may know, as of the last frame. An error leaves `out` not intact.
+    /// Writes the gate's input, as of the last frame. After an error, `out` is not intact.
     [[nodiscard]] Status snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const;
 
   private:
@@ -120,7 +120,7 @@ class Pipeline {
              Clock clock);
 
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
-    /// False, and nothing changed, when the rig cannot be rectified.
+    /// Returns false without changes if the rig cannot be rectified.
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
@@ -141,11 +141,10 @@ class Pipeline {
     [[nodiscard]] ground::GroundSighting observe_ground(const DepthImage& depth,
                                                         const Pose& T_level_body,
                                                         const Eigen::Vector3d& up_level);
-    /// Finds the ground without a hint of how the camera is mounted.
-    [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
-    /// Passes the plane to the tilt drift correction and, if a machine carries the camera and the
-    /// height of base_link is known, to the mount monitor.
-    void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
+    /// Searches the ground for a camera of unknown mounting.
+    [[nodiscard]] ground::GroundSighting search_ground();
+    /// Runs only if a machine carries the camera, so the height of base_link is known.
+    void watch_mount(FrameReport& report);
     [[nodiscard]] CameraState camera_state() const noexcept;
     /// Compares the floor with its own mirror images, where a level floor is in view.
     void watch_mirrors(const camera::RectifiedPair& pair,
@@ -172,13 +171,13 @@ class Pipeline {
     specular::MirrorWatch mirror_watch_;
     Image<std::uint8_t> hidden_;  ///< cells of the map at and behind a suspected pane; may be empty
     traversability::Traversability rater_;
-    grid::Layer surface_m_;  ///< of the map, as rated last
+    grid::Layer surface_m_;  ///< surface of the map at the last rating
     traversability::TraversabilityLayers rating_;
     stairs::FeatureFinder feature_finder_;
     stairs::FeatureTracker feature_tracker_;
-    stairs::TerrainFeatures found_features_;  ///< by the last look alone
+    stairs::TerrainFeatures found_features_;  ///< features of the last observation only
     stairs::TerrainFeatures features_;
-    stairs::Drift feature_drift_;                           ///< of the body, since that look
+    stairs::Drift feature_drift_;                           ///< body drift since `found_features_`
     Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the window rated last
     Alignment alignment_;
 

@@ -25,7 +25,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> PipelineConfig::problem() const {
     if (auto found = stereo.problem()) return found;
     if (auto found = elevation.problem()) return found;
-    // The gate's snapshot counts in 0.1 mm: a cell must be a whole number of them.
+    // The gate's snapshot counts in 0.1 mm, so a cell must be a whole number of 0.1 mm.
     const double tenths = elevation.resolution_m * 1e4;
     if (std::abs(tenths - std::round(tenths)) > 1e-6) {
         return fmt::format(

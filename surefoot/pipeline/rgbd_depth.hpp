@@ -7,10 +7,10 @@
 
 namespace surefoot::pipeline {
 
-/// A measured depth image (raw left camera, z in m, NaN = unknown) as the DepthImage of the
-/// rectified rig: nearest raw pixel, disparity = f b / z of the virtual baseline, sigma from the
-/// Kinect model of `sensor`. Depth outside the model's range (0.35-3 m) stays; the map's range
-/// filter decides.
+/// Converts a measured depth image (raw left camera, z in m, NaN = unknown) into the DepthImage of
+/// the rectified rig. It takes the nearest raw pixel, disparity = f b / z of the virtual baseline,
+/// and sigma from the Kinect model of `sensor`. Depth outside the model's range (0.35-3 m) is kept;
+/// the range filter of the map removes it.
 void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,
                      const Image<float>& depth_m,

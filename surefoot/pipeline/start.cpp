@@ -39,13 +39,14 @@ Start StartUp::take() {
     return {std::exchange(frames_, {}), waited_frames_};
 }
 
-/// As many frames as an alignment takes, all of them lit, or the wait for light is over.
+/// True if the window is full and all its frames are well exposed, or if the wait for light is
+/// over.
 bool StartUp::is_full() const {
     return window().size() >= Pipeline::kAlignmentFrames &&
            (lit_in_a_row_ >= Pipeline::kAlignmentFrames || waited_s() >= config_.wait_for_exposure_s);
 }
 
-/// True when odom is placed for good; otherwise the window has moved on.
+/// Returns true when odom is placed for good. Otherwise it moves the window on.
 bool StartUp::try_alignment(Pipeline& pipeline, bool more) {
     const double wait_s = ground_is_there_ ? config_.wait_for_ground_s
                           : searches_      ? config_.wait_for_search_s

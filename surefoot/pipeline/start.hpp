@@ -15,39 +15,39 @@
 
 namespace surefoot::pipeline {
 
-/// The next frame of a source in time order, nothing at its end.
+/// Returns the next frame of a source in time order, or nothing at its end.
 using NextFrame = std::function<std::optional<StereoFrame>()>;
 
 struct Start {
-    std::vector<StereoFrame> frames;  ///< the pipeline is aligned by them; they are to be processed
-    int waited_frames = 0;            ///< came before them and have no pose
+    std::vector<StereoFrame> frames;  ///< frames of the alignment, still to be processed
+    int waited_frames = 0;            ///< earlier frames, which have no pose
 };
 
-/// Collects frames until odom can be placed, and aligns the pipeline by them. The reference thesis
-/// (Lange 2016) took its ground plane from the first, over-exposed seconds in the sun and lost
-/// whole recordings by that. So the content of the images counts, not the time since the camera
+/// Collects frames until odom can be placed, and aligns the pipeline with them. The reference
+/// thesis (Lange 2016) took its ground plane from the first seconds, over-exposed by the sun, and
+/// lost whole recordings. So the content of the images counts, not the time since the camera
 /// started:
-/// * Frames too bright or too dark are skipped, for `mount.wait_for_exposure_s` at most.
-/// * Where neither ground nor accelerometer gave the vertical, the gate could never say OK. If the
-///   height of base_link over its ground is known, ground exists: the search goes on, five frames
-///   later each time, for `mount.wait_for_ground_s` at most.
-/// * Where nobody says how the camera is mounted, a hand may still be lifting it: the search goes
-///   on likewise, for `mount.wait_for_search_s` at most. A recording may show no ground at all, so
-///   the frames are kept, and the first of them place odom when no ground was found.
-/// Otherwise, when the source ends or the wait is over, the last frames place odom, whatever they
-/// show. Holds `Pipeline::kAlignmentFrames` frames at a time, and those that are kept.
+/// * Frames too bright or too dark are skipped, for `mount.wait_for_light_s` at most.
+/// * If neither ground nor accelerometer gives the vertical, the gate could never answer OK. If the
+///   height of base_link over its ground is known, the search goes on, five frames later each time,
+///   for `mount.wait_for_ground_s` at most.
+/// * If the mounting is unknown, a person may still be lifting the camera. The search goes on in
+///   the same way, for `mount.wait_for_search_s` at most. The frames are kept,
+///   because a recording may show no ground at all. In that case the first kept frames
+///   place odom.
+/// Otherwise, at the end of the source or of the wait, the last frames place odom in any case.
+/// Holds `Pipeline::kAlignmentFrames` frames at a time, plus the kept frames. Not thread-safe.
 ///
-/// Order of calls: `add` each frame in time order until it returns true, or `end` when the source
-/// ends before; then `take`. One thread at a time.
+/// Order of calls: `add` per frame in time order until true, or `end` at the end; then `take`.
 class StartUp {
   public:
-    /// `pipeline`: the one that `add` and `end` get. `T_odom_first_body`: see Pipeline::align.
+    /// `pipeline`: the one passed to `add` and `end`. `T_odom_first_body`: see Pipeline::align.
     explicit StartUp(const Pipeline& pipeline, const std::optional<Pose>& T_odom_first_body = {});
     /// True once the pipeline is aligned.
     [[nodiscard]] bool add(Pipeline& pipeline, StereoFrame frame);
-    /// No further frame will come: aligns the pipeline by the frames so far, if there are any.
+    /// Call this if no frame follows: aligns the pipeline with the frames so far, if any.
     void end(Pipeline& pipeline);
-    /// The frames to be processed. The object is empty afterwards.
+    /// Returns the frames to be processed. The object is empty afterwards.
     [[nodiscard]] Start take();
 
   private:
@@ -65,12 +65,12 @@ class StartUp {
     camera::FrameIntegrityCheck watch_;
     std::vector<StereoFrame> frames_;
     std::size_t kept_ = 0;  ///< number of `frames_` before the window
-    bool keeps_ = false;    ///< frames before the window stay, so that it can go back
+    bool keeps_ = false;    ///< frames before the window are kept
     std::size_t lit_in_a_row_ = 0;
     std::optional<std::int64_t> first_ns_;
     std::int64_t last_ns_ = 0;
     int waited_frames_ = 0;
-    std::optional<double> search_began_s_;  ///< none before the first alignment
+    std::optional<double> search_began_s_;  ///< empty before the first alignment
 };
 
 /// Drives a StartUp with the frames of a source.

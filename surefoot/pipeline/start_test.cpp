@@ -16,7 +16,7 @@ constexpr int kHeight = 120;
 constexpr double kFocal_px = 120.0;
 constexpr double kHeight_m = 1.0;
 
-/// One metre above the ground, 40 deg down.
+/// A camera one metre above the ground, pitched down by 40 deg.
 camera::StereoRig looking_down() {
     camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, kFocal_px);
     const Eigen::AngleAxisd pitch(40.0 * M_PI / 180.0, Eigen::Vector3d::UnitY());
@@ -25,8 +25,8 @@ camera::StereoRig looking_down() {
     return rig;
 }
 
-/// Disparity of a level floor, or of a wall two metres ahead that fills the view, for a base_link
-/// that leans.
+/// Depth image of a level floor, or of a wall two metres ahead that fills the view, for a tilted
+/// base_link.
 DepthImage depth_of(const camera::RectifiedRig& rig,
                     bool floor,
                     const Eigen::Quaterniond& lean = Eigen::Quaterniond::Identity()) {
@@ -49,7 +49,7 @@ DepthImage depth_of(const camera::RectifiedRig& rig,
     return depth;
 }
 
-/// What the frames of a source show, by their index, ten a second.
+/// Content of the frames of a source by index, at ten frames per second.
 struct Script {
     int frames = 0;
     std::function<std::uint8_t(int)> grey_dn;
@@ -106,7 +106,7 @@ TEST(Start, TheFirstFramesServeWhereTheyAreGood) {
     EXPECT_NEAR(outcome.alignment.ground_height_m, kHeight_m, 1e-3);
 }
 
-/// Nobody has looked at these frames before; the pipeline believes what it finds on them.
+/// No earlier check has marked these frames; the pipeline uses its own result.
 TEST(Start, AnOldImageIsMarked) {
     const auto noise = [](int index, GreyImage& image) {
         const bool old = index == 3 || index == 4;
@@ -173,7 +173,8 @@ TEST(Start, GroundIsLookedForWhereTheMachineSaysThereIsSome) {
     config.ground.expected_height_m = kHeight_m;
     const Outcome machine = start_of({80, mid_grey, wall_first}, config);
     EXPECT_TRUE(machine.alignment.has_ground) << machine.alignment.reason;
-    // Five of ten sightings must agree, and the window moves by five: at once, at most 2 s later.
+    // Five of ten sightings must agree, and the window moves by five: the start comes immediately,
+    // at most 2 s later.
     EXPECT_EQ(machine.start.waited_frames, 25);
 
     config.mount.wait_for_ground_s = 1.5;
@@ -182,7 +183,7 @@ TEST(Start, GroundIsLookedForWhereTheMachineSaysThereIsSome) {
     EXPECT_LE(impatient.start.frames.back().index, 20);
 }
 
-/// In a hand: nobody says how it is mounted, and it looks at a wall first.
+/// A person holds the camera: the mounting is unknown, and the camera points at a wall first.
 TEST(Start, GroundIsLookedForWithAMountThatNobodyKnows) {
     Script script{80, mid_grey, [](int index) { return index >= 20; }};
     script.lean = Eigen::AngleAxisd(40.0 * M_PI / 180.0, Eigen::Vector3d::UnitY());
@@ -205,8 +206,8 @@ TEST(Start, GroundIsLookedForWithAMountThatNobodyKnows) {
     EXPECT_EQ(start_of(script, impatient, rig).start.frames.size(), Pipeline::kAlignmentFrames);
 }
 
-/// State of the camera after each of 70 frames of a standing machine; from the 20th on the camera
-/// looks 3 deg lower.
+/// Returns the state of the camera after each of 70 frames of a standing machine; from the 20th
+/// frame on the camera points 3 deg lower.
 std::vector<CameraState> states_when_knocked(double expected_height_m) {
     Serial serial;
     PipelineConfig config;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the terrain part of a frame costs in memory: motion, depth image, cloud, clean-up, height
-// bounds, rating and footprints. Counts every allocation of this test program.
+// Counts every allocation of this test program, to bound the memory use of the terrain part of a
+// frame: motion, depth image, cloud, clean-up, height bounds, rating and footprints.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -42,7 +42,7 @@ camera::RectifiedRig zed() {
     return rig;
 }
 
-/// Level floor `below_m` under the camera, every pixel a match.
+/// Returns a level floor `below_m` under the camera with a match in every pixel.
 DepthImage floor_image(const camera::RectifiedRig& rig, double below_m) {
     DepthImage depth;
     depth.resize(rig.width, rig.height);
@@ -61,7 +61,7 @@ DepthImage floor_image(const camera::RectifiedRig& rig, double below_m) {
     return depth;
 }
 
-/// A default map with everything that hangs on it, fed like a run.
+/// A default map with all its consumers, fed as in a run.
 class Terrain {
   public:
     Terrain() : map_(config()), rater_(traversability::TraversabilityConfig{}) {
@@ -151,7 +151,7 @@ TEST(TerrainMemory, NothingIsAllocatedOnceWarm) {
     const std::int64_t inflated = terrain.inflated();
     const std::int64_t asked = terrain.cells_asked();
     const std::int64_t before = allocations;
-    // Far enough for the layers to be moved back to the middle of their memory.
+    // This is far enough that the layers move back to the middle of their memory.
     for (int k = kWarm; k < kWarm + 130; ++k) terrain.frame(k);
     EXPECT_EQ(allocations - before, 0);
     EXPECT_GT(terrain.cleared(), cleared) << "the clean-up must have had work";
@@ -198,7 +198,7 @@ TEST(TerrainMemory, FollowingFeaturesAllocatesNothingOnceWarm) {
     stairs::TerrainFeatures told;
     std::size_t flights = 0;
     const auto observation = [&](int k) {
-        // Long enough without any that they go and come back.
+        // The frames without features last long enough that features disappear and return.
         const auto i = static_cast<std::size_t>(k % 60 < 40 ? k % 8 : 8);
         tracker.update(found[i], terrain, {k * kFrame_ns, {}}, told);
         flights += told.flights.size();

@@ -10,20 +10,20 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// A sighting counts for the time since the one before, at most for this: after a pause the first
-/// one does not outweigh all others.
+/// A sighting has the weight of the time since the previous sighting, limited to this value. So the
+/// first sighting after a pause does not outweigh all others.
 constexpr double kLongest_s = 1.0;
 
 }  // namespace
 
 void LevelConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled", enabled, "turns poses back that have drifted from the vertical");
-    visitor.number("slew_deg_s", slew_deg_s, 0.0, 0.05, "fastest turn");
+    visitor.boolean("enabled", enabled, "correct poses whose tilt has drifted from the vertical");
+    visitor.number("slew_deg_s", slew_deg_s, 0.0, 0.05, "fastest correction");
     visitor.number("max_tilt_deg", max_tilt_deg, 0.1, 5.0, "steeper ground is a slope, not drift");
-    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt within it is left alone");
-    visitor.number("average_s", average_s, 1.0, 600.0, "time that tilts are averaged over");
+    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt up to this is not corrected");
+    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
     visitor.number(
-        "agreeing_share", agreeing_share, 0.0, 1.0, "sightings that must be nearly level");
+        "agreeing_share", agreeing_share, 0.0, 1.0, "required share of nearly level sightings");
 }
 
 void TiltDriftCorrection::start_at(const Pose& T_odom_body, double ground_lean_rad) {
@@ -44,7 +44,7 @@ MotionEstimate TiltDriftCorrection::level(const MotionEstimate& motion) {
         const double beyond_rad = leaning->norm() - config_.ignored_deg * kRadPerDeg;
         const double turn_rad = std::clamp(
             beyond_rad, 0.0, config_.slew_deg_s * kRadPerDeg * std::min(dt_s, kLongest_s));
-        // Takes the mean normal towards z.
+        // Turns the mean normal towards z.
         const Eigen::Vector2d back = -turn_rad * leaning->normalized();
         const Eigen::Vector3d turn(-back.y(), back.x(), 0.0);
         leveled.T_odom_body.rotation = (exp_so3(turn) * leveled.T_odom_body.rotation).normalized();
@@ -61,7 +61,7 @@ void TiltDriftCorrection::see(const GroundObservation& ground_body) {
         seen_ns_ == 0 ? 0.0 : std::min(seconds_from_ns(time_ns_ - seen_ns_), kLongest_s);
     seen_ns_ = time_ns_;
     if (!(dt_s > 0.0)) return;
-    // A mean of all so far, then one that forgets.
+    // The weight starts as a mean of all sightings and becomes an exponential mean.
     seen_s_ = std::min(seen_s_ + dt_s, config_.average_s);
     const double share = std::min(dt_s / seen_s_, 1.0);
     const Eigen::Vector3d normal = T_odom_body_.rotation * ground_body.normal;

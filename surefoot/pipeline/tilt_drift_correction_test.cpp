@@ -15,15 +15,15 @@ namespace {
 constexpr double kPeriod_s = 0.1;
 constexpr double kRounding_deg_s = 1e-9;
 
-/// A machine that sways while it walks ahead, an odometry that leans more and more, a plane that is
-/// seen with noise.
+/// A machine that sways while it walks ahead, an odometry with growing tilt, and a plane measured
+/// with noise.
 struct World {
     double drift_deg_s = 0.0;  ///< of the odometry, about x
-    double start_deg = 0.0;    ///< that odom leans from the start
+    double start_deg = 0.0;    ///< initial tilt of odom
     double slope_deg = 0.0;    ///< of the ground, about x
     double noise_deg = 0.2;    ///< of a plane
-    double lost_share = 0.0;   ///< of the frames
-    double wall_share = 0.0;   ///< of the planes are steep
+    double lost_share = 0.0;   ///< share of lost frames
+    double wall_share = 0.0;   ///< share of steep planes
 
     [[nodiscard]] static Pose true_body(double time_s) {
         return {exp_so3({0.08 * std::sin(time_s), 0.05 * std::sin(0.7 * time_s), 0.01 * time_s}),
@@ -33,8 +33,8 @@ struct World {
 
 struct Walked {
     double tilt_deg = 0.0;       ///< of odom at the end
-    double fastest_deg_s = 0.0;  ///< turn beyond the odometry's own
-    double displaced_m = 0.0;    ///< positions off the chained motions' largest step error
+    double fastest_deg_s = 0.0;  ///< turn in addition to the odometry's own
+    double displaced_m = 0.0;    ///< largest position error against the chained motions
 };
 
 Walked walk(const World& world, double seconds, const LevelConfig& config = {}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts every allocation of this test program, to prove that rating a map needs none after the
-// first, nor finding its footholds, nor asking for what lies under a footprint.
+// Counts every allocation of this test program. It proves that after the first call, rating a map,
+// finding its footholds and querying a footprint allocate nothing.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -7,9 +7,9 @@
 
 namespace surefoot::traversability {
 
-/// Weighted mean of the three ratings, weights normalised by their sum (> 0). With `mean_nan` a
-/// cell is unknown if any of its layers is, whatever the weight. With `zero_dominates` an exact 0
-/// in a layer whose weight is above 0 forces 0 first, also over unknown.
+/// Weighted mean of the three ratings; the weights are divided by their sum (> 0). With `mean_nan`,
+/// a cell is unknown if any layer is unknown, also with weight 0. With `zero_dominates`, a layer
+/// with a weight above 0 and an exact 0 forces 0, also if another layer is unknown.
 void combine(Combine rule,
              const TraversabilityConfig::Weights& weights,
              const grid::Layer& slope,

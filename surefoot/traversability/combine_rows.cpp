@@ -12,7 +12,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One of the three ratings that are joined.
+/// One of the three combined ratings.
 struct Share {
     const float* rating;
     double weight;

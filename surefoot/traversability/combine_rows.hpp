@@ -7,8 +7,8 @@
 
 namespace surefoot::traversability::rows {
 
-/// The same bytes as traversability::combine, compiled for every instruction set and chosen at run
-/// time.
+/// Gives the same bytes as traversability::combine. Compiled for every instruction set and selected
+/// at run time.
 void combine(Combine rule,
              const TraversabilityConfig::Weights& weights,
              const grid::Layer& slope,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The published filters, run once on a synthetic scene (floor, stairs, ramp, box, noise, holes),
-// are the truth here; see ref.json beside the vectors.
+// The truth is the output of the published filters on a synthetic scene (floor, stairs, ramp, box,
+// noise, holes); see ref.json beside the vectors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +26,8 @@ std::string folder() {
     return root + "/conformance/traversability/";
 }
 
-/// The file's rows grow toward -x and its columns toward -y; ours are columns along +x, rows along
-/// +y.
+/// Reads a layer. In the file, rows grow toward -x and columns toward -y; in Surefoot, columns grow
+/// along +x and rows along +y.
 std::optional<grid::Layer> read_layer(const std::string& name) {
     std::ifstream file(folder() + name, std::ios::binary);
     std::vector<float> values(static_cast<std::size_t>(kSide) * kSide);

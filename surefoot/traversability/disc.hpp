@@ -16,31 +16,31 @@ struct CellRect {
     int ny = 0;
 
     [[nodiscard]] bool empty() const noexcept { return nx <= 0 || ny <= 0; }
-    /// Grown by `cells` on every side.
+    /// Returns the rectangle, enlarged by `cells` on every side.
     [[nodiscard]] CellRect grown(int cells) const noexcept {
         return {ix0 - cells, iy0 - cells, nx + 2 * cells, ny + 2 * cells};
     }
-    /// The part of it within a grid of that size.
+    /// Returns the part within a grid of that size.
     [[nodiscard]] CellRect clipped(int grid_nx, int grid_ny) const noexcept;
     friend bool operator==(const CellRect&, const CellRect&) = default;
 };
 
-/// A copy of a rectangle of a layer with unknown cells all around it, so that a disc can be read at
-/// every cell without asking where the map ends. NaN is the only unknown in it.
+/// Copy of a rectangle of a layer with unknown cells all around it, so that loops over a disc need
+/// no test of the map border. NaN is the only value for unknown.
 class PaddedLayer {
   public:
-    /// Cells to the right of the margin that may be read too, a few registers full of them.
+    /// Extra cells to the right of the margin that SIMD loads may read.
     static constexpr int kSlack = 32;
 
-    /// Room for the cells of `rect`, which are to be filled, with `margin` unknown ones on every
-    /// side; allocates only to grow.
+    /// Makes room for the cells of `rect`, which the caller fills, with a margin of `margin`
+    /// unknown cells on every side. Allocates only to grow.
     void reset(const CellRect& rect, int margin);
-    /// Copies the cells of `rect` (within the layer and the padding); values that are not finite
+    /// Copies the cells of `rect` (within the layer and the padding). Values that are not finite
     /// become NaN.
     void load(ImageView<const float> source, const CellRect& rect);
 
     [[nodiscard]] int stride() const noexcept { return cells_.width(); }
-    /// The cell (ix, iy) of the map, which may lie in the margin.
+    /// Returns the address of the map's cell (ix, iy), which may lie in the margin.
     [[nodiscard]] float* cell(int ix, int iy) noexcept {
         return cells_.row(iy - iy0_) + (ix - ix0_);
     }
@@ -49,29 +49,29 @@ class PaddedLayer {
     }
 
   private:
-    int ix0_ = 0;  ///< of the first cell that is stored
+    int ix0_ = 0;  ///< column of the first stored cell
     int iy0_ = 0;
     grid::Layer cells_;
 };
 
-/// A cell of a disc, seen from its centre.
+/// A cell of a disc, relative to its centre.
 struct DiscCell {
     std::ptrdiff_t offset = 0;  ///< in elements of a PaddedLayer
     double x_m = 0.0;
     double y_m = 0.0;
 };
 
-/// All cells with dx^2 + dy^2 <= (radius / resolution)^2 + 1e-6 (in cells), row by row; the addend
-/// keeps cells on the rim in, whatever the rounding of the quotient.
+/// All cells with dx^2 + dy^2 <= (radius / resolution)^2 + 1e-6 (in cells), row by row. The addend
+/// keeps cells on the rim inside, whatever the rounding of the quotient.
 struct Disc {
     int reach = 0;  ///< largest |dx| or |dy| [cells]
     std::vector<DiscCell> cells;
 
-    /// How many cells a disc of that radius reaches.
+    /// Returns the number of cells from the centre to the rim of a disc of that radius.
     [[nodiscard]] static int reach_of(double radius_m, double resolution_m) noexcept;
-    /// Columns -h ... h of its row dy (|dy| <= reach).
+    /// Returns h: row dy (|dy| <= reach) of the disc is the columns -h ... h.
     [[nodiscard]] static int half_width_of(double radius_m, double resolution_m, int dy) noexcept;
-    /// Fills the disc for layers of that stride; keeps its memory.
+    /// Fills the disc for layers of that stride; reuses its memory.
     void build(double radius_m, double resolution_m, int stride);
 };
 

@@ -6,11 +6,11 @@
 
 namespace surefoot::traversability {
 
-/// A disc as runs of cells along x: its row dy is the columns -h ... h around the centre. What is
-/// known of a run (a sum, a maximum) is worked out once and serves every disc that contains it, so
-/// that a disc costs as much as its rows, not as its cells.
+/// A disc as runs of cells along x: row dy is the columns -h ... h around the centre. A figure of a
+/// run (a sum, a maximum) is computed once and used by every disc that contains the run. So the
+/// cost of a disc grows with its rows, not with its cells.
 struct DiscRuns {
-    /// Larger discs are left to the plain filters: the memory for their runs would not stay near.
+    /// Larger discs use the plain filters: the memory for their runs would exceed the cache.
     static constexpr int kMaxReach = 24;
 
     int reach = 0;           ///< largest |dy| [cells]
@@ -24,14 +24,14 @@ class RunsOfDiscs {
         double radius_m;
         DiscRuns& runs;
     };
-    /// Fills the runs of all discs and the list of their half widths; keeps its memory.
+    /// Fills the runs of all discs and the list of their half widths; reuses its memory.
     void build(double resolution_m, std::initializer_list<Wanted> discs);
 
     /// Distinct half widths, ascending.
     [[nodiscard]] const std::vector<int>& half_widths() const noexcept { return half_widths_; }
     [[nodiscard]] int reach() const noexcept { return reach_; }
-    /// How many rows a disc of that reach covers, times the distinct half widths: what a kernel
-    /// keeps at a time.
+    /// Returns the rows of the largest disc times the distinct half widths: the number of runs that
+    /// a kernel keeps at a time.
     [[nodiscard]] std::size_t kept_runs() const noexcept {
         return static_cast<std::size_t>(2 * reach_ + 1) * half_widths_.size();
     }

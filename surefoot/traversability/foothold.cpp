@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-/// In the memory of `widths`: asked for in every frame.
+/// Reuses the memory of `widths`, because every frame calls this.
 void set_half_widths(double radius_m, double resolution_m, std::vector<int>& widths) {
     const int reach = Disc::reach_of(radius_m, resolution_m);
     widths.resize(static_cast<std::size_t>(reach) + 1);
@@ -40,15 +40,15 @@ double variance_of(const FootholdGround& ground, int ix, int iy) {
 
 }  // namespace
 
-/// What lies around the cells of one row.
+/// Sums and extremes around the cells of one row.
 struct FootholdFinder::Row {
-    std::vector<Sums> foot;            ///< over F; xz from the cell
+    std::vector<Sums> foot;            ///< sums over F; xz relative to the cell
     std::vector<double> yz;            ///< sum of y z over F, y in cells from the cell
     std::vector<double> unknown_band;  ///< unknown cells of B
     std::vector<double> tight_band;    ///< cells of B whose clearance is not open
     std::vector<float> patch_high;
     std::vector<float> patch_low;
-    std::vector<float> low_near;  ///< of low_shown_, as far as corners are looked for
+    std::vector<float> low_near;  ///< largest low_shown_ within the corner distance
     std::vector<float> low_possible;
 
     void reset(int nx) {
@@ -91,7 +91,8 @@ void FootholdFinder::shape(double resolution_m) {
 }
 
 FootholdFinder::TurnedFoot FootholdFinder::turned_foot(int yaw) const {
-    // Sine of 22.5 deg, and cosine; written out, for no library decides where a foot may stand.
+    // Sine and cosine of 22.5 deg. They are written out, so that no math library influences where a
+    // foot may stand.
     constexpr double kSin = 0.38268343236508977;
     constexpr double kCos = 0.92387953251128674;
     constexpr double kHalf = 0.70710678118654752;
@@ -154,7 +155,7 @@ void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Imag
         ny_, [&job](int iy) { job.finder.judge_row(job.ground, iy, job.out.row(iy)); });
 }
 
-/// Everything that one row of the ground says by itself.
+/// Computes all figures that depend on one row of the ground only.
 void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
     Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy) * (nx_ + 1);
     float* shown = low_shown_.row(iy);
@@ -187,8 +188,8 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
     low_possible_.build(iy);
 }
 
-/// Patches that begin in the cells of a row; those with an unknown cell, or beyond the map, are no
-/// patch.
+/// Computes the patches that begin in the cells of a row. Patches with an unknown cell, or beyond
+/// the map, are unknown.
 void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
     const double cells = patch_cells_ * patch_cells_;
     const double per_error = 1.0 / std::min(cells, config_.independent_cells);
@@ -216,7 +217,7 @@ void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
 }
 
 int FootholdFinder::patch_half_width(int dy) const {
-    // All rows of the patch must lie within F, each as far as it is wide.
+    // All rows of the patch must lie within F, each over its full width.
     return std::min(foot_[static_cast<std::size_t>(std::abs(dy))],
                     foot_[static_cast<std::size_t>(std::abs(dy + patch_cells_ - 1))]);
 }
@@ -280,7 +281,7 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
                                 ? foot.z / foot_cells_
                                 : static_cast<double>(height_m) -
                                       config_.sigma_factor * std::sqrt(variance_of(ground, ix, iy));
-    // What is beyond B is asked for everywhere, B itself only where that holds a drop.
+    // The wider area is tested everywhere; B itself is tested only if the wider area shows a drop.
     if (middle_m + static_cast<double>(row.low_near[at]) > config_.drop_m &&
         middle_m + static_cast<double>(low_in_band(ix, iy)) > config_.drop_m) {
         return Foothold::drop;
@@ -294,7 +295,7 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     const double slope_doubt = slope_sigmas_per_m_ * std::sqrt(foot.var / foot_cells_);
     if (slope - slope_doubt > config_.max_slope) return Foothold::tilted;
     Foothold found = Foothold::safe;
-    // Where the highest and the lowest patch are near any height of p, all are near it.
+    // If the highest and the lowest patch are near every height of p, all patches are near p.
     const double rise_m = slope * (config_.foot_radius_m + config_.margin_m);
     const bool level =
         static_cast<double>(row.patch_high[at]) - (middle_m - rise_m) <= config_.max_residual_m &&
@@ -353,7 +354,7 @@ bool FootholdFinder::drop_begins(double middle_m, double slope, float low_near) 
 bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
     for (const TurnedFoot& turned : turned_) {
         const double determinant = turned.xx * turned.yy - turned.xy * turned.xy;
-        // A foot of a single row of cells has no plane.
+        // A foot of a single row of cells defines no plane.
         if (!(determinant > 0.0)) continue;
         double xz = 0.0;
         double yz = 0.0;
@@ -377,28 +378,38 @@ bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
 void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
     visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "shorter side of a foot");
-    visitor.number("margin_m", margin_m, 0.0, 1.0, "edges may lie beside where the map has them");
-    visitor.number("band_m", band_m, 0.0, 1.0, "solid ground wanted beyond the foot");
-    visitor.number("corner_m", corner_m, 0.0, 1.0, "drops begin up to so far before the map's");
-    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+    visitor.number("margin_m", margin_m, 0.0, 1.0, "position error of edges in the map");
+    visitor.number("band_m", band_m, 0.0, 1.0, "required solid ground beyond the foot");
     visitor.number(
-        "max_slope", max_slope, 0.001, 10.0, "of the plane under the foot, rise over run");
-    visitor.number("patch_side_m", patch_side_m, 0.001, 1.0, "what the foot is cut into");
-    visitor.number("max_residual_m", max_residual_m, 0.001, 1.0, "of a patch to that plane");
-    visitor.number("sigma_factor", sigma_factor, 0.0, 100.0, "everything is to be sure by so many");
+        "corner_m", corner_m, 0.0, 1.0, "a drop may begin this far before its edge in the map");
+    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+    visitor.number("max_slope",
+                   max_slope,
+                   0.001,
+                   10.0,
+                   "largest slope of the plane under the foot, rise over run");
+    visitor.number(
+        "patch_side_m", patch_side_m, 0.001, 1.0, "side of the square patches of a foot");
+    visitor.number("max_residual_m",
+                   max_residual_m,
+                   0.001,
+                   1.0,
+                   "largest distance of a patch mean from that plane");
+    visitor.number(
+        "sigma_factor", sigma_factor, 0.0, 100.0, "sigmas by which every limit must be met");
     visitor.number("independent_cells",
                    independent_cells,
                    1.0,
                    10000.0,
-                   "at most so many independent errors in a patch");
+                   "largest number of independent errors in a patch");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
-    visitor.number("clearance_m", clearance_m, 0.0, 100.0, "free height wanted over the foot");
+        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+    visitor.number("clearance_m", clearance_m, 0.0, 100.0, "required free height over the foot");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "what hangs over less than a square of this side may be a wrong match");
+                   "overhead objects smaller than a square of this side may be wrong matches");
 }
 
 std::optional<std::string> FootholdConfig::problem() const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a safe foothold promises of the foot itself: turned in any way and set down anywhere in the
-// cell, all of it is carried. Looked at with the foot's own outline, pose by pose; the finder knows
-// one disc alone.
+// A safe foothold must carry the whole foot, with any yaw and anywhere in the cell. The test checks
+// this with the foot's own outline, pose by pose, while the finder uses only one disc.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -23,11 +22,11 @@ constexpr double kCell_m = 0.025;
 constexpr int kSide = 64;
 constexpr double kFootLength_m = 0.366;  ///< of the REX
 constexpr double kFootWidth_m = 0.190;
-constexpr int kYaws = 24;  ///< of half a turn: the foot's outline is the same after it
+constexpr int kYaws = 24;  ///< over half a turn, after which the outline repeats
 
 const grid::GridGeometry kGrid{kCell_m, kSide, kSide, {0.0, 0.0}};
 
-/// Heights of level or leaning ground with an edge or a bump somewhere, and a hole now and then.
+/// Heights of level or tilted ground with an edge or a bump somewhere, and sometimes a hole.
 struct Ground {
     Image<float> height_m{kSide, kSide, 0.0F};
     Image<float> var_m2{kSide, kSide, 1e-6F};
@@ -113,7 +112,7 @@ Eigen::Vector3d plane_under(const Ground& ground, const grid::ConvexArea& foot) 
     return fit.plane();
 }
 
-/// The plane that a foothold is judged by.
+/// Returns the plane by which a foothold is judged.
 Eigen::Vector3d plane_of_disc(const Ground& ground, int cx, int cy, double radius_m) {
     PlaneFit fit;
     for (int iy = 0; iy < kSide; ++iy)
@@ -123,8 +122,8 @@ Eigen::Vector3d plane_of_disc(const Ground& ground, int cx, int cy, double radiu
     return fit.plane();
 }
 
-/// Share of the foot that the ground carries: of the patches of two by two cells under it, those
-/// whose cells are all known and whose mean lies within the limit of a plane.
+/// Returns the share of the foot that the ground carries. It counts the patches of two by two cells
+/// under the foot whose cells are all known and whose mean lies within the limit of a plane.
 double share_carried(const Ground& ground,
                      const grid::ConvexArea& foot,
                      const Eigen::Vector3d& plane,
@@ -144,7 +143,7 @@ double share_carried(const Ground& ground,
     return static_cast<double>(carried) / patches;
 }
 
-/// Over all yaws, the middle of the foot near a corner of the cell.
+/// Smallest shares over all yaws, with the middle of the foot near a corner of the cell.
 struct Shares {
     double least_of_disc = 1.0;  ///< within the limit of the plane of the disc
     double least = 1.0;          ///< of the foot's own plane
@@ -192,7 +191,7 @@ TEST(FootholdSupport, AllOfTheFootIsCarriedAtEveryYaw) {
             }
         }
     }
-    // Its own plane leans otherwise than that of the disc; treads will want 0.80.
+    // The foot's own plane tilts differently from the plane of the disc; treads will need 0.80.
     EXPECT_GE(least, 0.90);
     EXPECT_GT(safe, 1500);
     EXPECT_GT(short_at_some_yaw, 50) << "the yaw must matter somewhere";

@@ -62,12 +62,12 @@ Image<Foothold> found(const Map& map, const FootholdConfig& config = narrow()) {
     return out;
 }
 
-/// The middle row of a map whose rows are alike.
+/// Returns the result in the middle row of a map with equal rows.
 Foothold at(const Map& map, int ix, const FootholdConfig& config = narrow()) {
     return found(map, config).at(ix, kSide / 2);
 }
 
-/// The rules as they are written, for one cell.
+/// The documented rules, for one cell.
 class Oracle {
   public:
     Oracle(const FootholdConfig& config, const FootholdGround& ground) : c_(config), g_(ground) {}
@@ -259,7 +259,7 @@ TEST(Foothold, AStepDownIsADropAsFarAsTheBandReaches) {
     const Map edge([](int ix) { return ix < 30 ? 0.0 : -0.17; });
     EXPECT_EQ(at(edge, 30 - 14), Foothold::safe);
     for (int ix = 30 - 13; ix < 30; ++ix) EXPECT_EQ(at(edge, ix), Foothold::drop) << ix;
-    // Down there the step is in the way of the foot, not of the band.
+    // On the lower side, the step blocks the foot but not the band.
     EXPECT_EQ(at(edge, 30 + 10), Foothold::safe);
     EXPECT_NE(at(edge, 30 + 8), Foothold::safe);
     const Map kerb([](int ix) { return ix < 30 ? 0.0 : -0.04; });
@@ -274,7 +274,8 @@ TEST(Foothold, LinesOfSightShowADropThatIsNeverSeen) {
     for (int iy = 0; iy < kSide; ++iy)
         for (int ix = 30; ix < kSide; ++ix)
             edge.free_above_m.at(ix, iy) = -0.024F * static_cast<float>(ix - 29);
-    // The line is 0.05 m deep two cells behind the edge, and more than that one cell on.
+    // Two cells behind the edge the line of sight is 0.05 m deep, and one cell farther it is
+    // deeper.
     EXPECT_EQ(at(edge, 32 - 13), Foothold::drop);
     EXPECT_EQ(at(edge, 30 - 1), Foothold::drop);
     EXPECT_EQ(at(edge, 32 - 14), Foothold::unknown);
@@ -296,13 +297,14 @@ TEST(Foothold, ANarrowFootTiltsWhereARampBegins) {
         return [run](int ix) { return std::max(0, ix - 29) * kCell_m / run; };
     };
     FootholdConfig wide = narrow();
-    wide.foot_width_m = 0.29;  // square: hardly less than the disc
+    wide.foot_width_m = 0.29;  // square, almost as large as the disc
     int narrow_alone = 0;
     for (int ix = 14; ix < kSide - 14; ++ix) {
         EXPECT_EQ(at(Map(ramp(12.0)), ix), Foothold::safe) << ix;
         const Foothold found = at(Map(ramp(8.0)), ix);
         const Foothold found_wide = at(Map(ramp(8.0)), ix, wide);
-        // A foot across the beginning: least squares over 0.19 m of which less than this is flat.
+        // A foot across the beginning of the ramp: least squares over 0.19 m, of which a smaller
+        // part is flat.
         EXPECT_EQ(found == Foothold::safe, ix <= 30) << ix;
         narrow_alone += found == Foothold::unsure && found_wide == Foothold::safe ? 1 : 0;
     }
@@ -318,7 +320,7 @@ TEST(Foothold, WhereADropBeginsBeyondTheBandNothingIsSure) {
     };
     FootholdConfig corners = narrow();
     corners.corner_m = 0.075;  // three cells
-    // On the diagonal through the corner the pit is (40 - i) cells away along each axis.
+    // On the diagonal through the corner, the pit is (40 - i) cells away along each axis.
     for (const auto& [i, with, without] : {std::tuple(40 - 9, Foothold::drop, Foothold::drop),
                                            std::tuple(40 - 10, Foothold::unsure, Foothold::safe),
                                            std::tuple(40 - 11, Foothold::unsure, Foothold::safe),
@@ -326,13 +328,14 @@ TEST(Foothold, WhereADropBeginsBeyondTheBandNothingIsSure) {
         EXPECT_EQ(found(pit(0.25F), corners).at(i, i), with) << i;
         EXPECT_EQ(found(pit(0.25F)).at(i, i), without) << i;
     }
-    // Half a drop counts, a lesser one does not, nor one that is not sure.
+    // Half a drop counts. A smaller drop does not count, and an uncertain one does not count
+    // either.
     EXPECT_EQ(found(pit(0.026F), corners).at(30, 30), Foothold::unsure);
     EXPECT_EQ(found(pit(0.024F), corners).at(30, 30), Foothold::safe);
     Map unsure = pit(0.035F);
     unsure.var_m2.at(40, 40) = 0.004F * 0.004F;
     EXPECT_EQ(found(unsure, corners).at(29, 29), Foothold::safe);
-    // A ramp of 1:12 falls by 31 mm as far as corners are looked for.
+    // Within the corner distance, a ramp of 1:12 falls by 31 mm.
     EXPECT_EQ(at(Map([](int ix) { return -ix * kCell_m / 12.0; }), 30, corners), Foothold::safe);
 }
 
@@ -367,7 +370,7 @@ TEST(Foothold, UnderATableThereIsNoRoom) {
     };
     hang(0.7F);
     EXPECT_EQ(found(table).at(31 + 8, 30), Foothold::low);
-    // Its rim may lie farther than it was seen: narrow() has a band of four cells.
+    // Its rim may lie farther than observed: narrow() has a band of four cells.
     EXPECT_EQ(found(table).at(31 + 10, 30), Foothold::unsure);
     EXPECT_EQ(found(table).at(31 + 14, 30), Foothold::safe);
     hang(2.06F);
@@ -423,7 +426,7 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                                  noise_m * rng.normal();
                 map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNanF : static_cast<float>(z);
                 map.var_m2.at(ix, iy) = static_cast<float>(1.5 * noise_m * noise_m * rng.uniform());
-                // Alone, or in a row of six.
+                // A single cell, or a row of six cells.
                 if (rng.uniform() < 1e-4)
                     for (int i = 0; i < (seed % 2 == 0 ? 1 : 6); ++i)
                         map.clearance_m.at(std::min(ix + i, kSide - 1), iy) = 1.0F;

@@ -18,14 +18,14 @@ using grid::ConvexArea;
 
 static_assert(2 * Footprint::kMaxVertices <= ConvexArea::kMaxPoints);
 
-/// Corners nearer to a straight line than this share of the polygon's size do not bend it.
+/// Corners closer to a straight line than this share of the polygon's size count as straight.
 constexpr double kStraight = 1e-9;
 
 double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
     return u.x() * v.y() - u.y() * v.x();
 }
 
-/// Why these are not the corners of a convex polygon, or nothing.
+/// Returns why these corners do not form a convex polygon, or nothing.
 std::optional<std::string> convexity_problem(std::span<const Eigen::Vector2d> vertices_m,
                                              double reach_m) {
     const std::size_t n = vertices_m.size();
@@ -142,8 +142,8 @@ class Gathering {
     int waiting_count_ = 0;
 };
 
-/// Appends what the footprint sweeps between two poses that differ by at most kMaxTurn_rad. False
-/// where cells cannot be counted.
+/// Appends the cells that the footprint sweeps between two poses that differ by at most
+/// kMaxTurn_rad. Returns false if the cells cannot be counted.
 bool append_sweep(const Footprint& footprint,
                   const FootprintPose& from,
                   const FootprintPose& to,
@@ -153,8 +153,9 @@ bool append_sweep(const Footprint& footprint,
     std::array<Eigen::Vector2d, ConvexArea::kMaxPoints> corners_m;
     place(footprint, from, corners_m.data());
     place(footprint, to, corners_m.data() + n);
-    // A function is within max |second derivative| / 8 of the chord of a unit interval; a corner
-    // at distance r that turns by a has the second derivative r a^2, and moving on adds none.
+    // On a unit interval, a function deviates from its chord by at most max |second derivative| /
+    // 8. A corner at distance r that turns by a has the second derivative r a^2; translation adds
+    // none.
     const double turn_rad = to.yaw_rad - from.yaw_rad;
     const double bulge_m = footprint.reach_m() * turn_rad * turn_rad / 8.0;
     const ConvexArea area({corners_m.data(), 2 * n}, footprint.radius_m() + bulge_m, geometry);

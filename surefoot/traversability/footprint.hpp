@@ -16,26 +16,26 @@
 
 namespace surefoot::traversability {
 
-/// The outline of a foot, a robot or a path's cross-section on the ground, in its own frame: a
-/// circle around the origin or a convex polygon around wherever it is given.
+/// Outline of a foot, a robot or a path's cross-section on the ground, in its own frame: a circle
+/// around the origin, or a convex polygon anywhere.
 class Footprint {
   public:
     static constexpr int kMaxVertices = 16;
-    /// Larger ones are taken for a mistake of units.
+    /// Larger outlines count as an error of units.
     static constexpr double kMaxReach_m = 100.0;
 
-    /// Needs 0 < radius_m <= kMaxReach_m.
+    /// Makes a circle. Needs 0 < radius_m <= kMaxReach_m.
     [[nodiscard]] static Result<Footprint> circle(double radius_m);
-    /// Needs 3 to kMaxVertices finite vertices of a convex polygon with an area, in either
+    /// Makes a convex polygon. Needs 3 to kMaxVertices finite vertices with an area, in either
     /// direction of travel; vertices on a straight edge are allowed.
     [[nodiscard]] static Result<Footprint> polygon(std::span<const Eigen::Vector2d> vertices_m);
 
-    /// A circle is one point with a radius, a polygon has none.
+    /// Corners of a polygon; for a circle its centre, with `radius_m` above 0.
     [[nodiscard]] std::span<const Eigen::Vector2d> points_m() const noexcept {
         return {points_m_.data(), static_cast<std::size_t>(count_)};
     }
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
-    /// Largest distance of a point of the outline's corners from the origin of its frame.
+    /// Largest distance of a corner from the origin of its frame.
     [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
 
   private:
@@ -46,7 +46,7 @@ class Footprint {
     double reach_m_ = 0.0;
 };
 
-/// Where a footprint stands, in the frame of the map (odom); yaw from x towards y.
+/// Pose of a footprint in the frame of the map (odom); yaw from x towards y.
 struct FootprintPose {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -57,7 +57,7 @@ struct FootprintPose {
 struct FootprintLayers {
     grid::GridGeometry geometry;
     ImageView<const float> rating;    ///< traversability, 1 to 0 (or any other rating)
-    ImageView<const float> height_m;  ///< may be empty: then no heights are told or missed
+    ImageView<const float> height_m;  ///< may be empty: then heights are not evaluated
 };
 
 enum class FootprintOutcome : std::uint8_t {
@@ -68,10 +68,10 @@ enum class FootprintOutcome : std::uint8_t {
     rated,         ///< at least one cell lies in the map; it may be unknown
 };
 
-/// What lies under a footprint. As default-constructed it is traversable under no policy.
+/// Cells under a footprint. A default-constructed report is traversable under no policy.
 struct FootprintReport {
     FootprintOutcome outcome = FootprintOutcome::invalid_pose;
-    std::int64_t cells = 0;           ///< that the shape overlaps, each once
+    std::int64_t cells = 0;           ///< overlapped by the shape, each counted once
     std::int64_t outside = 0;         ///< of these, beyond the map
     std::int64_t unknown = 0;         ///< of these, without a rating (those outside included)
     std::int64_t without_height = 0;  ///< of these, without a height (those outside included); 0
@@ -82,7 +82,7 @@ struct FootprintReport {
     float lowest_m = std::numeric_limits<float>::quiet_NaN();       ///< of the known heights
     float highest_m = std::numeric_limits<float>::quiet_NaN();
 
-    /// 1 where nothing is known, also where there are no cells.
+    /// 1 if nothing is known, also if there are no cells.
     [[nodiscard]] double unknown_share() const noexcept {
         return cells > 0 ? static_cast<double>(unknown) / static_cast<double>(cells) : 1.0;
     }
@@ -90,39 +90,39 @@ struct FootprintReport {
     [[nodiscard]] float height_range_m() const noexcept { return highest_m - lowest_m; }
 };
 
-/// What unknown cells under a footprint mean.
+/// Treatment of unknown cells under a footprint.
 enum class UnknownPolicy : std::uint8_t {
-    unsafe,   ///< one cell without a rating, without a height or outside the map refuses
-    ignored,  ///< the rated cells alone decide: for planning far ahead, never for a step
+    unsafe,   ///< refuse if one cell has no rating, no height or lies outside
+    ignored,  ///< only rated cells decide: for far planning, never for a step
 };
 
-/// Whether every rated cell has a rating above 0 of at least `threshold`, and the policy accepts
-/// the others. False under every policy without a single rated cell. A rating, not a verdict: the
-/// step gate decides about steps.
+/// True if every rated cell has a rating above 0 of at least `threshold`, and the policy accepts
+/// the other cells. False without any rated cell. This is a rating, not a verdict: the step gate
+/// decides about steps.
 [[nodiscard]] bool is_traversable(const FootprintReport& report,
                                   double threshold,
                                   UnknownPolicy policy = UnknownPolicy::unsafe) noexcept;
 
-/// What lies under every cell that the footprint at that pose overlaps, found in one pass. Not only
-/// the cells whose centre is inside: a foot on half a cell stands on what is in it.
+/// Reports on every cell that the footprint at that pose overlaps, in one pass. Cells whose centre
+/// is outside count too, because a foot on half a cell stands on its ground.
 ///
-/// Reads only, keeps nothing: the same question has the same answer, from any thread. Allocates
+/// Reads only and keeps no state: thread-safe, and equal inputs give equal results. Allocates
 /// nothing. Cost: proportional to the cells.
 [[nodiscard]] FootprintReport query(const Footprint& footprint,
                                     const FootprintPose& pose,
                                     const FootprintLayers& layers) noexcept;
 
-/// Working memory of path queries; one for each thread. Kept, it saves their allocations.
+/// Working memory of path queries; one per thread. Reuse saves allocations.
 struct PathScratch {
     std::vector<grid::CellRun> runs;
 };
 
-/// The same for all that the footprint overlaps on its way from pose to pose, each cell once:
-/// straight between neighbours while it turns the short way at an even rate (also on the spot).
+/// As `query`, for all cells overlapped on the way along the poses, each cell once. Between poses
+/// the footprint moves straight and turns the short way at an even rate (also on the spot).
 ///
-/// A turn is cut into pieces of at most kMaxTurn_rad; each is the convex hull of its two ends,
-/// grown by what the arcs bulge out of it. So no cell on the way is missed; beside a turn, what
-/// lies within turn / 2 of the footprint's reach (6 mm for 0.25 m) may count too.
+/// A turn is cut into pieces of at most kMaxTurn_rad. Each piece is the convex hull of its two
+/// ends, enlarged by the bulge of the arcs. So no cell is missed; cells beside a turn may count
+/// too, within turn / 2 of the footprint's reach (6 mm for 0.25 m).
 [[nodiscard]] FootprintReport query_path(const Footprint& footprint,
                                          std::span<const FootprintPose> poses,
                                          const FootprintLayers& layers,

@@ -28,7 +28,7 @@ class Group {
     HWY_INLINE void take(const float* values) {
         const auto value = hn::LoadU(half_, values);
         const auto known = hn::IsFinite(value);
-        // Comparisons and not Min, Max: these treat NaN differently on different processors.
+        // Comparisons instead of Min and Max, which treat NaN differently on different processors.
         min_ = hn::IfThenElse(hn::And(known, hn::Lt(value, min_)), value, min_);
         max_ = hn::IfThenElse(hn::And(known, hn::Gt(value, max_)), value, max_);
         sum_ = hn::Add(sum_, hn::PromoteTo(d_, hn::IfThenElseZero(known, value)));
@@ -56,7 +56,7 @@ class Group {
     std::int64_t known_ = 0;
 };
 
-/// Whether the run holds a value below `least`.
+/// Returns true if the run holds a value below `least`.
 HWY_INLINE bool add_run(const float* values,
                         std::int64_t count,
                         float least,

@@ -11,17 +11,17 @@
 
 namespace surefoot::traversability::rows {
 
-/// What one layer holds in cells that were added run by run; values that are not finite are
-/// unknown. Cell i of a run goes to lane i mod kLanes, whatever the registers' width, so that the
-/// sum has the same bytes for every instruction set.
+/// Statistics of one layer over cells that are added run by run; values that are not finite are
+/// unknown. Cell i of a run goes to lane i mod kLanes, whatever the register width, so every
+/// instruction set gives the same bytes of the sum.
 struct LaneStatistics {
     static constexpr int kLanes = 8;
 
     LaneStatistics() noexcept;
-    /// Joins the lanes, in a fixed order.
+    /// Adds the lanes, in a fixed order.
     [[nodiscard]] double joined_sum() const noexcept;
     [[nodiscard]] float joined_min() const noexcept;  ///< +infinity without a known value
-    [[nodiscard]] float joined_max() const noexcept;  ///< -infinity without one
+    [[nodiscard]] float joined_max() const noexcept;  ///< -infinity without a known value
 
     alignas(64) double sum[kLanes] = {};
     alignas(32) float min[kLanes] = {};
@@ -29,8 +29,8 @@ struct LaneStatistics {
     std::int64_t known = 0;
 };
 
-/// Adds the cells of runs that lie within the layer. Returns which run was the first to hold the
-/// smallest value so far, or -1 where an earlier call met one as small.
+/// Adds the cells of runs that lie within the layer. Returns the index of the first run with the
+/// smallest value so far, or -1 if an earlier call had an equally small value.
 std::int64_t add_runs(ImageView<const float> layer,
                       std::span<const grid::CellRun> runs,
                       LaneStatistics& statistics) noexcept;

@@ -42,7 +42,7 @@ struct Ground {
     }
 };
 
-/// What is not finite is unknown.
+/// Returns a value that is not finite, which counts as unknown.
 float unknown_value(Rng& rng) {
     constexpr float kValues[] = {kNanF, kNanF, kNanF, HUGE_VALF, -HUGE_VALF};
     return kValues[rng.below(5)];
@@ -74,7 +74,7 @@ Footprint polygon(const Points& vertices_m) {
     return *footprint;
 }
 
-// ---- the oracle: every cell of a wide surround is asked on its own ------------------------------
+// ---- oracle: tests every cell of a wide area one by one -----------------------------------------
 
 double distance_to_segment(const Eigen::Vector2d& p,
                            const Eigen::Vector2d& a,
@@ -85,8 +85,8 @@ double distance_to_segment(const Eigen::Vector2d& p,
     return (p - (a + s * along)).norm();
 }
 
-/// Minus how deep a convex polygon and a cell overlap, or 0 and more where they do not: the widest
-/// gap along the normals of all edges of both (separating axes).
+/// Returns minus the depth of the overlap of a convex polygon and a cell, or 0 and more without
+/// overlap: the widest gap along the normals of all edges of both (separating axes).
 double gap_m(const Points& polygon_m, const Eigen::Vector2d& low_m) {
     const Eigen::Vector2d high_m = low_m + Eigen::Vector2d::Constant(kResolution_m);
     const Points cell_m{low_m, {high_m.x(), low_m.y()}, high_m, {low_m.x(), high_m.y()}};
@@ -110,12 +110,12 @@ double gap_m(const Points& polygon_m, const Eigen::Vector2d& low_m) {
     return widest_m;
 }
 
-/// How far the segment a-b stays away from a cell.
+/// Returns the distance of the segment a-b from a cell.
 double distance_m(const Eigen::Vector2d& a,
                   const Eigen::Vector2d& b,
                   const Eigen::Vector2d& low_m) {
     const Eigen::Vector2d high_m = low_m + Eigen::Vector2d::Constant(kResolution_m);
-    // Clips the segment to the cell (Liang and Barsky): does it pass through?
+    // Clips the segment to the cell (Liang and Barsky) to test if it passes through.
     double from = 0.0, to = 1.0;
     for (int k = 0; k < 2; ++k) {
         const double step = b[k] - a[k];
@@ -139,8 +139,8 @@ double distance_m(const Eigen::Vector2d& a,
 
 enum class Overlap { no, yes, unsure };
 
-/// Overlaps as shallow as these may count or not: a sliver of 1e-5 cells that a query leaves out,
-/// deepened eightfold by corners as sharp as 15 deg.
+/// Overlaps up to this depth may count or not: a query skips a sliver of 1e-5 cells, which corners
+/// as sharp as 15 deg deepen eightfold.
 constexpr double kShallow_m = 8.0 * grid::ConvexArea::kSliver_cells * kResolution_m;
 
 Overlap overlap_of(double gap_m) {
@@ -150,8 +150,8 @@ Overlap overlap_of(double gap_m) {
                                   : Overlap::unsure;
 }
 
-/// What a query must say, by one plain loop over all cells of 6 x 6 m, or nothing when one of them
-/// is a matter of rounding. `overlap` takes the corner of a cell with the smallest coordinates.
+/// Expected result of a query by one plain loop over all cells of 6 x 6 m, or nothing if rounding
+/// decides for a cell. `overlap` takes the corner of a cell with the smallest coordinates.
 template <typename OverlapOf>
 std::optional<FootprintReport> expected(const Ground& ground, const OverlapOf& overlap) {
     const FootprintLayers layers = ground.layers();
@@ -210,7 +210,7 @@ void expect_same(const FootprintReport& got,
     EXPECT_EQ(bits(got.worst_rating), bits(want.worst_rating)) << where;
     EXPECT_EQ(bits(got.lowest_m), bits(want.lowest_m)) << where;
     EXPECT_EQ(bits(got.highest_m), bits(want.highest_m)) << where;
-    // Up to 6400 ratings below 1, added in another order: 6400 * 2^-53 at most.
+    // Up to 6400 ratings below 1, added in another order: an error of 6400 * 2^-53 at most.
     constexpr double kOrderOfSum = 1e-12;
     EXPECT_EQ(std::isnan(got.mean_rating), std::isnan(want.mean_rating)) << where;
     if (!std::isnan(want.mean_rating)) {
@@ -219,7 +219,7 @@ void expect_same(const FootprintReport& got,
 }
 
 FootprintPose random_pose(Rng& rng) {
-    // Reaches beyond all borders of the map, so that many footprints lie half outside.
+    // The poses reach beyond all borders of the map, so many footprints lie half outside.
     return {rng.uniform(-1.3, 1.3), rng.uniform(-1.3, 1.3), rng.uniform(-7.0, 7.0)};
 }
 
@@ -246,7 +246,7 @@ Points random_convex(Rng& rng) {
     return vertices_m;
 }
 
-/// At least this share of the random rounds must be free of matters of rounding.
+/// Number of random rounds. At least kLeastJudged of them must not depend on rounding.
 constexpr int kRounds = 60;
 constexpr int kLeastJudged = kRounds * 2 / 3;
 
@@ -334,9 +334,9 @@ TEST(Footprint, path_of_one_pose_is_the_query_there_also_when_the_pose_repeats) 
     }
 }
 
-// ---- what a swept polygon covers ----------------------------------------------------------------
+// ---- cells covered by a swept polygon -----------------------------------------------------------
 
-/// Whether one bad cell is found under a path.
+/// Returns true if a query finds one bad cell under a path.
 bool finds(const Footprint& footprint,
            const std::vector<FootprintPose>& poses,
            grid::Cell bad,
@@ -351,13 +351,13 @@ bool finds(const Footprint& footprint,
 
 TEST(Footprint, swept_polygon_misses_no_cell_on_the_way_and_takes_none_beside_it) {
     // A point of a hull, (1 - s) p + s q of corners at both ends, is at most 2 s (1 - s) turn reach
-    // away from where the same mixture of the foot's own points is at s; the hull is grown by the
-    // bulge, and seen from here the samples leave gaps.
+    // away from the same mixture of the foot's own points at s. The hull is enlarged by the bulge,
+    // and the samples leave gaps.
     const double reach_m = std::hypot(0.2, 0.1);
     const double beside_m = reach_m * (kMaxTurn_rad / 2.0 + kMaxTurn_rad * kMaxTurn_rad / 8.0);
     constexpr int kSamples = 100;  // the corners of the foot move less than 12 mm between two
     constexpr double kBetween_m = 0.012;
-    constexpr double kFar_m = 0.05;  // from the circle around a sample: not near it
+    constexpr double kFar_m = 0.05;  // from the circle around a sample: counts as far
     PathScratch scratch;
     const std::vector<std::vector<FootprintPose>> ways{
         {{-0.5, -0.3, 0.4}, {0.5, 0.2, 0.4}},                    // straight on
@@ -398,8 +398,8 @@ TEST(Footprint, swept_polygon_misses_no_cell_on_the_way_and_takes_none_beside_it
 }
 
 TEST(Footprint, turning_on_the_spot_meets_what_no_end_of_the_turn_meets) {
-    // A quarter turn of a long foot: a bad cell at 45 deg, 0.19 m away, is outside of both ends and
-    // of their hull.
+    // A quarter turn of a long foot: a bad cell at 45 deg, 0.19 m away, lies outside of both ends
+    // and of their hull.
     const Points blade{{0.0, -0.01}, {0.2, -0.01}, {0.2, 0.01}, {0.0, 0.01}};
     const std::vector<FootprintPose> turn{{0.0, 0.0, 0.0}, {0.0, 0.0, std::numbers::pi / 2.0}};
     const double at_m = 0.19 * std::numbers::sqrt2 / 2.0;
@@ -417,10 +417,11 @@ TEST(Footprint, an_arc_meets_the_cell_that_it_bulges_into_between_two_poses) {
     EXPECT_TRUE(finds(polygon(blade), turn, {72, 40}, scratch));
 }
 
-// ---- what the ancestor got wrong ----------------------------------------------------------------
+// ---- faults of the reference implementation -----------------------------------------------------
 
 TEST(Footprint, the_same_question_has_the_same_answer_wherever_the_obstacle_is) {
-    // There an obstacle in the ring 0.3 to 0.45 m was refused once and then allowed.
+    // The reference implementation refused an obstacle in the ring 0.3 to 0.45 m once and then
+    // allowed it.
     const Footprint disc = circle(0.45);
     PathScratch scratch;
     for (const double distance_m : {0.0, 0.2, 0.35, 0.4, 0.44}) {
@@ -441,7 +442,7 @@ TEST(Footprint, the_same_question_has_the_same_answer_wherever_the_obstacle_is) 
 }
 
 TEST(Footprint, a_swept_circle_skips_no_cell_of_its_line) {
-    // There every fourth cell of the line was asked.
+    // The reference implementation tested only every fourth cell of the line.
     const std::vector<FootprintPose> way{{-0.5, 0.0125, 0.0}, {0.5, 0.0125, 0.0}};
     PathScratch scratch;
     for (int ix = 20; ix < 60; ++ix)
@@ -557,7 +558,7 @@ TEST(Footprint, worst_rating_decides_not_the_mean) {
     EXPECT_FALSE(is_traversable(report, 0.8));
     EXPECT_TRUE(is_traversable(report, static_cast<double>(0.4F)));
     EXPECT_FALSE(is_traversable(report, std::nan("")));
-    // A rating of 0 is never traversable, whatever is asked for.
+    // A rating of 0 is never traversable, whatever the threshold.
     ground.rating.at(45, 38) = 0.0F;
     EXPECT_FALSE(is_traversable(query(polygon(kFoot), {}, ground.layers()), 0.0));
 }
@@ -600,7 +601,7 @@ TEST(Footprint, poses_and_maps_that_mean_nothing_are_an_outcome) {
         EXPECT_EQ(query_path(foot, std::vector<FootprintPose>(2), map, scratch).outcome,
                   FootprintOutcome::invalid_map);
     }
-    // A yaw without bounds is still a yaw, and an empty map a map.
+    // A very large yaw is still a yaw, and an empty map is still a map.
     EXPECT_EQ(query(foot, {0.0, 0.0, 1e18}, ground.layers()).outcome, FootprintOutcome::rated);
     const FootprintLayers empty{{kResolution_m, 0, 0, {0.0, 0.0}}, {}, {}};
     EXPECT_EQ(query(foot, {}, empty).outcome, FootprintOutcome::outside_map);

@@ -9,8 +9,8 @@
 namespace surefoot::traversability {
 namespace {
 
-/// Sums over the known cells of a disc, in metres from the centre cell and its height: all terms
-/// are of the size of the disc, so the subtraction of the mean loses nothing.
+/// Sums over the known cells of a disc, in metres relative to the centre cell and its height. All
+/// terms have the size of the disc, so subtracting the mean loses no precision.
 struct Moments {
     double n = 0.0;
     double x = 0.0, y = 0.0, z = 0.0;

@@ -6,19 +6,19 @@
 
 namespace surefoot::traversability {
 
-/// Second principal variance at or below which the points lie on a line, (0.1 mm)^2.
+/// Points with a second principal variance up to this lie on a line, (0.1 mm)^2.
 inline constexpr double kMinMiddleVariance_m2 = 1e-8;
 
 struct Normal {
     float x, y, z;
 };
-/// The normal at one cell of a padded layer, as below.
+/// Returns the normal at one cell of a padded layer, as below.
 [[nodiscard]] Normal plain_normal(const float* center, const Disc& disc) noexcept;
 
-/// Unit surface normals with z >= 0 for the cells of `rect`: smallest eigenvector of the covariance
-/// of the known cells within the disc. Unknown cells get NaN. Fewer than three known cells, or
-/// cells on one line in space, span no plane and give +z; a disc of a single cell gives NaN
-/// everywhere, because it could call nothing but flat.
+/// Computes unit surface normals with z >= 0 for the cells of `rect`: the smallest eigenvector of
+/// the covariance of the known cells within the disc. Unknown cells get NaN. Fewer than three known
+/// cells, or cells on one line in space, span no plane and give +z. A disc of a single cell gives
+/// NaN everywhere, because it would always report flat ground.
 void normals(const PaddedLayer& height_m,
              const Disc& disc,
              const CellRect& rect,

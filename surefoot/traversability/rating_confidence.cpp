@@ -12,14 +12,15 @@
 namespace surefoot::traversability {
 namespace {
 
-constexpr float kHighest = std::numeric_limits<float>::max();  ///< of what is finite
+constexpr float kHighest = std::numeric_limits<float>::max();  ///< largest finite value
 constexpr float kGateSigmas = 3.4F;                            ///< GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
-constexpr float kRangeSigma = 0.87F;  ///< largest for any number of cells, at four of them
-constexpr float kCertain = 6.0F;      ///< sigmas beyond which 1e-9 is nothing
+constexpr float kRangeSigma = 0.87F;  ///< maximum over all numbers of cells, at four cells
+constexpr float kCertain = 6.0F;      ///< beyond so many sigmas the probability (1e-9) is ignored
 
-/// One number holds both sums of a run of cells: known cells above, variances below, in units of
-/// (0.03 mm)^2. Differences of such sums are exact, also those of a sum that has overflowed.
+/// One integer holds both sums of a run of cells: the number of known cells in the high bits, the
+/// variances in the low bits, in units of (0.03 mm)^2. Differences of such sums are exact, also
+/// after an overflow.
 constexpr int kCountShift = 44;
 constexpr double kVariancesPerM2 = 1e9;
 constexpr double kLargestVariance_m2 = 0.1;  ///< 170 000 of them fit
@@ -29,7 +30,7 @@ std::uint64_t packed(float height_m, float var_m2) noexcept {
     if (!std::isfinite(height_m)) return 0;
     const double v_m2 = static_cast<double>(var_m2);
     const double used_m2 = v_m2 < kLargestVariance_m2 ? std::max(v_m2, 0.0) : kLargestVariance_m2;
-    // Rounded up: no cell looks better than it is.
+    // Rounded up: no cell gets a smaller variance than it has.
     return (std::uint64_t{1} << kCountShift) +
            // in range: used_m2 is in [0, 0.1]; NaN has become 0.1
            static_cast<std::uint64_t>(used_m2 * kVariancesPerM2) + 1;
@@ -43,7 +44,7 @@ float variance_m2_of(std::uint64_t sum) noexcept {
                               kVariancesPerM2);
 }
 
-/// P(z < x) of a standard normal x, z >= 0. For loops over rows.
+/// Returns P(z < x) of a standard normal x, z >= 0. Made for loops over rows.
 inline float upper_tail(float z) noexcept {
     const float x = z > kCertain ? kCertain : z;
     const float p =
@@ -57,7 +58,8 @@ inline float upper_tail(float z) noexcept {
     return 0.5F / (p8 * p8);
 }
 
-/// Mean range of n standard normal numbers (Tippett 1925), of the next larger n of his table.
+/// Returns the mean range of n standard normal numbers (Tippett 1925), taken for the next larger n
+/// of his table.
 float mean_range(int n) noexcept {
     struct Row {
         int n;
@@ -76,7 +78,7 @@ float mean_range(int n) noexcept {
     return 8.0F;  // n = 17 000 has 7.8
 }
 
-/// Mean square of the distances along x of all cells of a disc.
+/// Returns the mean square of the distances along x of all cells of a disc.
 double moment_m2(const std::vector<int>& half_width, int cells, double resolution_m) noexcept {
     double sum = 0.0;
     for (const int h : half_width) sum += h * (h + 1.0) * (2.0 * h + 1.0) / 3.0;
@@ -226,10 +228,10 @@ void RatingConfidence::find_flips(const Input& input) {
         const float* sigma_m = sigma_m_.row(iy);
         for (int ix = 0; ix < nx_; ++ix) {
             const float over_m = step_m[ix] - critical_m;
-            // How many sigmas the error must be beyond its mean.
+            // Distance of the required error from its mean [sigma].
             const float sigmas = over_m > 0.0F ? (over_m / sigma_m[ix] - error_range_) / kRangeSigma
                                                : -over_m / (kSqrt2 * sigma_m[ix]);
-            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);  // not if unknown
+            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);  // false if unknown
         }
     }
 }
@@ -287,7 +289,8 @@ void RatingConfidence::find_confidence(const TraversabilityLayers& rating,
             upper_tail(std::abs(margin) / sigma) + flips[ix] + (margin < 0.0F ? 0.0F : zeros);
         const float rest = 1.0F - wrong;
         const float right = rest > 0.0F ? rest : 0.0F;
-        // A zero over an unknown layer, or over a sum that is safe without the rule.
+        // The zero comes from the rule alone: another layer is unknown, or the sum is safe without
+        // the rule.
         const float half = rest < 0.5F ? right : 0.5F;
         const float by_zero = margin < 0.0F ? right : half;
         const float known = sum[ix] > 0.0F ? right : by_zero;

@@ -11,60 +11,60 @@
 
 namespace surefoot::traversability {
 
-/// How far the ratings of a map can be trusted; NaN where there is none.
+/// Confidence of the ratings of a map; NaN where a cell has no value.
 struct ConfidenceLayers {
-    /// At least this probability that the true rating lies on the same side of
-    /// `confidence.safe_threshold`, 0 ... 1. NaN where the rating is unknown.
+    /// Lower bound, 0 ... 1, of the probability that the true rating lies on the same side of
+    /// `confidence.safe_threshold`. NaN where the rating is unknown.
     grid::Layer confidence;
-    /// The smallest step that stands out of the noise: 3.4 sigma of the mean height of the patch
-    /// around the cell [m]. NaN where the height is unknown.
+    /// Smallest step that exceeds the noise: 3.4 sigma of the mean height of the patch around the
+    /// cell [m]. NaN where the height is unknown.
     grid::Layer smallest_step_m;
     /// 1 where an obstacle of `resolve.step_m` may hide in the noise, else 0; NaN as above.
     grid::Layer not_resolvable;
 };
 
-/// What the uncertainty of the heights does to the ratings.
+/// Propagates the uncertainty of the heights to the ratings.
 ///
-/// The patch is the gate's (foot_support.hpp): the variance of a mean of n cells is
+/// The patch is that of the gate (foot_support.hpp). The variance of a mean of n cells is
 ///   (mean of their variances) / k,   k = min(n, independent_cells),
-/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4; with 10 mm a
-/// patch is not resolvable above sigma = 2.94 mm, the gate's limit is 3 mm.
+/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With 10 mm,
+/// a patch is not resolvable above sigma = 2.94 mm; the gate's limit is 3 mm.
 ///
-/// The confidence, with v the mean variance in the disc of the normals and n its known cells, a
-/// share f of all:
-///  - slope: a fitted gradient has variance v / (k m) along each axis, m = mean square of the
-///    distances along x in the disc. A strip of share f keeps f^2 of m (half a disc 0.28). The
-///    slope changes by no more than the gradient: sigma_slope = n_z^2 sqrt(2 v / (k m)) / f.
-///  - roughness R = standard deviation of heights around the plane: E[R^2] = R0^2 + v, so it is
-///    too large by at most sqrt(v), and its own scatter is below sqrt(1.5 v / (k - 1)):
-///    sigma_roughness^2 = v (1 + 1.5 / (k - 1)).
-///  - step: a step height x = highest - lowest of a disc is never too small by more than the error
-///    of the true pair, sqrt(2 v), and never too large by more than the range of the disc's errors,
-///    with mean d sqrt(v) and deviation below 0.87 sqrt(v) (d after Tippett 1925). So a critical
-///    step may be none, and the other way, with q = P(that error > |x - critical|). Q = sum of q
-///    over the second disc bounds the probability that the count of critical cells is wrong,
-///    whatever they have in common; else the rating t < 1 errs by (1 - t) (error of x) / critical.
-///  - rating: the weighted sum of these sigmas, an upper bound whatever they have in common:
-///    confidence = P(normal error < |rating - threshold| / sigma) - Q, at least 0.
-/// With `zero_dominates` a slope or roughness that reaches 0 counts as a wrong side too; where only
-/// that rule makes a cell unsafe, how far it lies beyond 0 is not known, and the confidence is 0.5.
+/// Confidence, with v = mean variance in the disc of the normals, n = its known cells, and f =
+/// their share of all its cells:
+///   - slope: a fitted gradient has variance v / (k m) along each axis, m = mean square of the
+///     distances along x in the disc. A strip of share f keeps f^2 of m (half a disc 0.28). The
+///     slope changes by no more than the gradient: sigma_slope = n_z^2 sqrt(2 v / (k m)) / f.
+///   - roughness R = standard deviation of heights around the plane: E[R^2] = R0^2 + v, so R is
+///     too large by at most sqrt(v), and its own scatter is below sqrt(1.5 v / (k - 1)):
+///     sigma_roughness^2 = v (1 + 1.5 / (k - 1)).
+///   - step: a step height x = highest - lowest of a disc is too small by at most the error of the
+///     true pair, sqrt(2 v). It is too large by at most the range of the disc's errors, with mean
+///     d sqrt(v) and deviation below 0.87 sqrt(v) (d after Tippett 1925). So a critical step may be
+///     wrong, or may be missed, with q = P(that error > |x - critical|). Q = sum of q over the
+///     second disc bounds the probability of a wrong count of critical cells, for any correlation;
+///     otherwise the rating t < 1 errs by (1 - t) (error of x) / critical.
+///   - rating: the weighted sum of these sigmas, an upper bound for any correlation:
+///     confidence = P(normal error < |rating - threshold| / sigma) - Q, at least 0.
+/// With `zero_dominates`, a slope or roughness that reaches 0 counts as a wrong side too. If only
+/// that rule makes a cell unsafe, its distance beyond 0 is unknown, and the confidence is 0.5.
 ///
-/// No libm: the normal distribution is a polynomial (Abramowitz and Stegun 26.2.19).
-/// Sums of variances are exact integers. Allocates only to grow. Not thread-safe.
+/// No libm: the normal distribution is a polynomial (Abramowitz and Stegun 26.2.19). Sums of
+/// variances are exact integers. Allocates only to grow. Not thread-safe.
 class RatingConfidence {
   public:
-    /// `config`: as the ratings were made with, radii of at least one cell.
+    /// `config`: the config of the ratings, with radii of at least one cell.
     RatingConfidence(const TraversabilityConfig& config, double resolution_m);
 
     struct Input {
         ImageView<const float> height_m;  ///< NaN = unknown
-        /// Counted in whole 1e-9 m2, rounded up; not finite or above 0.1 m2 counts as 0.1 m2.
+        /// Rounded up to whole 1e-9 m2. Values above 0.1 m2 or not finite count as 0.1 m2.
         ImageView<const float> height_var_m2;
         const PaddedLayer&
             step_height_m;  ///< Traversability::rated_step_heights(), all cells rated
         const TraversabilityLayers& rating;
     };
-    /// All cells; the layers of `out` take the size of the map.
+    /// Computes all cells; the layers of `out` take the size of the map.
     void compute(const Input& input, ConfidenceLayers& out);
 
   private:
@@ -92,10 +92,10 @@ class RatingConfidence {
     float error_range_;        ///< d
     int nx_ = 0;
     int ny_ = 0;
-    int margin_ = 0;                     ///< cells beyond the map that runs reach
-    std::vector<std::uint64_t> before_;  ///< of a cell in its row: known cells and their variances
+    int margin_ = 0;                     ///< cells beyond the map that runs may cover
+    std::vector<std::uint64_t> before_;  ///< sums before a cell in its row: known cells, variances
     std::vector<std::uint64_t> sum_;     ///< one row of discs
-    std::vector<float> known_;           ///< the same, taken apart
+    std::vector<float> known_;           ///< known cells of `sum_`
     std::vector<float> variance_m2_;
     grid::Layer sigma_m_;          ///< sqrt(v)
     grid::Layer slope_sigma_rad_;  ///< of level ground
@@ -103,7 +103,7 @@ class RatingConfidence {
     grid::Layer flips_;  ///< Q
 };
 
-/// P(x < z) of a standard normal x; |error| < 1.2e-6, the same bits everywhere.
+/// Returns P(x < z) of a standard normal x; |error| < 1.2e-6, the same bits everywhere.
 [[nodiscard]] float normal_cdf(float z) noexcept;
 
 }  // namespace surefoot::traversability

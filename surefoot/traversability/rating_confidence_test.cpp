@@ -42,7 +42,7 @@ Rated rate(const TraversabilityConfig& config, const grid::Layer& map, const gri
     return out;
 }
 
-/// Every known cell within a disc around (ix, iy).
+/// Calls f for every known cell within a disc around (ix, iy).
 template <typename F>
 void for_disc(const grid::Layer& map, double radius_m, int ix, int iy, const F& f) {
     const double limit = std::pow(radius_m / kResolution_m, 2) + 1e-6;
@@ -263,13 +263,14 @@ TEST(RatingConfidence, NoiseLooksLikeTheSmallestStepInSevenOfTenThousandPatches)
             }
         }
     }
-    // Both sides of 3.4 sigma: 6.74e-4; Poisson, three of its deviations.
+    // Both sides of 3.4 sigma: 6.74e-4. The count is Poisson distributed; the limit is three of its
+    // deviations.
     const double expected = 6.74e-4 * static_cast<double>(patches);
     EXPECT_NEAR(static_cast<double>(above), expected, 3.0 * std::sqrt(expected)) << patches;
     EXPECT_GT(expected, 30.0);
 }
 
-/// Shares of cells whose true rating is on the measured side, by confidence in tenths.
+/// Shares of cells with the true rating on the measured side, by confidence in tenths.
 struct Calibration {
     std::array<std::int64_t, 10> cells{};
     std::array<double, 10> claimed{};
@@ -308,7 +309,7 @@ TEST(RatingConfidence, IsNotMoreThanTheShareOfCellsThatAreRight) {
         }
         for (std::size_t bin = 0; bin < 10; ++bin) {
             const auto n = static_cast<double>(calibration.cells[bin]);
-            if (n < 2000) continue;  // neighbours err together: some 40 independent ones
+            if (n < 2000) continue;  // neighbours share errors: about 40 independent cells
             const double claimed = calibration.claimed[bin] / n;
             const double right = static_cast<double>(calibration.right[bin]) / n;
             EXPECT_GE(right, claimed) << bin << " of ten, " << n << " cells";
@@ -331,8 +332,9 @@ TEST(RatingConfidence, FlatGroundIsSureAndNoiseTakesItAway) {
 TEST(RatingConfidence, NormalDistributionIsThatOfTheLibrary) {
     for (int i = -6000; i <= 6000; ++i) {
         const float z = 0.001F * static_cast<float>(i);
-        // The polynomial's 1.5e-7; a rounding of 6e-8 before four squarings and one after each are
-        // 31 of them, of a tail of at most 1/2; one more near 1.
+        // Error budget: 1.5e-7 of the polynomial. One rounding of 6e-8 before four squarings and
+        // one after each give 31 roundings, of a tail of at most 1/2. One more rounding applies
+        // near 1.
         EXPECT_NEAR(normal_cdf(z), plain_cdf(static_cast<double>(z)), 1.2e-6) << z;
     }
     EXPECT_EQ(normal_cdf(40.0F), 1.0F);

@@ -12,12 +12,13 @@ namespace surefoot::traversability {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-/// So far below all heights that no step leads there.
+/// Far below all heights, so no allowed step leads there.
 constexpr std::int32_t kUnknown = -1'000'000'000;
 constexpr std::int32_t kNobody = -1;
 constexpr int kNeighbours = 4;
 
-/// Of a height within kHighest_m or a step of at most 1 m, see TraversabilityConfig::Reach.
+/// Rounds a height within kHighest_m, or a step of at most 1 m (see TraversabilityConfig::Reach),
+/// to 0.1 mm.
 std::int32_t tenth_mm(double length_m) noexcept {
     const double scaled = length_m * kTenthMmPerM;
     // in range: at most 10^7
@@ -48,9 +49,9 @@ void Reachability::load(ImageView<const float> height_m) {
     ny_ = height_m.height;
     stride_ = nx_ + 2;
     const std::size_t cells = index(-1, ny_ + 1);
-    // More than every step that may be taken means not reached.
+    // A value above every allowed step means "not reached".
     cells_.assign(cells, {kUnknown, max_step_ + 1});
-    // A cell is visited once, and then sends each neighbour to wait at most once.
+    // A cell is visited once. Then it adds each neighbour to a bucket at most once.
     waiting_.resize((kNeighbours + 1) * cells);
     stance_.clear();
     stance_.reserve(cells);
@@ -131,7 +132,7 @@ std::int32_t Reachability::lowest_surface() {
     const std::int32_t surface = tenth_mm(kSurface_m);
     std::size_t fullest = 0;
     std::size_t most = 0;
-    std::size_t end = 0;  // first that is above the surface that begins at `begin`
+    std::size_t end = 0;  // first height above the surface that begins at `begin`
     for (std::size_t begin = 0; begin < sorted_.size(); ++begin) {
         while (end < sorted_.size() && sorted_[end] <= sorted_[begin] + surface) ++end;
         if (end - begin >= wanted) return sorted_[begin];
@@ -156,7 +157,7 @@ void Reachability::spread() {
         while (first != kNobody) {
             const Waiting entry = waiting_[static_cast<std::size_t>(first)];
             first = entry.next;
-            // Others have been reached over a smaller step since, and visited.
+            // Other entries were reached over a smaller step meanwhile, and visited.
             if (cells_[static_cast<std::size_t>(entry.cell)].step == step) {
                 waiting = visit(entry.cell, step, waiting);
             }
@@ -165,8 +166,8 @@ void Reachability::spread() {
 }
 
 std::int32_t Reachability::visit(std::int32_t cell, std::int32_t step, std::int32_t waiting) {
-    // Without branches, which noise would make unpredictable: a neighbour that gains nothing is
-    // written to a place that the next one overwrites.
+    // No branches, because noise would make them unpredictable. A neighbour that gains nothing is
+    // written to a slot that the next neighbour overwrites.
     Cell* const cells = cells_.data();
     Waiting* const places = waiting_.data();
     std::int32_t* const buckets = bucket_.data();

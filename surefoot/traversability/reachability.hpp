@@ -11,50 +11,50 @@
 
 namespace surefoot::traversability {
 
-/// Where the machine was taken to stand.
+/// Place where the machine is assumed to stand.
 struct Stance {
-    int cells = 0;          ///< ways begin in these; 0 when the map holds no known cell
-    double lowest_m = 0.0;  ///< of these cells, in the frame of the map; 0 without any
-    double radius_m = 0.0;  ///< they were looked for within this distance of the body
+    int cells = 0;          ///< start cells of the ways; 0 if the map has no known cell
+    double lowest_m = 0.0;  ///< of these cells, in the frame of the map; 0 without cells
+    double radius_m = 0.0;  ///< search radius around the body
 };
 
-/// Which ground can be walked to from where the machine stands, and over which steps: a table top
-/// is flat but not reachable.
+/// Finds the ground that the machine can reach on foot from its stance, and over which steps: a
+/// table top is flat but not reachable.
 ///
-/// reach_step_m of a cell = the smallest, over all ways to it from the stance, of the largest
-/// height difference between two cells that follow each other on the way (a minimax path). Ways
-/// lead from known cell to known 4-neighbour; an unknown cell is never crossed and no gap is
-/// bridged, not even of one cell. Up and down count alike: the least step up and the least step
-/// down may lie on different ways, so two layers would promise a way that is not there. Heights are
-/// rounded to 0.1 mm as for the gate, and the result is exact on them, whatever the order in which
-/// cells are visited.
+/// reach_step_m of a cell: each way from the stance to the cell has a largest height difference
+/// between consecutive cells, and reach_step_m is the smallest of these over all ways (a minimax
+/// path). A way leads from known cell to known 4-neighbour; it never crosses an unknown cell or a
+/// gap, not even of one cell. Up and down count alike: the smallest step up and the smallest step
+/// down may lie on different ways, so two layers would promise a way that does not exist. Heights
+/// are rounded to 0.1 mm as for the gate. The result is exact on them and does not depend on the
+/// order of the visits.
 ///
-/// NaN = unknown, or only to be reached over a step above `max_step_m`, or not at all; the height
-/// tells the first from the others. Every comparison with it is false, so that `<= limit` never
-/// takes it for reachable. A ramp has no steps: how steep a way is, the slope says. And a riser
-/// counts by its parts where cells lie at heights in between: on an edge that the map has smeared,
-/// steps are lower than the riser.
+/// NaN = unknown, or not reachable, or reachable only over a step above `max_step_m`; the height
+/// distinguishes the first case. Every comparison with NaN is false, so `<= limit` never accepts it
+/// as reachable. A ramp has no steps: the slope tells how steep a way is. If cells lie at heights
+/// between, as on an edge that the map has smeared, a riser counts by its parts, which are lower
+/// than the riser.
 ///
-/// The stance: known cells with their centre within `stance_radius_m` of the body along the ground.
+/// Stance: the known cells with their centre within `stance_radius_m` of the body along the ground.
 /// If they are fewer than kStanceCells (the ground at the feet is not in view), the radius becomes
-/// the distance within which so many are known, or all there are, plus `stance_radius_m`. Of these
-/// the lowest surface counts, because a table top may hang over the feet: the lowest kSurface_m of
-/// height in which a quarter of them lie, so that neither a stray low cell nor the pit beside a
-/// landing is taken for it (if there is none, the fullest kSurface_m). The height of the body is
-/// not asked: base_link may be anywhere above the ground.
+/// the distance within which so many cells are known, or all cells, plus `stance_radius_m`. The
+/// lowest surface counts, because a table top may hang over the feet: the lowest kSurface_m of
+/// height with a quarter of these cells. So neither a stray low cell nor the pit beside a landing
+/// becomes the stance. If no such range exists, the fullest kSurface_m counts. The height of the
+/// body is not used, because base_link may be anywhere above the ground.
 ///
-/// Cost: four looks per known cell, plus one visit per 0.1 mm of `max_step_m` (Dijkstra 1959 with
+/// Cost: four reads per known cell, plus one visit per 0.1 mm of `max_step_m` (Dijkstra 1959 with
 /// one bucket per length, Dial 1969). Allocates only to grow. Not thread-safe.
 class Reachability {
   public:
     static constexpr int kStanceCells = 16;     ///< about a foot: 0.01 m2 at 25 mm
     static constexpr double kSurface_m = 0.05;  ///< heights of one surface under the body
-    /// Beyond it a height is unknown, as for the gate.
+    /// Heights beyond this are unknown, as for the gate.
     static constexpr double kHighest_m = 1000.0;
 
     explicit Reachability(const TraversabilityConfig::Reach& config);
 
-    /// `height_m`: one row per iy of `geometry`, NaN = unknown; `body_m`: in its frame.
+    /// `height_m`: one row per iy of `geometry`, NaN = unknown. `body_m`: in the frame of the map.
     /// `reach_step_m` takes the size of the map.
     Stance reach(const grid::GridGeometry& geometry,
                  ImageView<const float> height_m,
@@ -62,14 +62,14 @@ class Reachability {
                  grid::Layer& reach_step_m);
 
   private:
-    /// A cell waits for the step that leads to it; the next one waits for the same.
+    /// Entry of a bucket: a cell that a step reaches, and the next entry of the same bucket.
     struct Waiting {
         std::int32_t cell;
         std::int32_t next;
     };
     struct Cell {
         std::int32_t height;  ///< 0.1 mm, as all steps
-        std::int32_t step;    ///< least known so far
+        std::int32_t step;    ///< smallest known so far
     };
 
     void load(ImageView<const float> height_m);
@@ -84,7 +84,7 @@ class Reachability {
     void gather(const grid::GridGeometry& geometry, const Eigen::Vector2d& body_m, double radius_m);
     [[nodiscard]] std::int32_t lowest_surface();
     void spread();
-    /// `waiting`: places of `waiting_` in use; returns how many are now.
+    /// `waiting`: used entries of `waiting_`; returns the new number.
     [[nodiscard]] std::int32_t visit(std::int32_t cell, std::int32_t step, std::int32_t waiting);
     void write(grid::Layer& reach_step_m) const;
 
@@ -93,12 +93,12 @@ class Reachability {
     int nx_ = 0;
     int ny_ = 0;
     int stride_ = 0;                    ///< of `cells_`
-    std::vector<Cell> cells_;           ///< with a rim of unknown ones
+    std::vector<Cell> cells_;           ///< with a rim of unknown cells
     std::vector<std::int32_t> stance_;  ///< candidates, then the cells of the stance
     std::vector<std::int32_t> sorted_;  ///< heights of the candidates
     std::vector<double> distance_m_;    ///< of all known cells from the body
     std::vector<std::int32_t>
-        bucket_;  ///< first that waits for a step, by step; the last one for nobody
+        bucket_;  ///< first entry per step; the last buckets discard their entries
     std::vector<Waiting> waiting_;
 };
 

@@ -22,7 +22,7 @@ grid::GridGeometry geometry_of(const grid::Layer& map) {
     return {kResolution_m, map.width(), map.height(), {-1.0, 2.0}};
 }
 
-/// Centre of a cell.
+/// Returns the centre of a cell.
 Eigen::Vector2d at(const grid::Layer& map, int ix, int iy) {
     return geometry_of(map).center_m({ix, iy});
 }
@@ -37,7 +37,7 @@ grid::Layer reach(const TraversabilityConfig::Reach& config,
     return out;
 }
 
-/// Rectangle of cells at one height.
+/// Sets a rectangle of cells to one height.
 void put(grid::Layer& map, int ix0, int iy0, int nx, int ny, float height_m) {
     for (int iy = iy0; iy < iy0 + ny; ++iy)
         for (int ix = ix0; ix < ix0 + nx; ++ix) map.at(ix, iy) = height_m;
@@ -47,7 +47,8 @@ long tenths(float height_m) {
     return std::lround(static_cast<double>(height_m) * 1e4);
 }
 
-/// By definition: the heights that fill a quarter of the disc within 50 mm, or the most there are.
+/// Stance by its definition: the heights that fill a quarter of the disc within 50 mm, or the
+/// fullest such range.
 std::vector<grid::Cell> plain_stance(const grid::Layer& map,
                                      const Eigen::Vector2d& body_m,
                                      double radius_m) {
@@ -134,7 +135,7 @@ grid::Layer random_map(Rng& rng) {
 TEST(Reachability, IsTheMinimaxPathOfEveryCell) {
     constexpr std::uint64_t kSeed = 7;
     Rng rng(kSeed);
-    Reachability kept({0.18, 0.1});  // its memory serves maps of all sizes
+    Reachability kept({0.18, 0.1});  // reuses its memory for maps of all sizes
     long reached = 0, refused = 0;
     for (int round = 0; round < 400; ++round) {
         const grid::Layer map = random_map(rng);
@@ -183,7 +184,7 @@ TEST(Reachability, TheWayRoundCountsWhenItsStepsAreLower) {
     for (int i = 0; i < 6; ++i) put(map, 14 + i, 38, 1, 3, 0.02F * static_cast<float>(i + 1));
     const grid::Layer out = reach({}, map, at(map, 8, 8));
     EXPECT_FLOAT_EQ(out.at(21, 2), 0.02F);
-    put(map, 20, 38, 1, 3, kNanF);  // the ramp's head is not known
+    put(map, 20, 38, 1, 3, kNanF);  // the upper end of the ramp is unknown
     const grid::Layer cut = reach({}, map, at(map, 8, 8));
     EXPECT_FLOAT_EQ(cut.at(21, 2), 0.12F);
 }

@@ -11,7 +11,7 @@ struct Normal {
     double x, y, z;
 };
 
-/// NaN for a single cell.
+/// Returns the roughness; NaN for a single cell.
 double roughness_m(const float* center, const Disc& disc, const Normal& normal) noexcept {
     const double center_m = static_cast<double>(*center);
     double n = 0.0;
@@ -20,8 +20,8 @@ double roughness_m(const float* center, const Disc& disc, const Normal& normal) 
     for (const DiscCell& cell : disc.cells) {
         const float height_m = center[cell.offset];
         if (std::isnan(height_m)) continue;
-        // Distance from the plane through the centre cell: as small as the roughness itself on a
-        // smooth patch, so the difference of the two sums keeps its digits.
+        // Distance from the plane through the centre cell. On a smooth patch it is as small as the
+        // roughness itself, so the difference of the two sums keeps its precision.
         const double distance_m = normal.x * cell.x_m + normal.y * cell.y_m +
                                   normal.z * (static_cast<double>(height_m) - center_m);
         n += 1.0;
@@ -51,7 +51,7 @@ void rate_roughness(const TraversabilityConfig::Roughness& config,
                 continue;
             }
             const double value_m = roughness_m(height_m.cell(ix, iy), disc, normal);
-            // False for NaN too: a lone cell is rated 0.
+            // False for NaN too: a cell without neighbours is rated 0.
             const bool passable = value_m < config.critical_m;
             roughness.row(iy)[ix] =
                 passable ? static_cast<float>(1.0 - value_m / config.critical_m) : 0.0F;

@@ -7,9 +7,9 @@
 
 namespace surefoot::traversability {
 
-/// Roughness r = sqrt(sum (n . p_i - n . mean)^2 / (N - 1)) over the N known cells p_i within the
-/// disc, with the normal n of the centre cell; rating = 1 - r / critical below it, else 0. A cell
-/// without a known neighbour proves no smoothness: 0. NaN where the normal is unknown.
+/// Rates roughness: r = sqrt(sum (n . p_i - n . mean)^2 / (N - 1)) over the N known cells p_i of
+/// the disc, with the normal n of the centre cell; rating = 1 - r / critical, at least 0. A cell
+/// without a known neighbour gets 0: nothing proves it smooth. NaN if the normal is unknown.
 void rate_roughness(const TraversabilityConfig::Roughness& config,
                     const PaddedLayer& height_m,
                     const Disc& disc,

@@ -8,20 +8,20 @@
 
 namespace surefoot::traversability {
 
-/// Largest values in runs of cells along the rows of a map, for runs of any length below 128: two
-/// overlapping runs of 1, 2, 4 ... cells cover any other. Outside of the map lies nothing.
+/// Largest values in runs of cells along the rows of a map, for runs shorter than 128 cells: two
+/// overlapping runs of 1, 2, 4 ... cells cover any other run. Cells outside of the map are empty.
 class RunMaxima {
   public:
-    static constexpr int kMargin = 64;  ///< columns beside the map that may be asked for
+    static constexpr int kMargin = 64;  ///< columns beside the map that queries may cover
 
-    /// Room for a map, whose rows are to be filled; allocates only to grow.
+    /// Makes room for a map whose rows the caller fills; allocates only to grow.
     void reset(int nx, int ny) {
         nx_ = nx;
         stride_ = nx + 2 * kMargin;
         level_size_ = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(ny);
         values_.resize(kLevels * level_size_);
     }
-    /// The `nx` values of a row, to be written before it is built.
+    /// Returns the `nx` values of a row; write them before the row is built.
     [[nodiscard]] float* row(int iy) noexcept { return level(0, iy) + kMargin; }
     void build(int iy) noexcept {
         constexpr float kNothing = -std::numeric_limits<float>::infinity();
@@ -39,7 +39,7 @@ class RunMaxima {
             std::copy_n(half + columns, apart, whole + columns);
         }
     }
-    /// best[ix] becomes the largest of itself and of the cells ix + first ... ix + last of the row;
+    /// Sets best[ix] to the largest of itself and the cells ix + first ... ix + last of the row;
     /// -kMargin < first <= last < kMargin.
     void take(int iy, int first, int last, float* best) const noexcept {
         const int cells = last - first + 1;
@@ -52,7 +52,7 @@ class RunMaxima {
             best[ix] = best[ix] < here ? here : best[ix];
         }
     }
-    /// The largest of the cells ix + first ... ix + last of the row; limits as for `take`.
+    /// Returns the largest of the cells ix + first ... ix + last of the row; limits as for `take`.
     [[nodiscard]] float largest(int iy, int ix, int first, int last) const noexcept {
         const int cells = last - first + 1;
         std::size_t l = 0;

@@ -7,8 +7,8 @@
 
 namespace surefoot::traversability {
 
-/// Slope rating: 1 - acos(normal z) / critical below the critical slope, else 0; NaN where the
-/// normal is unknown. The angle is that of the normal as stored (float).
+/// Rates slope: 1 - acos(normal z) / critical below the critical slope, else 0; NaN if the normal
+/// is unknown. The angle is that of the stored normal (float).
 void rate_slope(const TraversabilityConfig::Slope& config,
                 const grid::Layer& normal_z,
                 const CellRect& rect,

@@ -8,8 +8,8 @@
 namespace surefoot::traversability {
 
 /// Pass 1: highest minus lowest known height within the first disc around every known cell of
-/// `rect`; NaN at unknown cells, and everywhere if the disc is a single cell (it could find nothing
-/// but 0).
+/// `rect`; NaN at unknown cells. NaN everywhere if the disc is a single cell, because it could only
+/// find 0.
 void step_heights(const PaddedLayer& height_m,
                   const Disc& first_disc,
                   const CellRect& rect,

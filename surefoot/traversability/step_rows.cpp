@@ -15,9 +15,9 @@
 #include <cstdlib>
 #include <limits>
 
-// Lanes are neighbouring columns. Down a stripe of columns as wide as a register, every row is
-// reduced to its runs once (`Runs`, ascending half widths), and a ring keeps the rows that a disc
-// covers.
+// Lanes are neighbouring columns. A stripe of columns is as wide as a register. Down a stripe,
+// every row is reduced to its runs once (`Runs`, ascending half widths), and a ring keeps the rows
+// that a disc covers.
 
 #ifndef SUREFOOT_STEP_RATING_CONSTANTS
 #define SUREFOOT_STEP_RATING_CONSTANTS
@@ -44,8 +44,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<float, StepRun::kLanes> kFloats;
 using Floats = hn::VFromD<decltype(kFloats)>;
 
-/// Columns by which the memory of later stripes is asked for: down a stripe every row is another
-/// page, which no processor foresees, and maps wider than a cache would wait for each of them.
+/// Prefetch distance in columns, for later stripes. Down a stripe every row is on another memory
+/// page, which no processor predicts; on maps wider than the cache every row would wait.
 constexpr int kAhead = 32;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -74,7 +74,7 @@ struct Range {
     }
 };
 
-/// Highest step height (-1 of none), and how many are critical.
+/// Highest step height (-1 without any), and the number of critical steps.
 struct Critical {
     Floats limit_m;  ///< the largest float that is not critical
 
@@ -106,8 +106,8 @@ HWY_INLINE void reduce_row(const Figures& figures,
     }
 }
 
-/// Reduces the discs around the columns from `ix` on, row by row of `rect`, and calls
-/// finish(iy, pair).
+/// Reduces the discs around the columns from `ix` on, row by row of `rect`, and calls finish(iy,
+/// pair).
 template <class Figures, class Finish>
 HWY_INLINE void down_the_stripe(const Figures& figures,
                                 const PaddedLayer& layer,
@@ -173,7 +173,7 @@ HWY_INLINE Floats rating(const RatingConstants& k, const Pair& critical) {
     const Floats step_m = hn::IfThenElse(all, highest, hn::Min(partly, highest));
     const Floats one = hn::Set(kFloats, 1.0F);
     const Floats passable = hn::Sub(one, hn::Mul(step_m, hn::Set(kFloats, k.inverse)));
-    // The smallest float, because a step below the critical one is not rated 0.
+    // At least the smallest float, because a step below the critical one is not rated 0.
     const Floats positive = hn::Max(passable, hn::Set(kFloats, std::numeric_limits<float>::min()));
     const auto below = hn::Lt(step_m, hn::Set(kFloats, k.smallest_above));
     const auto known = hn::Ge(highest, hn::Zero(kFloats));
@@ -210,7 +210,8 @@ HWY_EXPORT(rate_step_block);
 
 namespace {
 
-/// Comparing a float with the limit as double is comparing it with the nearest floats around that.
+/// Comparing a float with the limit as double equals comparing it with the floats next to the
+/// limit.
 RatingConstants constants_of(const TraversabilityConfig::Step& config) {
     const auto nearest = static_cast<float>(config.critical_m);
     const double rounded = static_cast<double>(nearest);

@@ -6,19 +6,19 @@
 #include "surefoot/traversability/disc_runs.hpp"
 #include "surefoot/traversability/traversability_config.hpp"
 
-/// The two passes of the step filter over a block of rows, compiled once for every instruction set
-/// and chosen at run time; all give the same bytes. What they compute is written plainly in
-/// step.hpp.
+/// The two passes of the step filter over a block of rows. Compiled for every instruction set
+/// and selected at run time; all give the same bytes. step.hpp has the plain version of the
+/// formulas.
 namespace surefoot::traversability::rows {
 
-/// Two figures of the runs of one half width around neighbouring columns.
+/// Two figures of runs with one half width around neighbouring columns.
 struct alignas(64) StepRun {
     static constexpr int kLanes = 16;
     float figures[2][kLanes];
 };
 
-/// The same bytes as traversability::step_heights, for discs of more than one cell. `ring` holds
-/// RunsOfDiscs::kept_runs() elements.
+/// Gives the same bytes as traversability::step_heights, for discs of more than one cell. `ring`
+/// holds RunsOfDiscs::kept_runs() elements.
 void step_heights(const PaddedLayer& height_m,
                   const RunsOfDiscs& widths,
                   const DiscRuns& first_disc,
@@ -26,8 +26,8 @@ void step_heights(const PaddedLayer& height_m,
                   StepRun* ring,
                   PaddedLayer& step_height_m);
 
-/// traversability::rate_step in single precision: known where that is, 0 where that is, and within
-/// 3e-7 of it.
+/// traversability::rate_step in single precision: the same unknown cells, the same zeros, and other
+/// ratings within 3e-7.
 void rate_step(const TraversabilityConfig::Step& config,
                const PaddedLayer& step_height_m,
                const RunsOfDiscs& widths,

@@ -15,22 +15,22 @@
 #include "surefoot/traversability/normals.hpp"
 
 // Lanes are neighbouring columns. For a disc with n known cells, x and y in cells from its centre
-// and z in metres, all that is asked for follows from ten sums:
+// and z in metres, all results follow from ten sums:
 //
 //   n, x, y, xx, xy, yy   small integers, exact in float
 //   z, xz, yz, zz         double
 //
-// A row of the map is reduced to its runs once: for every half width h the sums over the columns
-// -h ... h. The disc around a cell joins one run of each of its rows; a pair of rows dy and -dy
-// adds their sum to z, xz, zz and dy times their difference to yz.
+// Each row of the map is reduced to its runs once: for every half width h, the sums over the
+// columns -h ... h. The disc around a cell adds one run of each of its rows; a pair of rows dy and
+// -dy adds their sum to z, xz, zz and dy times their difference to yz.
 //
-// The heights are taken as they are, not from the centre cell, or rows could not share. First
-// moments lose nothing by that. In n zz - z z, however, the square of a height far from 0 would
-// cancel; so z^2 is split into a multiple of 2^-20 m^2 (their sums are exact) and a rest, and the
-// square of the centre height is taken away from both parts apart.
+// Heights are absolute, not relative to the centre cell, or rows could not be shared. First moments
+// lose no precision by that. In n zz - z z, however, the square of a height far from 0 would
+// cancel. So z^2 is split into a multiple of 2^-20 m^2 (sums of these are exact) and a rest, and
+// the square of the centre height is subtracted from each part.
 //
-// Scatter = n * (sum of products) - (product of sums), z in cells too, is n^2 times the covariance:
-// exactly 0 in xz, yz and zz on flat ground.
+// Scatter = n * (sum of products) - (product of sums), with z in cells too, is n^2 times the
+// covariance. On flat ground xz, yz and zz are exactly 0.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::traversability::rows::HWY_NAMESPACE {
@@ -51,7 +51,7 @@ HWY_INLINE Doubles set(double value) {
 HWY_INLINE Floats setf(float value) {
     return hn::Set(kFloats, value);
 }
-/// Doubles of as many floats.
+/// Converts as many floats as there are doubles.
 HWY_INLINE Doubles doubles(const float* from) {
     return hn::PromoteTo(kDoubles, hn::LoadU(kHalf, from));
 }
@@ -68,7 +68,8 @@ int float_lanes() {
 struct Split {
     Doubles high, low;
 };
-/// value >= 0 in two parts, the first a multiple of 2^-20 (of its last digit if that is more).
+/// Splits value >= 0 into two parts; the first is a multiple of 2^-20 (or of its last digit, if
+/// that is larger).
 HWY_INLINE Split split(Doubles value) {
     const Doubles shift = set(0x1.8p32);  // its last digit is 2^-20
     const Doubles high = hn::Sub(hn::Add(value, shift), shift);
@@ -84,8 +85,8 @@ struct RowCells {
     HWY_ALIGN float n[kCells];
 };
 
-/// The memory of the next strip's columns: down a strip every row is another page, which no
-/// processor foresees, and maps wider than a cache would wait for each of them.
+/// Prefetches the next strip's columns. Down a strip every row is on another memory page, which no
+/// processor predicts; on maps wider than the cache every row would wait.
 HWY_INLINE void ask_for_next_strip(const float* row) {
     constexpr int kLine = 16;
     for (int i = 0; i < kStrip; i += kLine) hwy::Prefetch(row + kStrip + i);
@@ -280,7 +281,7 @@ HWY_INLINE Scatter scatter(const DiscSums& sums, int i, Doubles center_m, double
     s.yy = product(doubles(sums.yy + i), y, y);
     s.xz = hn::Mul(product(load(sums.xz + i), x, z), set(per_cell));
     s.yz = hn::Mul(product(load(sums.yz + i), y, z), set(per_cell));
-    // From the centre cell on: sum (z - c)^2 = sum z^2 - n c^2 - 2 c (sum z - n c).
+    // Relative to the centre cell: sum (z - c)^2 = sum z^2 - n c^2 - 2 c (sum z - n c).
     const Split center2 = split(hn::Mul(center_m, center_m));
     const Doubles above = hn::Sub(z, hn::Mul(s.n, center_m));
     const Doubles high = hn::Sub(load(sums.zz_high + i), hn::Mul(s.n, center2.high));
@@ -295,8 +296,8 @@ struct Axis {
     Mask good;
 };
 
-/// Axis of the smallest eigenvalue l, where that is well determined; see
-/// geometry::smallest_axis for the plain way.
+/// Axis of the smallest eigenvalue l, if it is well determined; geometry::smallest_axis is the
+/// plain version.
 HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
     constexpr int kMaxSteps = 6;
     constexpr double kSmallStep = 1e-3;  // its cube is the turn that the next root leaves
@@ -314,8 +315,9 @@ HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
         hn::Add(hn::Sub(mul(s.xx, minor_z), mul(s.xy, minor(s.xy, s.zz, s.yz, s.xz))),
                 mul(s.xz, minor(s.xy, s.yz, s.yy, s.xz)));
 
-    // Halley's steps on l^3 - trace l^2 + c1 l - c0 from l = 0: cubic, and never past the root,
-    // because all three are real. A lane that has arrived stands still, whatever its neighbours do.
+    // Halley's steps on l^3 - trace l^2 + c1 l - c0 from l = 0: cubic convergence, and never past
+    // the root, because all three roots are real. A lane that has converged does not change any
+    // more, whatever its neighbours do.
     Doubles l = hn::Zero(kDoubles);
     auto under_way = hn::Ge(s.n, set(3.0));
     const auto enough = under_way;
@@ -329,7 +331,7 @@ HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
         under_way = hn::AndNot(arrived, under_way);
     }
 
-    // Perpendicular to the first two rows of (scatter - l): of length (middle - l)(largest - l)
+    // Perpendicular to the first two rows of (scatter - l); its length is (middle - l)(largest - l)
     // n_z.
     const Doubles a = hn::Sub(s.xx, l);
     const Doubles b = hn::Sub(s.yy, l);
@@ -338,7 +340,7 @@ HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
     const Doubles z = minor(a, b, s.xy, s.xy);
     const Doubles length2 = hn::Add(hn::Add(mul(x, x), mul(y, y)), mul(z, z));
     const Doubles length = hn::Sqrt(length2);
-    // A poor root leaves a residual; it turns the axis by residual / (middle - l) at most, and
+    // An inexact root leaves a residual. It turns the axis by at most residual / (middle - l), and
     // middle - l >= length / trace.
     const Doubles residual = hn::Add(hn::Add(mul(s.xz, x), mul(s.yz, y)), mul(hn::Sub(s.zz, l), z));
     const Doubles trace2 = mul(trace, trace);
@@ -359,7 +361,7 @@ struct StripOut {
     float* roughness;
 };
 
-/// Centre heights, 0 where unknown, and whether they are known.
+/// Centre heights (0 if unknown), and their known flags.
 struct Center {
     Doubles z;
     Mask known;
@@ -398,8 +400,8 @@ void normals_of(const Surface& surface,
     }
 }
 
-/// acos(x) for 0 <= x <= 1 as sqrt(1 - x) p(1 - x), p fitted with the least largest error (Remez):
-/// 2.2e-8 of p, 3e-7 rad with all roundings.
+/// acos(x) for 0 <= x <= 1 as sqrt(1 - x) p(1 - x). The fit of p minimises the largest error
+/// (Remez): 2.2e-8 of p, 3e-7 rad with all roundings.
 HWY_INLINE Floats arc_cosine(Floats x) {
     const Floats u = hn::Sub(setf(1.0F), x);
     Floats p = setf(1.26283061e-3F);
@@ -415,7 +417,7 @@ HWY_INLINE Floats arc_cosine(Floats x) {
     return hn::Mul(hn::Sqrt(u), p);
 }
 
-/// 1 - value / critical below it, else 0, and 0 for NaN.
+/// Returns 1 - value / critical, at least 0, and 0 for NaN.
 HWY_INLINE Floats rating(Floats value, float critical, float inverse) {
     const Floats passable = hn::Sub(setf(1.0F), hn::Mul(value, setf(inverse)));
     const Floats positive = hn::Max(passable, setf(std::numeric_limits<float>::min()));
@@ -460,7 +462,7 @@ void roughness_of(const Surface& surface,
         const Floats freedom = hn::Mul(n, hn::Sub(n, setf(1.0F)));
         const Floats value_m = hn::Sqrt(hn::Div(hn::Load(kFloats, square_m2 + i), freedom));
         const Floats normal_x = hn::LoadU(kFloats, out.normal_x + i);
-        // 0 / 0 of a lone cell is NaN, and that is rated 0.
+        // 0 / 0 of a cell without neighbours is NaN, which is rated 0.
         hn::StoreU(
             hn::IfThenElse(hn::IsNaN(normal_x), normal_x, rating(value_m, critical, inverse)),
             kFloats,
@@ -499,14 +501,14 @@ void rate_strip(const Surface& surface,
     };
     load(strip.iy0 - reach);
     DiscSums sums;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled before read
-    // A strip that is narrower than whole registers is rated beside the layers and copied.
+    // A strip narrower than whole registers is rated in a buffer and copied.
     const bool whole = columns == strip.nx;
     HWY_ALIGN float beside[5][kStrip];
     grid::Layer* const layers[5] = {
         &out.normal_x, &out.normal_y, &out.normal_z, &out.slope, &out.roughness};
     for (int iy = strip.iy0 - reach; iy < strip.iy0 + strip.ny + reach; ++iy) {
         std::rotate(row, row + 1, row + kept);
-        // One row ahead: what has just been written cannot be read at once at another offset.
+        // One row ahead: a load right after a store at another offset would stall.
         if (iy + 1 < strip.iy0 + strip.ny + reach) load(iy + 1);
         reduce_heights(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
         reduce_counts(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
@@ -515,7 +517,7 @@ void rate_strip(const Surface& surface,
         const float* const height_m = surface.height_m.cell(strip.ix0, center);
         float* to[5];
         for (int k = 0; k < 5; ++k) to[k] = whole ? layers[k]->row(center) + strip.ix0 : beside[k];
-        // A narrow strip is the last one.
+        // A narrow strip is always the last one, so nothing is prefetched.
         for (int k = 0; whole && k < 5; ++k) ask_for_next_strip(to[k]);
         const StripOut results{to[0], to[1], to[2], to[3], to[4]};
         const DiscOfRuns normals = disc_of(surface.normals, row + reach);

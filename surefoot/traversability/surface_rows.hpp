@@ -6,17 +6,17 @@
 #include "surefoot/traversability/disc_runs.hpp"
 #include "surefoot/traversability/traversability_config.hpp"
 
-/// Normals, slope and roughness over a block of rows, compiled once for every instruction set and
-/// chosen at run time; all give the same bytes. What they compute is written plainly in
-/// normals.hpp, slope.hpp and roughness.hpp.
+/// Normals, slope and roughness over a block of rows. Compiled for every instruction set and
+/// selected at run time; all give the same bytes. normals.hpp, slope.hpp and roughness.hpp have the
+/// plain version of the formulas.
 namespace surefoot::traversability::rows {
 
-/// Columns that are worked on at a time: few enough that the runs of a disc's rows stay in the
-/// nearest memory.
+/// Columns that are processed at a time: few enough to keep the runs of a disc's rows in the L1
+/// cache.
 inline constexpr int kStrip = 32;
 
 /// Sums over the known cells of runs of one half width around kStrip neighbouring columns; x in
-/// cells from the centre of the run, z in metres. z^2 is held in two parts, see surface_rows.cpp.
+/// cells from the centre of the run, z in metres. z^2 has two parts, see surface_rows.cpp.
 struct alignas(64) RunSums {
     double z[kStrip];
     double xz[kStrip];
@@ -27,7 +27,7 @@ struct alignas(64) RunSums {
     float xx[kStrip];
 };
 
-/// What is the same for all blocks.
+/// Data shared by all blocks.
 struct Surface {
     const PaddedLayer& height_m;
     double resolution_m;
@@ -47,8 +47,8 @@ struct SurfaceLayers {
     grid::Layer& roughness;
 };
 
-/// `ring` holds RunsOfDiscs::kept_runs() elements. The normals agree with the plain ones to 1e-9
-/// rad before they are rounded to float; slopes to 1e-6 rad and roughness to 1e-6 of the rating.
+/// `ring` holds RunsOfDiscs::kept_runs() elements. Before rounding to float, the normals agree with
+/// the plain normals to 1e-9 rad; slopes agree to 1e-6 rad, roughness to 1e-6 of the rating.
 void rate_surface(const Surface& surface,
                   const CellRect& rect,
                   RunSums* ring,

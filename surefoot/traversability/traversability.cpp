@@ -21,8 +21,8 @@ int blocks_of(const CellRect& rect) {
     return (rect.ny + kBlockRows - 1) / kBlockRows;
 }
 
-/// Runs `work(index, rect)` for blocks of rows of `rect`. The closure that reaches the executor is
-/// one reference, so that std::function needs no memory for it.
+/// Runs `work(index, rect)` for blocks of rows of `rect`. The closure for the executor is a single
+/// reference, so std::function needs no memory for it.
 template <typename Work>
 void for_row_blocks(Executor& executor, const CellRect& rect, const Work& work) {
     struct Job {
@@ -84,8 +84,8 @@ void Traversability::rate(ImageView<const float> height_m,
     const int height_margin = std::max({Disc::reach_of(config_.normals.radius_m, resolution_m),
                                         first_reach,
                                         Disc::reach_of(config_.roughness.radius_m, resolution_m)});
-    // Step heights are needed as far as the second disc reaches around the cells to be rated,
-    // heights as far as the first disc reaches around those.
+    // Step heights are needed within the second disc around the rated cells, heights within the
+    // first disc around those.
     const CellRect wide = rect.grown(second_reach).clipped(nx, ny);
     const CellRect read = wide.grown(height_margin).clipped(nx, ny);
     height_.reset(read, height_margin);

@@ -15,8 +15,8 @@
 
 namespace surefoot::traversability {
 
-/// What is known about every cell; NaN = unknown. Normals are unit vectors in the frame of the map,
-/// z >= 0; the rest are ratings from 1 (traversable) to 0 (not).
+/// Result per cell; NaN = unknown. Normals are unit vectors in the frame of the map, z >= 0; the
+/// other layers are ratings from 1 (traversable) to 0 (not traversable).
 struct TraversabilityLayers {
     grid::Layer normal_x;
     grid::Layer normal_y;
@@ -30,20 +30,20 @@ struct TraversabilityLayers {
     [[nodiscard]] bool has_size(int nx, int ny) const noexcept;
 };
 
-/// How the filters are worked out.
+/// Implementation of the filters.
 enum class Way : std::uint8_t {
-    fast,   ///< by runs of cells, for every instruction set (step_rows, surface_rows)
-    plain,  ///< cell by cell; what the fast way is tested and timed against
+    fast,   ///< runs of cells, for every instruction set (step_rows, surface_rows)
+    plain,  ///< cell by cell; reference for tests and timings of `fast`
 };
 
 /// Rates a height map: normals -> slope, step, roughness -> weighted sum (Wermelinger et al. 2016).
-/// Holds the working memory, so that rating maps of one size allocates nothing after the first.
-/// Results are the same bytes for every executor and every processor. Cost: proportional to cells
-/// times radii. Discs of more than DiscRuns::kMaxReach cells, and first discs of a single cell, are
-/// left to the plain filters (cells times disc sizes).
+/// Keeps its working memory: maps of one size allocate nothing after the first. Every executor and
+/// every processor gives the same bytes. Cost: cells times radii. Discs of more than
+/// DiscRuns::kMaxReach cells, and first discs of a single cell, use the plain filters (cells times
+/// disc sizes). Not thread-safe.
 class Traversability {
   public:
-    /// Blocks of rows that are one piece of work for the executor.
+    /// Rows of one work item for the executor.
     static constexpr int kBlockRows = 40;
 
     explicit Traversability(const TraversabilityConfig& config, Way way = Way::fast)
@@ -56,21 +56,21 @@ class Traversability {
               Executor& executor,
               TraversabilityLayers& out);
 
-    /// Rates the cells of `region` only and leaves the others of `out` as they are; the region gets
-    /// the values that rating the whole map would give it. If `out` has another size than the map,
-    /// all cells are rated.
+    /// Rates only the cells of `region` and leaves the other cells of `out` as they are. The values
+    /// equal those of a rating of the whole map. If `out` has another size than the map, all cells
+    /// are rated.
     void rate(ImageView<const float> height_m,
               double resolution_m,
               const CellRect& region,
               Executor& executor,
               TraversabilityLayers& out);
 
-    /// Highest minus lowest within the first disc [m], pass 1 of the step filter, of the cells
-    /// rated last; NaN = unknown.
+    /// Step heights of the cells rated last: highest minus lowest height within the first disc [m],
+    /// pass 1 of the step filter; NaN = unknown.
     [[nodiscard]] const PaddedLayer& rated_step_heights() const noexcept { return step_height_; }
 
-    /// The cells whose ratings can differ after the heights in `changed` have changed (not
-    /// clipped).
+    /// Returns the cells whose ratings may change with the heights in `changed` (not clipped to the
+    /// map).
     [[nodiscard]] CellRect affected_by(const CellRect& changed, double resolution_m) const noexcept;
 
   private:
@@ -101,7 +101,7 @@ class Traversability {
     RunsOfDiscs surface_runs_;  ///< of normals and roughness
     RunsOfDiscs first_runs_;
     RunsOfDiscs second_runs_;
-    // Kept runs, one portion for each block of rows.
+    // Kept runs, one part for each block of rows.
     std::vector<rows::RunSums> surface_rings_;
     std::vector<rows::StepRun> step_rings_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heights that nobody measures, discs that fit no map, sizes that are none: an outcome or a
-// sentence, and never a cell that is traversable by mistake. Shapes and poses of footprints:
-// footprint_test; 1 x 1 maps and wide discs against the plain way: traversability_fast_test.
+// Invalid heights, discs that fit no map and invalid sizes must give an outcome or a message, and
+// never a cell that is traversable by mistake. Shapes and poses of footprints: footprint_test; 1 x
+// 1 maps and wide discs against the plain way: traversability_fast_test.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST(TraversabilityBadInput, DiscsSmallerThanACellRateNothingAndAreNamed) {
     const auto problem = config.problem(kResolution_m);
     ASSERT_TRUE(problem);
     EXPECT_NE(problem->find("less than the cell size"), std::string::npos) << *problem;
-    // Whoever rates all the same learns nothing, least of all that the ground is safe.
+    // A caller that rates in spite of the problem gets no rating, and in particular no safe ground.
     const TraversabilityLayers layers = rated(grid::Layer(kSide, kSide, 0.0F), config);
     for (std::size_t i = 0; i < layers.traversability.size(); ++i) {
         ASSERT_FALSE(layers.traversability.data()[i] > 0.0F) << i;

@@ -71,7 +71,7 @@ void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
                    stance_radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "known cells this near to the body are what it stands on");
+                   "known cells this near to the body form the stance");
 }
 
 void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
@@ -79,12 +79,13 @@ void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
                    safe_threshold,
                    0.0,
                    1.0,
-                   "confidence: that the true rating is on the same side of this one");
+                   "confidence: probability that the true rating is on the same side of this"
+                   " rating");
     visitor.integer("independent_cells",
                     independent_cells,
                     1,
                     1000,
-                    "most cells of a disc whose height errors may average");
+                    "largest number of independent height errors in a disc");
 }
 
 void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
@@ -94,7 +95,7 @@ void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "it must stand out of the noise of the mean height within this distance");
+                   "radius of the patch whose mean height must resolve the obstacle");
 }
 
 void TraversabilityConfig::describe(ConfigVisitor& visitor) {
@@ -114,7 +115,7 @@ void TraversabilityConfig::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> TraversabilityConfig::problem(double resolution_m) const {
     if (!(resolution_m > 0.0)) {
-        return fmt::format("a map with cells of {} m cannot be rated; a cell size is above 0",
+        return fmt::format("a map with cells of {} m cannot be rated: give a cell size above 0",
                            resolution_m);
     }
     if (!(weights.slope + weights.step + weights.roughness > 0.0)) {

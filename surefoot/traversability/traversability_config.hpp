@@ -11,16 +11,16 @@
 
 namespace surefoot::traversability {
 
-/// How the weighted sum treats a cell in which a layer is unknown or impassable.
+/// Treatment of a cell in which one layer is unknown or impassable.
 enum class Combine : std::uint8_t {
     mean_nan,        ///< weighted mean; unknown if any layer is unknown
-    zero_dominates,  ///< an exact 0 in a layer with a weight forces 0, also over unknown
+    zero_dominates,  ///< an exact 0 in a weighted layer forces 0, also with unknown layers
 };
 
-/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius wants
+/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius needs
 /// at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
-/// unknown. The defaults are the critical values of `ethz` with radii between the centre distances
-/// of a 25 mm grid (no cell on the rim) that average stereo noise over 29, 21 and 29 cells.
+/// unknown. Defaults: the critical values of `ethz`, with radii between the centre distances of a
+/// 25 mm grid (no cell on the rim) that average stereo noise over 29, 21 and 29 cells.
 struct TraversabilityConfig {
     struct Normals {
         double radius_m = 0.08;
@@ -51,7 +51,7 @@ struct TraversabilityConfig {
 
     /// See reachability.hpp.
     struct Reach {
-        double max_step_m = 0.18;  ///< the step that the gate's class `stair` may take
+        double max_step_m = 0.18;  ///< largest step of the gate's class `stair`
         double stance_radius_m = 0.30;
         void describe(ConfigVisitor& visitor);
     };
@@ -63,7 +63,7 @@ struct TraversabilityConfig {
         void describe(ConfigVisitor& visitor);
     };
     struct Resolve {
-        double step_m = 0.010;    ///< the lowest door sill that a toe catches
+        double step_m = 0.010;    ///< lowest door sill on which a toe catches
         double radius_m = 0.025;  ///< a patch of about 50 mm, as the gate's
         void describe(ConfigVisitor& visitor);
     };
@@ -80,11 +80,11 @@ struct TraversabilityConfig {
 
     void describe(ConfigVisitor& visitor);
 
-    /// First reason why this cannot rate a grid of that cell size, or nothing.
+    /// Returns the first reason why this cannot rate a grid of that cell size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
-    /// The same with every radius that is shorter than a cell widened to one cell, the smallest
-    /// disc that has neighbours: one configuration serves coarse maps too, and obstacles grow no
-    /// more than they must.
+    /// Returns a copy in which every radius below one cell becomes one cell, the smallest disc with
+    /// neighbours. So one configuration also serves coarse maps, and obstacles grow no more than
+    /// necessary.
     [[nodiscard]] TraversabilityConfig widened_to(double resolution_m) const;
 };
 
@@ -92,7 +92,7 @@ inline constexpr std::array<const char*, 4> kPresetNames{
     "rex_zed", "rex_demo_stairs", "laser", "ethz"};
 
 /// Published parameter sets for comparison: `rex_zed`, `rex_demo_stairs` and `laser` (Lange 2016)
-/// with the zero rule, `ethz` (traversability_estimation) with the mean. Nothing for another name.
+/// with the zero rule, `ethz` (traversability_estimation) with the mean. Else empty.
 [[nodiscard]] std::optional<TraversabilityConfig> preset(std::string_view name);
 
 }  // namespace surefoot::traversability

@@ -35,7 +35,7 @@ struct Case {
     TraversabilityConfig config;
 };
 
-/// Slope, step in it, noise, holes, all 1000 m up if wanted.
+/// A slope with a step, noise and holes, at the height `base_m`.
 grid::Layer noisy(int nx, int ny, double hole_share, double noise_m, double base_m, Rng& rng) {
     grid::Layer map(nx, ny);
     const double slope = rng.uniform(-2.0, 2.0);
@@ -52,7 +52,7 @@ grid::Layer noisy(int nx, int ny, double hole_share, double noise_m, double base
     return map;
 }
 
-/// Noise with heights that no map should hold among it.
+/// Noise that also contains invalid heights.
 grid::Layer spoilt(int nx, int ny, Rng& rng) {
     grid::Layer map = noisy(nx, ny, 0.3, 0.003, 0.0, rng);
     const float bad[] = {kNanF, kInfinity, -kInfinity, 1e30F, -1e30F, 3e38F, -3e38F, 1e-40F};
@@ -144,7 +144,7 @@ std::vector<Named> all(const TraversabilityLayers& layers) {
             {"traversability", layers.traversability, kSlopeTolerance}};
 }
 
-/// Unknown in the same cells, 0 in the same cells, and close everywhere.
+/// Expects the same unknown cells, the same zeros, and close values everywhere.
 void expect_close(const TraversabilityLayers& ours, const TraversabilityLayers& truth) {
     for (std::size_t k = 0; k < all(truth).size(); ++k) {
         const grid::Layer& a = all(ours)[k].layer;
@@ -168,7 +168,7 @@ void expect_close(const TraversabilityLayers& ours, const TraversabilityLayers& 
     }
 }
 
-/// NaN equals NaN, and 0 differs from -0.
+/// Expects equal bytes: NaN equals NaN, and 0 differs from -0.
 void expect_same_bytes(const TraversabilityLayers& ours, const TraversabilityLayers& truth) {
     for (std::size_t k = 0; k < all(truth).size(); ++k) {
         const grid::Layer& a = all(ours)[k].layer;
@@ -215,7 +215,7 @@ TEST(TraversabilityFast, SameBytesOnEveryProcessor) {
     }
 }
 
-/// Single precision must see a step on the same side of the limit, which is double.
+/// Single precision must place a step on the same side of the limit, which is a double.
 TEST(TraversabilityFast, StepsBesideTheCriticalOneAreCountedAlike) {
     for (const double critical_m : {0.05, 0.1, 0.12, 0.125, 0.3}) {
         TraversabilityConfig config;
@@ -232,7 +232,7 @@ TEST(TraversabilityFast, StepsBesideTheCriticalOneAreCountedAlike) {
     }
 }
 
-/// So many cells that a difference of 1e-12 in an axis would turn a rounding somewhere.
+/// There are so many cells that a difference of 1e-12 in an axis would change some rounding.
 TEST(TraversabilityFast, RoughGroundHasTheSameBytesOnEveryProcessor) {
     constexpr std::uint64_t kSeed = 54;
     Rng rng(kSeed);
@@ -247,7 +247,7 @@ TEST(TraversabilityFast, RoughGroundHasTheSameBytesOnEveryProcessor) {
     }
 }
 
-/// Changes rectangles of a map again and again and rates only what they can change.
+/// Changes rectangles of a map repeatedly, and rates only the cells that can change.
 TEST(TraversabilityFast, UpdatingChangedCellsGivesTheBytesOfAFullRating) {
     constexpr std::uint64_t kSeed = 53;
     Rng rng(kSeed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The definitions written out once more, as slowly and directly as possible: distances instead of
-// discs, two passes about the mean, an iterative eigen solver.
+// The definitions in a slow and direct implementation: distances instead of discs, two passes about
+// the mean, an iterative eigen solver.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -26,7 +26,7 @@ class Oracle {
     Oracle(const grid::Layer& map, double resolution_m, const TraversabilityConfig& config)
         : map_(map), resolution_m_(resolution_m), config_(config) {}
 
-    /// Unknown: nothing.
+    /// Empty for unknown cells.
     [[nodiscard]] std::optional<Eigen::Vector3d> normal(int ix, int iy) const {
         if (!known(ix, iy)) return std::nullopt;
         const auto points = points_around(ix, iy, config_.normals.radius_m);
@@ -152,7 +152,8 @@ TEST(TraversabilityOracle, FiltersEqualTheirDefinitionsOnRandomMaps) {
         for (int iy = 0; iy < map.height(); ++iy) {
             for (int ix = 0; ix < map.width(); ++ix) {
                 const auto n = oracle.normal(ix, iy);
-                // Cells on one line in the plan view have an upright plane: its side is arbitrary.
+                // Cells on one line in the plan view have an upright plane, whose side is
+                // arbitrary.
                 const bool upright = n && n->z() < 1e-6;
                 const double sign =
                     upright && n->x() * static_cast<double>(layers.normal_x.at(ix, iy)) +

@@ -101,7 +101,7 @@ int differing_cells(const TraversabilityLayers& a, const TraversabilityLayers& b
     return count;
 }
 
-/// Runs the pieces of work in reverse order and claims many threads.
+/// Runs the work items in reverse order and reports many threads.
 class Reverse final : public Executor {
   public:
     void parallel_for(int count, const std::function<void(int)>& work) override {
@@ -201,7 +201,7 @@ TEST(Traversability, StepEdgeStopsBothItsSides) {
 }
 
 TEST(Traversability, StepDoesNotDependOnTheHeightOfTheFloor) {
-    // A window that started at height 0 would see a step of 5 m everywhere here.
+    // A search window that starts at height 0 would find a step of 5 m everywhere here.
     const TraversabilityLayers layers = rated(map_cm("500 500 500\n500 500 500\n500 500 500"));
     EXPECT_EQ(layers.step.at(1, 1), 1.0F);
 }

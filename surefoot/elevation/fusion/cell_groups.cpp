@@ -63,8 +63,8 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
 }
 
 void CellGroups::assign(const CellSamples& samples, std::size_t cells) {
-    // Counted two places ahead, so that the sums stand one ahead: placing the samples of a cell
-    // moves its begin to its end, which is where the next one's begin belongs.
+    // Counts two places ahead, so the sums stand one place ahead. Placing the samples of a cell
+    // moves its begin to its end, which is the begin of the next cell.
     begin_.assign(cells + 2, 0);
     for (int b = 0; b < samples.blocks(); ++b) {
         const CellSamples::Block from = samples.block(b);

@@ -10,8 +10,8 @@
 
 namespace surefoot::elevation {
 
-/// A measured point in odom axes; x and y count from the corner of the grid, so that floats suffice
-/// anywhere in the world. z is the height in odom.
+/// A measured point in odom axes. x and y count from the corner of the grid, so floats are precise
+/// enough anywhere in the world. z is the height in odom.
 struct GridPoint {
     float x_m = 0.0F;
     float y_m = 0.0F;
@@ -19,13 +19,13 @@ struct GridPoint {
     float var_m2 = 0.0F;  ///< of the height
 };
 
-/// Heights on their way into cells, in blocks that can be filled side by side.
+/// Heights and their cells, in blocks that threads can fill at the same time.
 class CellSamples {
   public:
-    /// A block may be written this far beyond its last sample: whole registers.
+    /// Writers of whole registers may write this far beyond the last sample of a block.
     static constexpr std::size_t kSlack = 64;
 
-    /// Forgets everything; room for `blocks` blocks of `most` samples each. Allocates only to grow.
+    /// Empties all; makes room for `blocks` blocks of `most` samples each. Allocates only to grow.
     void reset(int blocks, std::size_t most);
     [[nodiscard]] int blocks() const noexcept { return static_cast<int>(counts_.size()); }
 
@@ -52,8 +52,8 @@ class CellSamples {
     std::vector<float> var_m2_;
 };
 
-/// The samples of points over a grid, as one block. Points outside of the grid are left out;
-/// returns how many (what is not finite is outside).
+/// Converts points over a grid into samples, as one block. Skips points outside of the grid, also
+/// those that are not finite, and returns their number.
 std::int64_t samples_from_points(std::span<const GridPoint> points,
                                  const grid::GridGeometry& geometry,
                                  CellSamples& samples);
@@ -61,7 +61,7 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
 /// Groups samples by cell (counting sort; no allocation once the buffers have grown).
 class CellGroups {
   public:
-    /// What is read may reach this far beyond the last sample of a cell: whole registers.
+    /// Readers of whole registers may read this far beyond the last sample of a cell.
     static constexpr std::size_t kSlack = 16;
 
     void assign(const CellSamples& samples, std::size_t cells);

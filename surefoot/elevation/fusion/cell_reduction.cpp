@@ -9,7 +9,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A sum in sixteen columns: sample i goes into column i modulo 16.
+/// Sum in sixteen columns: sample i goes into column i modulo 16.
 class LaneSum {
   public:
     void add(std::size_t index, float value) noexcept { column_[index % 16] += value; }
@@ -19,7 +19,8 @@ class LaneSum {
     float column_[16] = {};
 };
 
-/// Height with `rank` samples at or above it (rank 1 = the maximum). Zero has no sign.
+/// Returns the height with `rank` samples at or above it (rank 1 = the maximum). Adding 0 removes
+/// the sign of zero.
 float upper_quantile(std::vector<float> z_m, int rank) {
     const auto nth = z_m.begin() + (rank - 1);
     std::nth_element(z_m.begin(), nth, z_m.end(), std::greater<>());
@@ -112,7 +113,7 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                     min_face_points,
                     1,
                     1000000,
-                    "so many points of a cell without a common height are a vertical face");
+                    "this many points of a cell without a common height are a vertical face");
     visitor.number("systematic_sigma_m",
                    systematic_sigma_m,
                    0.0,
@@ -123,7 +124,7 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "a cell that reaches beyond the image needs this share of the points of level "
-                   "ground; 0 = min_points do");
+                   "ground; 0 = min_points suffice");
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

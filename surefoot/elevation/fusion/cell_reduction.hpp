@@ -10,28 +10,28 @@
 
 namespace surefoot::elevation {
 
-/// How the points of one frame that fall into one cell become one measurement.
+/// Settings that reduce the points of one frame in one cell to one measurement.
 struct ReductionConfig {
-    int min_points = 3;              ///< fewer points on one surface are no measurement
+    int min_points = 3;              ///< fewer points on one surface give no measurement
     double upper_share = 0.1;        ///< share of the cell's points that the upper surface needs
     double window_sigma = 2.5;       ///< points this close to a surface belong to it ...
     double surface_relief_m = 0.01;  ///< ... plus this: relief of the ground within a cell
-    /// Errors of a semi-global matcher hang together over more pixels than a cell covers: 1.0-1.3
-    /// independent ones per cell and frame were measured (docs/lab/correlated_depth.md).
+    /// Errors of a semi-global matcher are correlated over more pixels than a cell covers: we
+    /// measured 1.0-1.3 independent errors per cell and frame (docs/lab/correlated_depth.md).
     double points_per_independent = 30.0;
     double max_independent = 1.0;
-    /// So many points without a common height are a vertical face, seen from the side.
+    /// This many points without a common height are a vertical face, seen from the side.
     int min_face_points = 60;
     double systematic_sigma_m = 0.002;  ///< calibration and lattice errors, in every measurement
-    /// A cell that reaches beyond the image needs this share of the points that level ground in it
-    /// would show. What lies outside is met by those points alone that err towards it: a standing
-    /// camera waits until some do, and the ground looks 15 mm too high there (ZED, 1.2 m).
+    /// A cell that reaches beyond the image needs this share of the points of level ground. A point
+    /// from outside the image reaches the cell only if its error points inwards. With a standing
+    /// camera such points collect, and the ground looks 15 mm too high there (ZED, 1.2 m).
     double border_share = 0.75;
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// What one frame says about one cell.
+/// Measurement of one cell by one frame.
 struct CellMeasurement {
     float z_m = 0.0F;  ///< of the highest surface that enough points share
     float var_m2 = 0.0F;
@@ -40,31 +40,31 @@ struct CellMeasurement {
     int points = 0;  ///< on that surface
 };
 
-/// Highest surface among the samples of a cell: starts at an upper quantile of the heights, so that
-/// single outliers above do not count, and climbs to the centre of the points around it (mean
-/// shift). If too few points share that height, tries the next lower one. Its variance is the
-/// larger of the mean variance and the scatter of the points, over the number of independent
-/// errors, plus the systematic part. Many points that share no height are a vertical face (a wall,
-/// a person) and have the height of the upper quantile; few are nothing. `z_m` and `var_m2` are
-/// finite and equally long.
+/// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of
+/// the heights, so single outliers above do not count, and climbs to the centre of the points
+/// around it (mean shift). If too few points share that height, it tries the next lower one. The
+/// variance is the larger of the mean variance and the scatter of the points, divided by the number
+/// of independent errors, plus the systematic part. Many points without a common height are a
+/// vertical face (a wall, a person) with the height of the upper quantile; few such points give no
+/// result. `z_m` and `var_m2` must be finite and of equal length.
 ///
-/// The plain version: `reduce_cells` gives the same bytes.
+/// This is the reference version; `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
                                                          std::span<const float> z_m,
                                                          std::span<const float> var_m2);
 
-// What both versions share.
+// Parts that both versions use.
 
-inline constexpr int kClimbs = 3;    ///< mean shift settles to a few percent of its window in three
+inline constexpr int kClimbs = 3;    ///< 3 steps reach a few percent of the window
 inline constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as pure scatter
 
-/// Points that a surface in a cell of `n` points needs.
+/// Returns the number of points that a surface needs in a cell of `n` points.
 [[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {
     // in range: describe() keeps upper_share in [0, 1], so this is at most n
     return std::max({1, static_cast<int>(std::ceil(config.upper_share * n)), config.min_points});
 }
 
-/// Half width of the window around a surface.
+/// Returns the half width of the window around a surface.
 [[nodiscard]] inline float half_width(const ReductionConfig& config, float mean_var_m2) noexcept {
     return static_cast<float>(config.window_sigma * std::sqrt(static_cast<double>(mean_var_m2)) +
                               config.surface_relief_m);
@@ -78,8 +78,8 @@ struct Surface {
     float scatter_m2 = 0.0F;
 };
 
-/// From sums over `points` > 0 points of their offset from the centre, its square, and the
-/// variance.
+/// Computes a surface from sums over `points` > 0 points: offset from the centre, its square, and
+/// the variance.
 [[nodiscard]] inline Surface surface_of(
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
     const auto n = static_cast<float>(points);
@@ -99,14 +99,14 @@ struct Surface {
                               config.systematic_sigma_m * config.systematic_sigma_m);
 }
 
-/// What stands for a cell in which no surface has enough points: a face, or nothing (0 points).
+/// Result for a cell in which no surface has enough points: a vertical face, or nothing (0 points).
 /// `seen` holds the extremes.
 [[nodiscard]] CellMeasurement face_of(const ReductionConfig& config,
                                       const CellMeasurement& seen,
                                       int points,
                                       float half_width_m) noexcept;
 
-/// Adds sixteen columns up, always in the same order.
+/// Adds sixteen columns, always in the same order.
 [[nodiscard]] constexpr float tree(const float column[16]) noexcept {
     float four[4] = {};
     for (int i = 0; i < 4; ++i) {

@@ -67,8 +67,8 @@ TEST(CellReduction, FloorIsUnbiasedAndItsVarianceIsNotLowered) {
         sum_m += static_cast<double>(measured->z_m);
         EXPECT_GE(measured->var_m2, kVar) << "60 pixels of one frame share their error";
     }
-    // The mean over cells is known to 5 mm / sqrt(60 * 2000) = 0.015 mm; mean shift leaves less
-    // than a tenth of a millimetre of the upper start.
+    // The standard error of the mean over cells is 5 mm / sqrt(60 * 2000) = 0.015 mm. Mean shift
+    // keeps less than a tenth of a millimetre of its upper start.
     EXPECT_NEAR(sum_m / kCells, 0.0, 1e-4);
 }
 
@@ -126,7 +126,7 @@ TEST(CellReduction, AFaceSeenFromTheSideHasTheHeightOfItsTop) {
     EXPECT_NEAR(measured->z_m, 0.81F, 0.05F);
     EXPECT_GT(std::sqrt(measured->var_m2), 0.01F);
     EXPECT_EQ(measured->points, 400);
-    // A handful of scattered points is noise.
+    // A few scattered points are noise.
     samples.resize(20);
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i].z_m = 0.05F * static_cast<float>(i);
     EXPECT_FALSE(reduce({}, samples));
@@ -141,7 +141,7 @@ TEST(CellReduction, VarianceFollowsTheIndependentPointsAndTheScatter) {
     EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 / 2.0 + 4e-6, 1e-11);
     samples.assign(100, {0.0F, kVar});
     EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 / 3.0 + 4e-6, 1e-11);
-    // Points that scatter more than they claim: alternating +-5 mm around 0.
+    // Points with more scatter than their variance states: alternating +-5 mm around 0.
     for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = {i % 2 == 0 ? 0.005F : -0.005F, 1e-6F};
     EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 * 100.0 / 99.0 / 3.0 + 4e-6, 1e-9);

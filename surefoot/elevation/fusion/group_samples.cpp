@@ -15,14 +15,15 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of runs: most are shorter than this, and what is stored beyond them costs all the same.
+/// Vector type for runs: most runs are shorter than this, and stores beyond a run cost the same.
 using D = hn::CappedTag<float, 8>;
 using DU = hn::ScalableTag<std::uint32_t>;
 
-/// Samples whose runs are found at a time: few enough to stay in the nearest memory.
+/// Samples per search for runs: few enough to stay in the L1 cache.
 constexpr std::size_t kChunk = 512;
 
-/// Where runs of equal cells begin among samples [first, last), after `first` itself; how many.
+/// Finds the begins of runs of equal cells among samples [first, last), after `first` itself.
+/// Returns their number.
 HWY_INLINE std::size_t find_runs(const std::uint32_t* cell,
                                  std::size_t first,
                                  std::size_t last,
@@ -43,8 +44,8 @@ HWY_INLINE std::size_t find_runs(const std::uint32_t* cell,
     return runs;
 }
 
-/// Calls f(first sample, how many) for every run of equal cells; a long one may come in parts.
-/// Some runs earlier it calls ahead(first sample).
+/// Calls f(first sample, length) for every run of equal cells; a long run may come in parts. Calls
+/// ahead(first sample) some runs earlier.
 template <class F, class Ahead>
 HWY_INLINE void for_each_run(const std::uint32_t* cell,
                              std::size_t samples,
@@ -81,7 +82,7 @@ void place_runs(const std::uint32_t* cell,
                 const SamplePlaces& to) {
     const D d;
     const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-    const SamplePlaces places = to;  // of our own: no store of a register can change it
+    const SamplePlaces places = to;  // a local copy that no vector store can alias
     const auto place = [=](std::uint32_t first, std::uint32_t n) {
         const std::uint32_t next = places.next[cell[first]];
         places.next[cell[first]] = next + n;
@@ -91,7 +92,7 @@ void place_runs(const std::uint32_t* cell,
             hn::BlendedStore(hn::LoadU(d, var_m2 + first + k), exists, d, places.var_m2 + next + k);
         }
     };
-    // Along a row of pixels the cells lie far from each other: their memory is fetched beforehand.
+    // Along a row of pixels the cells are far apart in memory, so their memory is prefetched.
     const auto fetch = [=](std::uint32_t first) {
         const std::uint32_t next = places.next[cell[first]];
         hwy::Prefetch(places.z_m + next);

@@ -15,7 +15,7 @@ constexpr std::uint32_t kCells = 50;
 constexpr std::size_t kBeyond = 16;
 constexpr float kUntouched = -1.0F;
 
-/// Runs of one cell, from single samples to more than are looked at together.
+/// Runs of one cell, from single samples to more samples than one chunk holds.
 std::vector<std::uint32_t> cells_in_runs(Rng& rng, std::size_t samples) {
     std::vector<std::uint32_t> cell;
     cell.reserve(samples);

@@ -13,12 +13,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Largest k with 2^k <= cells.
+/// Returns the largest k with 2^k <= cells.
 int level_of(int cells) {
     return static_cast<int>(std::bit_width(static_cast<unsigned>(cells))) - 1;
 }
 
-/// Calls f(first row of a block, behind its last row).
+/// Calls f(first row of a block, row behind its last row).
 template <typename F>
 void for_row_blocks(Executor& executor, int rows, int block_rows, const F& f) {
     const int blocks = (rows + block_rows - 1) / block_rows;
@@ -27,7 +27,7 @@ void for_row_blocks(Executor& executor, int rows, int block_rows, const F& f) {
         int rows;
         int block_rows;
     } job{f, rows, block_rows};
-    // One reference, so that std::function needs no memory for it.
+    // A single reference, so std::function needs no memory for the closure.
     executor.parallel_for(blocks, [&job](int block) {
         const int first = block * job.block_rows;
         for (int iy = first; iy < std::min(first + job.block_rows, job.rows); ++iy) job.f(iy);
@@ -40,7 +40,7 @@ int HeightBounds::reach(const Input& input, int ix, int iy) {
     const double drift_m = static_cast<double>(input.horizontal_drift_m.row(iy)[ix]);
     const int most = std::max(input.height_m.width, input.height_m.height);
     const double cells = std::ceil(input.sigmas * drift_m / input.resolution_m);
-    return cells < most ? std::max(0, static_cast<int>(cells)) : most;  // NaN: everywhere
+    return cells < most ? std::max(0, static_cast<int>(cells)) : most;  // NaN: the whole map
 }
 
 int HeightBounds::longest_reach(const Input& input) const {
@@ -140,7 +140,7 @@ void HeightBounds::answer_row(const Input& input,
             const int side = 1 << level;
             lowest_m = kInfinity;
             highest_m = -kInfinity;
-            // Two by two blocks, more of them only where the border cuts the square.
+            // Two by two blocks; more only if the border cuts the square.
             for (int y = y0;; y = std::min(y + side, y1 - side + 1)) {
                 for (int x = x0;; x = std::min(x + side, x1 - side + 1)) {
                     lowest_m = std::min(lowest_m, table.lowest_m.row(y)[x]);

@@ -9,14 +9,14 @@
 
 namespace surefoot::elevation {
 
-/// Between which heights the ground of a cell lies when nobody is sure where the cell is: the
-/// lowest and the highest that any known cell within the horizontal uncertainty reaches,
+/// Lower and upper bound of the ground in a cell whose horizontal position is uncertain: the lowest
+/// and the highest value of any known cell within the horizontal uncertainty,
 ///   lower = min over |dx|, |dy| <= r of (h - k sigma),   upper = max of (h + k sigma),
 ///   r = ceil(k drift / resolution) of the cell asked for.
-/// The role of the ancestor's fused map (Fankhauser 2014, weighted quantiles in an ellipse), but
-/// with a square, without weights and therefore on the safe side, and in bounded time: a table of
-/// minima over blocks of 1, 2, 4, ... cells answers a square of any size with four look-ups, where
-/// the ancestor needs 0.3 s at 12 mm of uncertainty and 19 s at 100 mm.
+/// The fused map of the reference implementation (Fankhauser 2014) takes weighted quantiles in an
+/// ellipse. A square without weights is on the safe side, and its time is bounded: a table of
+/// minima over blocks of 1, 2, 4, ... cells answers a square of any size with four look-ups. The
+/// reference implementation needs 0.3 s at 12 mm of uncertainty and 19 s at 100 mm.
 class HeightBounds {
   public:
     struct Input {
@@ -26,9 +26,9 @@ class HeightBounds {
         double resolution_m = 0.025;
         double sigmas = 2.0;
     };
-    /// All cells; NaN where the height is unknown. A drift that is not finite reaches everywhere.
-    /// `lower_m` and `upper_m` take the size of the map. Allocates only to grow. The same bytes for
-    /// every executor.
+    /// Computes all cells; NaN where the height is unknown. A drift that is not finite covers the
+    /// whole map. `lower_m` and `upper_m` take the size of the map. Allocates only to grow. Every
+    /// executor gives the same bytes.
     void compute(const Input& input,
                  Executor& executor,
                  grid::Layer& lower_m,
@@ -36,13 +36,13 @@ class HeightBounds {
 
   private:
     static constexpr int kBlockRows = 16;
-    /// Lowest and highest over a square of 2^level cells that begins at each cell.
+    /// Lowest and highest value over a square of 2^level cells that begins at each cell.
     struct Level {
         grid::Layer lowest_m;
         grid::Layer highest_m;
     };
 
-    /// Cells to either side, and the most of all cells.
+    /// Returns the cells to either side; at most the whole map.
     [[nodiscard]] static int reach(const Input& input, int ix, int iy);
     [[nodiscard]] int longest_reach(const Input& input) const;
     void build(const Input& input, int levels, Executor& executor);

@@ -36,7 +36,7 @@ Map random_map(Rng& rng, int nx, int ny, double drift_m) {
     return map;
 }
 
-/// One cell after the other, as the definition says.
+/// Checks every cell against the definition.
 void expect_as_defined(const Map& map, const grid::Layer& lower_m, const grid::Layer& upper_m) {
     const int nx = map.height_m.width();
     const int ny = map.height_m.height();

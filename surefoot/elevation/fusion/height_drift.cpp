@@ -10,20 +10,20 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Offsets beyond this are other surfaces, whatever the motion.
+/// Larger offsets are other surfaces, whatever the motion.
 constexpr double kMost_m = 0.1;
-constexpr double kBin_m = 1e-4;  ///< a tenth of what a snapshot resolves
+constexpr double kBin_m = 1e-4;  ///< a tenth of the snapshot's resolution
 constexpr int kBins = 2 * 1000 + 1;
 constexpr int kTileCells = 8;
-constexpr int kLeastOfTile = 4;          ///< of the sixteen that are asked
+constexpr int kLeastOfTile = 4;          ///< of the sixteen cells that are used
 constexpr double kAgreeingSigmas = 2.5;  ///< as the gate of the fusion
-/// Variance of a median over that of a mean, for normal noise: pi / 2.
+/// Variance of a median divided by that of a mean, for normal noise: pi / 2.
 constexpr double kMedianLoss = 1.5708;
 constexpr double kSlopeChi2 = 13.8;  ///< 2 degrees of freedom, 0.1 %
-/// A tilt about the camera that makes this share of the offset where the cells lie spoils it.
+/// A camera tilt that explains this share of the offset at the cells makes the offset unusable.
 constexpr double kTiltShare = 0.25;
 constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
-constexpr double kFrameShare = 0.5;  ///< the same for what lately aligned ground is off by
+constexpr double kFrameShare = 0.5;  ///< the same for the offset of recently aligned ground
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);
@@ -34,7 +34,8 @@ int tiles_along(int cells) {
     return (cells + kTileCells - 1) / kTileCells;
 }
 
-/// What the motion added to the height since the residual was seen, at the pace before.
+/// Returns the height variance that the motion added since the residual was observed, at the rate
+/// before.
 double later_variance_m2(const HeightResidual& residual, std::uint32_t motions) {
     const auto before = static_cast<double>(residual.seen_step - residual.step);
     const auto since = static_cast<double>(motions - residual.seen_step);
@@ -50,9 +51,8 @@ bool agrees(const HeightResidual& residual, double offset_m) {
 }  // namespace
 
 void HeightDriftConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled",
-                    enabled,
-                    "move old parts of the map by the height that the body drifted (keys below)");
+    visitor.boolean(
+        "enabled", enabled, "correct old parts of the map by the body's height drift (keys below)");
     visitor.integer(
         "min_motions",
         min_motions,
@@ -63,29 +63,30 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                    min_drift_m,
                    0.0,
                    1.0,
-                   "... and these may have moved them by this (1 sigma)");
+                   "... and the motions may have moved them by this (1 sigma)");
     visitor.number("level_m",
                    level_m,
                    0.0,
                    1.0,
-                   "cells count where the map two cells beside them differs by no more");
+                   "largest height difference to the map two cells aside of a cell that "
+                   "counts");
     visitor.integer("kept_motions",
                     kept_motions,
                     0,
                     100000,
-                    "what frames say of old cells is kept for so many uncertain motions");
+                    "residuals of old cells are kept for this many uncertain motions");
     visitor.integer("min_cells",
                     min_cells,
                     1,
                     4096,
-                    "old cells that an offset needs, every fourth being asked");
+                    "old cells that an offset needs; one cell of four is used");
     visitor.integer(
         "min_tiles", min_tiles, 4, 1000000, "squares of 8 x 8 cells that an offset needs");
     visitor.number("min_spread_m",
                    min_spread_m,
                    0.0,
                    100.0,
-                   "standard deviation of their places along the longer axis");
+                   "standard deviation of the cells' positions along the longer axis");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.5,
@@ -95,7 +96,7 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                    significance_sigmas,
                    0.1,
                    100.0,
-                   "an offset that stands out this far moves the map [sigma of the offset]");
+                   "smallest offset that corrects the map [sigma of the offset]");
     visitor.number("motion_sigmas",
                    motion_sigmas,
                    0.0,
@@ -164,7 +165,7 @@ double HeightDrift::median_m(std::span<const HeightResidual> residuals, std::uin
 
 void HeightDrift::add_agreeing(const HeightResidual& residual, const grid::GridGeometry& geometry) {
     const auto cell = geometry.cell_at(residual.at_m.x(), residual.at_m.y());
-    if (!cell) return;  // the window has left it behind
+    if (!cell) return;  // the cell left the window
     Tile& tile = tiles_[static_cast<std::size_t>(cell->iy / kTileCells * tiles_along(geometry.nx) +
                                                  cell->ix / kTileCells)];
     ++tile.cells;
@@ -198,7 +199,7 @@ HeightDrift::Field HeightDrift::field_of_tiles() const {
     field.spread_m = std::sqrt(longer / n);
     const double det = places(0, 0) * places(1, 1) - places(0, 1) * places(0, 1);
     if (!(det > 0.0)) return field;
-    // Least squares for offset = mean + slope (place - mean place).
+    // Least squares for offset = mean + slope (position - mean position).
     const Eigen::Vector2d leaning = about_mean.topRightCorner<2, 1>();
     field.slope = {(places(1, 1) * leaning.x() - places(0, 1) * leaning.y()) / det,
                    (places(0, 0) * leaning.y() - places(0, 1) * leaning.x()) / det};

@@ -26,7 +26,7 @@ double flat(double, double) {
     return 0.0;
 }
 
-/// What is remembered, seen from the present estimate of the pose.
+/// The remembered map, relative to the present estimate of the pose.
 struct Memory {
     double rms_m = 0.0;
     int cells = 0;
@@ -62,7 +62,7 @@ class Walk {
         turn(std::numbers::pi, 30, ground);
     }
 
-    /// One frame where the machine stands.
+    /// Takes one frame at the present position of the machine.
     void frame(const Ground& ground) {
         drift_m_ += drift_sigma_m_ * rng_.normal();
         const Pose T_world_body{exp_so3({0.0, 0.0, yaw_rad_}), {x_m_, y_m_, kCamera_m}};
@@ -82,7 +82,7 @@ class Walk {
                         covariance_);
         }
     }
-    /// 35 mm of height; afterwards the motion is sure.
+    /// Adds 35 mm of height uncertainty; afterwards the motion is certain.
     void blur_by_blind_motion() {
         covariance_(2, 2) = 1e-4;
         go_blindly(12);
@@ -122,7 +122,7 @@ class Walk {
         return config;
     }
 
-    /// A sector of the ground ahead, 0.5-2.5 m.
+    /// Observes a sector of the ground ahead, 0.5-2.5 m.
     void see(const Pose& T_world_body, const Ground& ground) {
         points_.clear();
         const Eigen::Vector3d tilt(
@@ -171,7 +171,7 @@ TEST(HeightDriftMap, WhereTheMapReturnsToASeenPlaceTheRememberedErrorsFall) {
         Walk with(seed, kDrift_m, true);
         for (Walk* walk : {&without, &with}) {
             walk->turn(2.0 * std::numbers::pi, 20);
-            walk->go_blindly(60);  // away and back, where the map does not reach
+            walk->go_blindly(60);  // away and back, outside of the map
             walk->turn(0.3 * std::numbers::pi, 6);
         }
         ASSERT_EQ(with.drift_m(), without.drift_m());
@@ -219,8 +219,8 @@ TEST(HeightDriftMap, ADriftBetweenTwoLooksMovesOnceWhatWasSeenBeforeIt) {
 }
 
 TEST(HeightDriftMap, GroundThatChangedMovesNothingElse) {
-    // Laid while nobody looked: a mat of 20 mm over half of the view and more or less, at either
-    // side, far or near; and a floor that ends ahead.
+    // Changes made while the camera did not observe them: a mat of 20 mm over half of the view,
+    // more or less, at either side, far or near; and a floor that ends ahead.
     std::vector<Ground> changes;
     for (const double edge_m : {-0.25, 0.0, 0.25}) {
         changes.emplace_back([=](double, double y_m) { return y_m > edge_m ? 0.02 : 0.0; });

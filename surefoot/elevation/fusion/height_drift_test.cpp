@@ -27,7 +27,8 @@ grid::GridGeometry map_of(int side) {
     return geometry;
 }
 
-/// Residuals of every second cell of a patch, 2.5 m on from the camera's foot at (1, 1).
+/// Residuals of every second cell of a patch that begins 2.5 m ahead of the point below the camera
+/// at (1, 1).
 struct Patch {
     grid::GridGeometry geometry = map_of(200);
     std::function<double(double ahead_m, double left_m)> offset_m = [](double, double) {
@@ -112,7 +113,7 @@ TEST(HeightDrift, ARaisedHalfMovesNothing) {
 TEST(HeightDrift, ATiltAboutTheCameraMovesNothingAndATiltWithADriftNeither) {
     for (const double tilt_rad : {0.01, -0.01}) {
         Patch pitched;
-        pitched.noise_m = 0.01;  // else the cells would not even agree
+        pitched.noise_m = 0.01;  // otherwise the cells would not agree
         pitched.offset_m = [&](double ahead_m, double) { return tilt_rad * ahead_m; };
         EXPECT_EQ(reason(pitched), tilted) << tilt_rad;
         pitched.offset_m = [&](double ahead_m, double) { return 0.01 + tilt_rad * ahead_m; };
@@ -132,7 +133,7 @@ TEST(HeightDrift, AFrameThatIsOffOnRecentGroundTooMovesNothing) {
     EXPECT_EQ(reason(old, recent.residuals(2)), frame_is_off);
     recent.offset_m = [](double, double) { return 0.0; };
     EXPECT_EQ(reason(old, recent.residuals(2)), moved);
-    // A tilt that the recent ground shows, where the old ground is too narrow to show it.
+    // A tilt that the recent ground shows, while the old ground is too narrow to show it.
     recent.offset_m = [](double ahead_m, double) { return 0.05 * (ahead_m - 2.3); };
     recent.noise_m = 0.03;
     EXPECT_EQ(reason(old, recent.residuals(2)), frame_is_off);
@@ -178,7 +179,7 @@ TEST(HeightDrift, YoungerCellsNeitherCountNorAreVouchedFor) {
     EXPECT_LE(report.cells, static_cast<std::int64_t>(older));
 }
 
-/// The same said plainly: sorted lists and a dictionary of tiles.
+/// The same rule in a plain implementation: sorted lists and a map of tiles.
 struct Plain {
     std::uint32_t last_step = 0;
     double offset_m = 0.0;
@@ -252,7 +253,7 @@ TEST(HeightDrift, IsThePlainMedianOfThePlainHalf) {
         const Plain expected = plain(old, patch.geometry);
         EXPECT_EQ(last_step, expected.last_step);
         EXPECT_NEAR(report.offset_m, expected.offset_m, 0.5001e-4) << "half a bin";
-        // A bin moves single cells across the edge of what agrees.
+        // The bin width moves single cells across the limit of agreement.
         EXPECT_NEAR(static_cast<double>(report.cells),
                     static_cast<double>(expected.cells),
                     0.02 * static_cast<double>(expected.cells));

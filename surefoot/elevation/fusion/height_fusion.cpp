@@ -16,10 +16,10 @@ FusionResult disagree(const FusionConfig& config,
                       const Height& measured,
                       bool same_scan) noexcept {
     if (same_scan && measured.z_m < cell.z_m) return {cell, FusionOutcome::ignored};
-    // A cell that is a little off the gate has a tail of the noise to explain, not another surface:
-    // it is widened as far as the measurement asks, and by no more than the step for one
-    // contradiction. One wrong match says little against a sure cell, a second in a row much more:
-    // the step grows with the variance.
+    // A measurement slightly beyond the gate comes from the tail of the noise, not from another
+    // surface. So the variance grows only as far as the measurement needs, and at most by the step
+    // for one contradiction. One wrong match weakens a certain cell little; a second one in a row
+    // weakens it much more, because the step grows with the variance.
     const double innovation_m = measured.z_m - cell.z_m;
     const double explained_m2 =
         innovation_m * innovation_m / (config.gate_sigma * config.gate_sigma) - measured.var_m2;
@@ -52,7 +52,7 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
                    multi_height_var_m2,
                    0.0,
                    100.0,
-                   "largest that is added to a cell's variance when a measurement is gated out");
+                   "largest addition to a cell's variance when a measurement is gated out");
     visitor.number("contradiction_growth",
                    contradiction_growth,
                    1.0,
@@ -86,7 +86,8 @@ std::optional<std::string> FusionConfig::problem() const {
     }
     if (!(contradiction_growth > 1.0)) {
         return fmt::format(
-            "elevation.contradiction_growth = {} must exceed 1, or no changed scene is ever learnt",
+            "elevation.contradiction_growth = {} must exceed 1: otherwise the map never adopts a "
+            "changed scene",
             contradiction_growth);
     }
     return std::nullopt;
@@ -111,7 +112,7 @@ FusionResult fuse(const FusionConfig& config,
     if (mahalanobis_sq(cell, tested) > config.gate_sigma * config.gate_sigma) {
         return disagree(config, cell, measured, same_scan);
     }
-    // Equation (6.1), written with the gain.
+    // Equation (6.1) of Lange 2016, written with the gain.
     const double gain = cell.var_m2 / (cell.var_m2 + measured.var_m2);
     const double var_m2 =
         std::clamp((1.0 - gain) * cell.var_m2, config.min_height_var_m2, config.max_height_var_m2);

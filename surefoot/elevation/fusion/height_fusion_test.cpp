@@ -44,7 +44,7 @@ TEST(HeightFusion, GateUsesCellAndMeasurementVariance) {
     EXPECT_EQ(fuse({}, cell, measured).outcome, FusionOutcome::fused);
     EXPECT_EQ(fuse({}, cell, {0.013, 1.6e-5}).outcome, FusionOutcome::inflated);
 
-    FusionConfig ancestor;  // by the cell alone the same measurement is 4 sigma away
+    FusionConfig ancestor;  // with the cell's variance only, the distance is 4 sigma
     ancestor.gate_variance = GateVariance::cell_alone;
     EXPECT_EQ(fuse(ancestor, cell, measured).outcome, FusionOutcome::inflated);
 }
@@ -66,7 +66,7 @@ TEST(HeightFusion, OneWrongMatchSaysLittleAgainstASureCellTheNextOnesMore) {
         cell = fuse(config, cell, wrong).cell;
         sigma_mm.push_back(1e3 * std::sqrt(cell.var_m2));
     }
-    EXPECT_NEAR(sigma_mm[0], 2.0 * std::sqrt(10.0), 1e-9);  // twice what it was
+    EXPECT_NEAR(sigma_mm[0], 2.0 * std::sqrt(10.0), 1e-9);  // twice the value before
     EXPECT_NEAR(sigma_mm[1], std::sqrt(40.0 + 100.0), 1e-9);
     EXPECT_NEAR(sigma_mm[2], std::sqrt(40.0 + 200.0), 1e-9);
     EXPECT_EQ(cell.z_m, 0.1);
@@ -100,8 +100,8 @@ TEST(HeightFusion, ATailOfTheNoiseCostsNoMoreTrustThanItAsksFor) {
 
 TEST(HeightFusion, AChangedSceneTakesOverAfterSomeCycles) {
     const FusionConfig config;
-    // Each contradiction but the first adds (10 mm)^2; beyond (50 mm)^2 the cell is replaced: 25 +
-    // 1 frames at most.
+    // Each contradiction except the first adds (10 mm)^2; beyond (50 mm)^2 the cell is replaced: at
+    // most 25 + 1 frames.
     const int limit =
         static_cast<int>(std::ceil(config.max_height_var_m2 / config.multi_height_var_m2)) + 1;
     for (const double change_m : {-1.0, -0.18, 0.1, 0.5}) {

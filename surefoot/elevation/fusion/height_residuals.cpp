@@ -7,10 +7,10 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A step anywhere between is seen by the cells this far to either side, and an edge that the
-/// body's horizontal drift has moved by a cell is kept away from.
+/// Cells this far to either side reveal a step anywhere between. The distance also covers an edge
+/// that the body's horizontal drift has moved by one cell.
 constexpr int kBeside = 2;
-/// Neighbours share the matcher's errors: in both directions every second cell is enough.
+/// Neighbours share the matcher's errors, so every second cell in both directions is enough.
 constexpr int kEvery = 2;
 
 bool is_old(const HeightResiduals::Input& input, std::ptrdiff_t cell) {
@@ -20,7 +20,7 @@ bool is_old(const HeightResiduals::Input& input, std::ptrdiff_t cell) {
     return static_cast<double>(motion_m2) >= input.min_drift_m * input.min_drift_m;
 }
 
-/// Slope of the map around a cell, where it is level.
+/// Returns the slope of the map around a cell, or nothing if the cell is not level.
 std::optional<Eigen::Vector2f> level_slope(const HeightResiduals::Input& input,
                                            std::ptrdiff_t cell) {
     const float* z_m = input.layers.height_m.data() + cell;

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kSide = 12;
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMiddle = 4 * kSide + 4;  ///< a cell that is asked
+constexpr std::size_t kMiddle = 4 * kSide + 4;  ///< a cell that gives a residual
 
-/// A level map, 5 motions old, that a frame measures 10 mm higher everywhere.
+/// A level map, 5 motions old; the frame measures every cell 10 mm higher.
 struct Ground {
     grid::GridGeometry geometry;
     ElevationLayers layers;
@@ -104,7 +104,7 @@ TEST(HeightResiduals, StepsUnknownNeighboursAndCellsOutsideOfNumbersAreLeftOut) 
         EXPECT_EQ(lost([&](Ground& g) { g.layers.height_var_m2.data()[kMiddle] = bad; }), 1) << bad;
         EXPECT_EQ(lost([&](Ground& g) { g.aligned_var_m2[kMiddle] = bad; }), 1) << bad;
         EXPECT_EQ(lost([&](Ground& g) { g.layers.horizontal_drift_m.data()[kMiddle] = bad; }), 1);
-        // The cell, and the four that have it beside them.
+        // The cell itself, and the four cells that use it as a neighbour.
         EXPECT_EQ(lost([&](Ground& g) { g.layers.height_m.data()[kMiddle] = bad; }), 5) << bad;
     }
     EXPECT_EQ(lost([](Ground& g) { g.layers.height_m.data()[kMiddle] = 0.031F; }), 5);

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <limits>
 
-// Sixteen samples of a cell side by side, in one, two or four registers. What is added in floats is
-// added in sixteen columns first and in the same tree then, as `LaneSum` does it one by one: so the
-// width of the registers does not show. Most cells hold no more than sixteen samples.
+// Sixteen samples of a cell at a time, in one, two or four registers. Float sums run in sixteen
+// columns first and then in one fixed tree, as in `LaneSum`. So the register width does not change
+// the result. Most cells hold no more than sixteen samples.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::elevation::HWY_NAMESPACE {
@@ -28,7 +28,8 @@ constexpr int kWidth = static_cast<int>(hn::MaxLanes(D()));
 constexpr int kParts = 16 / kWidth;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Ranks up to this are found by taking one extreme after the other, others bit by bit.
+/// Ranks up to this are found by removing one extreme after the other; higher ranks are found bit
+/// by bit.
 constexpr int kFewRanks = 32;
 
 /// Samples of one cell.
@@ -51,7 +52,7 @@ HWY_INLINE auto add_halves(DV, W value) {
     return hn::Add(hn::LowerHalf(half, value), hn::UpperHalf(half, value));
 }
 
-/// Column i with those 4, 8 and 12 behind it.
+/// Column i together with columns i + 4, i + 8 and i + 12.
 template <int kHere>
 HWY_INLINE auto four_of(const V (&part)[kHere]) {
     if constexpr (kHere == 1) {
@@ -86,8 +87,8 @@ HWY_INLINE M present(int index, int n) {
     return hn::FirstN(D(), static_cast<std::size_t>(n > index ? n - index : 0));
 }
 
-/// Calls f(part, offset of its first sample, which of its samples exist). `kFew`: there are no
-/// more than sixteen.
+/// Calls f(part, offset of its first sample, mask of its existing samples). `kFew`: there are no
+/// more than sixteen samples.
 template <bool kFew, class F>
 HWY_INLINE void for_each_part(int n, const F& f) {
     if constexpr (kFew) {
@@ -111,10 +112,11 @@ HWY_INLINE int count_from(const Samples& samples, V flip, V least) {
     return static_cast<int>(count);
 }
 
-/// The value with `rank` values at or above it, by taking the largest, the next one, ...
+/// Returns the value with `rank` values at or above it, by removing the largest value again and
+/// again.
 HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     V below = hn::Set(D(), kInfinity);
-    std::size_t from_below = 0;  // values that are not less
+    std::size_t from_below = 0;  // number of values that are not less
     while (true) {
         V largest = hn::Set(D(), -kInfinity);
         for_each_part<false>(samples.n, [&](int, int at, M exists) {
@@ -129,7 +131,8 @@ HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     }
 }
 
-/// The same bit by bit: floats in the order of integers (sign and magnitude to two's complement).
+/// The same result bit by bit: floats in the order of integers (sign and magnitude to two's
+/// complement).
 HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     const auto float_of = [](std::uint32_t key) {
         const std::uint32_t bits = key & 0x80000000U ? key ^ 0x80000000U : ~key;
@@ -141,7 +144,8 @@ HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     std::uint32_t key = 0;
     for (std::uint32_t bit = 0x80000000U; bit != 0; bit >>= 1) {
         const float least = float_of(key | bit);
-        // NaN stands beyond infinity on either side: nothing is above the one, all above the other.
+        // In integer order NaN lies beyond infinity on either side: no value is above +NaN, all are
+        // above -NaN.
         const bool is_reached = std::isnan(least)
                                     ? (key | bit) < 0x80000000U
                                     : count_from(samples, flip, hn::Set(D(), least)) >= rank;
@@ -163,10 +167,11 @@ struct RanksOfMany {
     }
 };
 
-/// The same for up to sixteen: how many are as high, and as low, is counted for all of them.
+/// The same for up to sixteen samples: counts for each sample how many are at least as high, and as
+/// low.
 struct RanksOfFew {
     V z_m[kParts];
-    V as_high[kParts];  ///< how many samples are at or above this one; 0 for none
+    V as_high[kParts];  ///< number of samples at or above this one; 0 if absent
     V as_low[kParts];
 
     HWY_INLINE explicit RanksOfFew(const Samples& samples) {
@@ -204,7 +209,7 @@ struct RanksOfFew {
     }
 };
 
-/// Points within a window around a height: how many, and the sum of their offsets from it.
+/// Points within a window around a height: their number and the sum of their offsets.
 struct Window {
     std::size_t points = 0;
     float sum_m = 0.0F;
@@ -248,7 +253,7 @@ HWY_INLINE Surface surface_around(const Samples& samples, float center_m, float 
         static_cast<int>(points), center_m, sum_m.total(), sum_sq_m2.total(), sum_var_m2.total());
 }
 
-/// Only the place of a surface that is climbed on from counts, not its spread.
+/// While climbing, only the position of a surface counts, not its spread.
 template <bool kFew>
 HWY_INLINE Surface climb(const Samples& samples, float start_m, float half_width_m) {
     float center_m = start_m;
@@ -300,15 +305,15 @@ CellMeasurement reduce(const ReductionConfig& config, const Samples& samples) {
                            : reduce<false>(config, samples, support, RanksOfMany{samples});
 }
 
-/// As many cells as a register has lanes, one in each, of up to kMost samples: column i holds the
-/// sample i of all of them, and sums over a cell are sums of columns in the order of `tree`.
+/// One cell per lane, each with up to kMost samples. Column i holds sample i of all cells; the sum
+/// over a cell adds columns in the order of `tree`.
 template <int kMost>
 class SmallCells {
   public:
     SmallCells(const ReductionConfig& config, const float* z_m, const float* var_m2)
         : config_(config), z_m_(z_m), var_m2_(var_m2) {}
 
-    /// Takes a cell that has the support it needs; `measured` is written by the next `reduce_all`.
+    /// Adds a cell with enough support; the next `reduce_all` writes `measured`.
     HWY_INLINE void add(std::uint32_t begin, int n, int support, CellMeasurement* measured) {
         begin_[cells_] = static_cast<std::int32_t>(begin);
         n_[cells_] = static_cast<float>(n);
@@ -339,7 +344,7 @@ class SmallCells {
     HWY_INLINE M exists(int i) const {
         return hn::Lt(hn::Set(D(), static_cast<float>(i)), hn::Load(D(), n_));
     }
-    /// `tree` of columns of which the last ones are zero.
+    /// `tree` for columns whose last ones are zero.
     static HWY_INLINE V sum_of(const PerSample& column) {
         V four[4];
         for (int i = 0; i < 4; ++i) {
@@ -363,7 +368,7 @@ class SmallCells {
         for (int i = 0; i < kMost; ++i) z_[i] = hn::GatherIndex(D(), z_m_ + i, begin);
     }
 
-    /// Sorts by Batcher's odd-even merges; what does not exist comes last.
+    /// Sorts by Batcher's odd-even merges; absent samples come last.
     HWY_INLINE void rank(float* highest_m, float* lowest_m) const {
         PerSample sorted;
         for (int i = 0; i < kMost; ++i)
@@ -388,7 +393,7 @@ class SmallCells {
             highest = hn::IfThenElse(hn::Eq(at, from_above), sorted[i], highest);
             lowest = hn::IfThenElse(hn::Eq(at, from_below), sorted[i], lowest);
         }
-        // Zero has no sign.
+        // Adding 0 removes the sign of zero.
         hn::Store(hn::Add(highest, hn::Zero(D())), D(), highest_m);
         hn::Store(hn::Add(lowest, hn::Zero(D())), D(), lowest_m);
     }
@@ -407,13 +412,13 @@ class SmallCells {
         std::fill(half_width_m + cells_, half_width_m + kWidth, 0.0F);
     }
 
-    /// Which samples lie around the centres, and how far from them.
+    /// Selects the samples near the centres, and returns their offsets.
     HWY_INLINE M near(int i, V center, V half_width, V& offset) const {
         offset = hn::Sub(z_[i], center);
         return hn::And(exists(i), hn::Le(hn::Abs(offset), half_width));
     }
 
-    /// Not a number where no sample is near; then none ever is.
+    /// NaN if no sample is near; then no later step finds one either.
     HWY_INLINE V climbed(V center, V half_width) const {
         V points = hn::Zero(D());
         PerSample column;
@@ -451,7 +456,7 @@ class SmallCells {
         for (std::size_t k = 0; k < cells_; ++k) {
             CellMeasurement& measured = *measured_[k];
             if (figures[0][k] < support_[k]) {
-                // The highest samples stand alone: lower starts, one cell after the other.
+                // The highest samples are isolated: try lower starts, one cell after the other.
                 const int n = static_cast<int>(n_[k]);  // in range: a number of points
                 measured = reduce(config_, {z_m_ + begin_[k], var_m2_ + begin_[k], n});
                 continue;

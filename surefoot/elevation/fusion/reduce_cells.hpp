@@ -7,9 +7,9 @@
 
 namespace surefoot::elevation {
 
-/// `reduce_cell` for neighbouring cells, for every instruction set with the same bytes. Samples of
-/// cell i lie at [begin[i], begin[i + 1]); reads up to `CellGroups::kSlack` beyond the last one.
-/// A cell without a measurement gets 0 points.
+/// Runs `reduce_cell` for neighbouring cells; every instruction set gives the same bytes. Cell i
+/// owns the samples [begin[i], begin[i + 1]). Reads up to `CellGroups::kSlack` beyond the last
+/// sample. A cell without a measurement gets 0 points.
 void reduce_cells(const ReductionConfig& config,
                   const std::uint32_t* begin,
                   int cells,

@@ -14,7 +14,7 @@ namespace surefoot::elevation {
 namespace {
 
 /// Samples of many cells: floors, treads with risers, pure scatter, equal heights, zeros of both
-/// signs, from none to more than the ranks that are found one by one.
+/// signs; from no sample to more samples than the limit of ranks found one by one.
 struct Cells {
     std::vector<std::uint32_t> begin{0};
     std::vector<float> z_m;

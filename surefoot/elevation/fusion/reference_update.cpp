@@ -23,8 +23,11 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
     visitor.number("start_y_m", start_y_m, -1e6, 1e6, "the same along y");
     visitor.number("start_time_s", start_time_s, -1e12, 1e12, "the time layer counts from here");
     visitor.number("min_variance_m2", min_variance_m2, 0.0, 100.0, "smaller variances become this");
-    visitor.number(
-        "max_variance_m2", max_variance_m2, 0.0, 100.0, "larger ones become infinite: forgotten");
+    visitor.number("max_variance_m2",
+                   max_variance_m2,
+                   0.0,
+                   100.0,
+                   "larger variances become infinite: the cell is overwritten");
     visitor.number("mahalanobis_threshold",
                    mahalanobis_threshold,
                    0.0,
@@ -81,8 +84,8 @@ void AncestorMap::add(std::span<const AncestorPoint> cloud, double time_s) {
 }
 
 void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
-    // The ancestor counts cells down from the corner of largest x and y: a point on a border
-    // between two cells belongs to the one with the smaller coordinates.
+    // The reference implementation counts cells down from the corner of largest x and y. So a point
+    // on a border between two cells belongs to the cell with the smaller coordinates.
     const double length_m = geometry_.nx * geometry_.resolution_m;
     const Eigen::Vector2d down_m =
         position_m_ + Eigen::Vector2d::Constant(0.5 * length_m) -
@@ -108,7 +111,7 @@ void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
         disagree(point, time_s, elevation_m, variance_m2, cell_time_s);
         return;
     }
-    // Equation (6.1) in float32.
+    // Equation (6.1) of Lange 2016 in float32.
     const float sum_m2 = variance_m2 + point.variance_m2;
     elevation_m = (variance_m2 * point.z_m + point.variance_m2 * elevation_m) / sum_m2;
     variance_m2 = point.variance_m2 * variance_m2 / sum_m2;

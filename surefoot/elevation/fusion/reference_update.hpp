@@ -11,8 +11,8 @@
 
 namespace surefoot::elevation {
 
-/// Parameters of the elevation update that this project descends from (ANYbotics
-/// elevation_mapping); the defaults are those of the preset `ethz`.
+/// Parameters of the elevation update of the reference implementation (ETH elevation_mapping); the
+/// defaults are those of the preset `ethz`.
 struct AncestorConfig {
     double resolution_m = 0.05;
     double length_m = 2.0;
@@ -37,19 +37,19 @@ struct AncestorPoint {
 };
 static_assert(sizeof(AncestorPoint) == 16, "read from files of four float32 per point");
 
-/// The ancestor's elevation update, kept apart for comparison: nothing in the live chain uses it.
-/// It differs from ElevationMap: every point updates its cell in file order and in float32, the
-/// gate compares with the cell's variance alone, a cell whose variance exceeds the maximum becomes
-/// infinite and is overwritten by its next point, and no time is set at the first measurement of a
-/// cell, so the first outlier there always adds noise. Horizontal variances do not act on heights
-/// and are left out.
+/// Elevation update of the reference implementation, for comparison only; the live chain does not
+/// use it. It differs from ElevationMap. Every point updates its cell in file order and in
+/// float32. The gate uses the cell's variance only. A cell beyond the maximum variance becomes
+/// infinite and its next point overwrites it. The first measurement of a cell sets no time, so the
+/// first outlier there always adds noise. Horizontal variances do not act on heights and are left
+/// out.
 ///
 /// Grids are in our order: column = ix along +x, row = iy along +y.
 class AncestorMap {
   public:
     explicit AncestorMap(const AncestorConfig& config);
 
-    /// Moves by whole cells, halves away from zero; cells that come into view are NaN in all
+    /// Moves by whole cells, halves away from zero. New cells are NaN in all
     /// layers.
     void move_to(double x_m, double y_m);
     void add(std::span<const AncestorPoint> cloud, double time_s);

@@ -13,7 +13,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// From the notes of the vectors: relative to the value; NaN and infinity must match.
+/// Relative tolerance from the notes of the vectors; NaN and infinity must match.
 constexpr double kRelativeTolerance = 1e-5;
 
 std::filesystem::path vectors_folder() {

@@ -31,7 +31,7 @@ RayVariance stereo(const SensorConfig& config, const SensorReading& r) noexcept 
     const double disparity_px = config.stereo_depth_to_disparity_px_m / r.depth_m;
     const double column = config.stereo_p3 * disparity_px + config.stereo_p4 - r.column_px;
     const double from_centre_px = std::sqrt(square(column) + square(r.principal_row_px - r.row_px));
-    // Equation (6.2); D/d^2 = z^2/D.
+    // Equation (6.2) of Lange 2016; D/d^2 = z^2/D.
     const double along_m2 =
         square(config.stereo_depth_to_disparity_px_m / square(disparity_px)) *
         ((config.stereo_p5 * disparity_px + config.stereo_p2) * from_centre_px + config.stereo_p1);
@@ -39,15 +39,14 @@ RayVariance stereo(const SensorConfig& config, const SensorReading& r) noexcept 
 }
 
 RayVariance simplified_stereo(const SensorConfig& config, const SensorReading& r) noexcept {
-    // Equation (6.4): the largest error of z when the disparity is wrong by dd; a quarter is one
-    // sigma.
+    // Equation (6.4): largest error of z for a disparity error dd; a quarter of it is one sigma.
     const double error_m = -square(r.depth_m) * config.simplified_disparity_px /
                            (r.depth_to_disparity_px_m + r.depth_m * config.simplified_disparity_px);
     return {square(0.25 * error_m), square(config.simplified_lateral * r.range_m)};
 }
 
 RayVariance basic(const SensorConfig& config, const SensorReading& r) noexcept {
-    // Equation (6.6) is a variance of the height itself: the same in every direction.
+    // Equation (6.6) gives the variance of the height itself, so it is the same in every direction.
     const double var_m2 = config.basic_constant_m2 + config.basic_per_m_m * r.range_m;
     return {var_m2, var_m2};
 }
@@ -61,7 +60,7 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    matcher_lateral_px,
                    0.0,
                    50.0,
-                   "matcher: one sigma of where in the image a disparity belongs");
+                   "matcher: one sigma of a disparity's image position");
     visitor.number(
         "laser_min_radius_m", laser_min_radius_m, 0.0, 1.0, "laser: sigma along the beam");
     visitor.number(

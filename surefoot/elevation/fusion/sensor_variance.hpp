@@ -10,14 +10,14 @@
 
 namespace surefoot::elevation {
 
-/// How the error of one measured point is described.
+/// Error model of one measured point.
 enum class SensorModel : std::uint8_t {
-    matcher,            ///< ours: disparity sigma of the matcher, pixel by pixel
-    perfect,            ///< no error of the sensor; the pose part stays
+    matcher,            ///< Surefoot: disparity sigma of the matcher per pixel
+    perfect,            ///< no sensor error; the pose error stays
     laser,              ///< Pomerleau 2012
     kinect,             ///< structured light, Nguyen 2012
-    stereo,             ///< Keller, equations 6.2 and 6.3
-    simplified_stereo,  ///< Rodriguez and Aggarwal 1990, equations 6.4 and 6.5
+    stereo,             ///< Keller; Lange 2016, equations 6.2 and 6.3
+    simplified_stereo,  ///< Rodriguez and Aggarwal 1990, eq. 6.4 and 6.5
     basic,              ///< equation 6.6
 };
 
@@ -26,7 +26,7 @@ struct SensorConfig {
     SensorModel model = SensorModel::matcher;
     double min_var_m2 = 1e-8;  ///< floor of both variances, (0.1 mm)^2
 
-    double matcher_lateral_px = 0.5;  ///< one sigma of where in the image a disparity belongs
+    double matcher_lateral_px = 0.5;  ///< one sigma of a disparity's image position
 
     double laser_min_radius_m = 0.018;  ///< Hokuyo, Pomerleau 2012
     double laser_beam_constant_m = 0.0015;
@@ -56,7 +56,7 @@ struct SensorConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// What a sensor says about one point, as far as any model needs it.
+/// Readings of one point, as far as any model needs them.
 struct SensorReading {
     double depth_m = 0.0;             ///< along the optical axis
     double range_m = 0.0;             ///< distance from the sensor

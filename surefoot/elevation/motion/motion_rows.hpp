@@ -15,11 +15,11 @@ struct MotionPolynomials {
     float xy[5];
     float first_x_m;  ///< of the row's first cell, from the body
     float step_m;
-    float body_z_m;  ///< what z counts from
+    float body_z_m;  ///< zero of z
 };
 
-/// Adds them to the variances of remembered cells; drift is a sigma. The same bytes on every
-/// instruction set. Unknown cells (NaN) stay unknown.
+/// Adds the polynomials to the variances of remembered cells; drift is a sigma. Every instruction
+/// set gives the same bytes. Unknown cells (NaN) stay unknown.
 void blur_cells(const MotionPolynomials& p,
                 int cells,
                 const float* height_m,

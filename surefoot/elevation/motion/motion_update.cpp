@@ -9,7 +9,7 @@
 namespace surefoot::elevation {
 namespace {
 
-// Positions in the covariance.
+// Indices in the covariance.
 constexpr int kX = 0;
 constexpr int kY = 1;
 constexpr int kZ = 2;

@@ -7,9 +7,9 @@
 
 namespace surefoot::elevation {
 
-/// How an uncertain motion of the body blurs remembered ground (Fankhauser 2014, section 5; here as
-/// a closed form per cell). With r = (x, y, z) from the body to a cell in odom axes, an error (dp,
-/// theta) of the relative motion displaces the cell, as seen from the body, by dp + theta x r:
+/// Effect of an uncertain body motion on remembered ground (Fankhauser 2014, section 5; here as a
+/// closed form per cell). With r = (x, y, z) from the body to a cell in odom axes, an error (dp,
+/// theta) of the relative motion displaces the cell relative to the body by dp + theta x r:
 ///   dz = dp_z + theta_x y - theta_y x         (translation and tilt leverage)
 ///   dx = dp_x + theta_y z - theta_z y,  dy = dp_y + theta_z x - theta_x z      (yaw leverage)
 class MotionNoise {
@@ -18,20 +18,20 @@ class MotionNoise {
     /// right perturbation, in the present body frame; see pose.hpp.
     MotionNoise(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
 
-    /// All entries are finite. An infinite or NaN covariance says nothing about the cells any more.
+    /// True if all entries are finite. Otherwise the position of the cells is unknown.
     [[nodiscard]] bool is_finite() const { return covariance_.allFinite(); }
-    /// All entries are so small that `blur_row` stays in the range of floats on every map. Beyond
-    /// it what they add may vanish as the difference of two infinities.
+    /// True if all entries are so small that `blur_row` stays in the range of floats on every map.
+    /// Beyond it, two infinities may cancel and the added variance may vanish.
     [[nodiscard]] bool is_bounded() const {
         return is_finite() && covariance_.cwiseAbs().maxCoeff() <= kMostVariance;
     }
     static constexpr double kMostVariance = 1e12;  ///< (1000 km)^2, (1e6 rad)^2
     [[nodiscard]] bool is_zero() const { return covariance_.isZero(0.0); }
 
-    /// Variance that the motion adds to the height of a cell, never negative.
+    /// Returns the variance that the motion adds to the height of a cell, never negative.
     [[nodiscard]] double height_var_m2(double x_m, double y_m) const noexcept;
-    /// Variance of the horizontal displacement in its worst direction: the larger eigenvalue of the
-    /// 2 x 2 covariance of (dx, dy), never negative. Sums of it bound the eigenvalue of the sum.
+    /// Returns the variance of the horizontal displacement in its worst direction: the larger
+    /// eigenvalue of the covariance of (dx, dy), never negative. Sums of it bound that of the sum.
     [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
 
     /// Cells of a row along x, from the body in odom axes.
@@ -39,10 +39,10 @@ class MotionNoise {
         double first_x_m = 0.0;
         double y_m = 0.0;
         double step_m = 0.0;
-        double body_z_m = 0.0;  ///< what heights count from
+        double body_z_m = 0.0;  ///< zero of the heights
     };
-    /// Adds the motion's variances to those of remembered cells, drift being a sigma: in floats,
-    /// the same bytes on every instruction set. NaN stays.
+    /// Adds the motion's variances to those of remembered cells (drift is a sigma), in floats.
+    /// Every instruction set gives the same bytes. NaN stays NaN.
     void blur_row(const Row& row,
                   int cells,
                   const float* height_m,

@@ -110,7 +110,8 @@ TEST(MotionUpdate, MonteCarloOfPerturbedPosesShowsTheSameSpread) {
     const Eigen::Vector3d r_m = p_odom_m - T_odom_body.translation_m;
     const double expected_m2 =
         MotionNoise(covariance, T_odom_body.R()).height_var_m2(r_m.x(), r_m.y());
-    // A variance from n draws is known to sqrt(2/n); four of those, plus second order terms.
+    // A variance from n draws has the relative error sqrt(2/n); the limit is four times that, plus
+    // second order terms.
     EXPECT_NEAR(sum_sq_m2 / kDraws / expected_m2, 1.0, 4.0 * std::sqrt(2.0 / kDraws) + 0.002);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using grid::MapRegion;
 
-/// What a region knows of one cell.
+/// One cell of a region.
 struct KnownCell {
     float height_m;
     float height_var_m2;
@@ -59,14 +59,15 @@ void store(MapRegion& r, std::size_t i, const KnownCell& cell) {
     r.density_ratio.data()[i] = cell.density_ratio;
 }
 
-/// Seen later; of two seen at the same time the surer, then the higher one.
+/// Order of cells: later observation first; at equal times the smaller variance, then the higher
+/// cell.
 bool goes_before(const KnownCell& a, const KnownCell& b) {
     if (a.seen_ns != b.seen_ns) return a.seen_ns > b.seen_ns;
     if (a.height_var_m2 != b.height_var_m2) return a.height_var_m2 < b.height_var_m2;
     return a.height_m > b.height_m;
 }
 
-/// The number where one is NaN.
+/// Returns the smaller value, or the number if the other value is NaN.
 float least(float a, float b) {
     return std::isnan(a) || b < a ? b : a;
 }
@@ -74,7 +75,7 @@ float most(float a, float b) {
     return std::isnan(a) || b > a ? b : a;
 }
 
-/// Both say the same; `later` goes before `earlier`.
+/// Merges two cells that agree; `later` goes before `earlier`.
 KnownCell agreed(const FusionConfig& fusion,
                  RegionErrors errors,
                  const KnownCell& later,
@@ -87,7 +88,7 @@ KnownCell agreed(const FusionConfig& fusion,
         }
         cell.count = std::max(later.count, earlier.count);
     } else {
-        // What exceeds the live map's largest variance stays as uncertain as it is.
+        // A variance above the live map's limit stays as it is.
         FusionConfig unbounded = fusion;
         unbounded.max_height_var_m2 = std::numeric_limits<double>::infinity();
         const Height fused = fuse(unbounded, later.height(), earlier.height()).cell;
@@ -107,7 +108,7 @@ KnownCell agreed(const FusionConfig& fusion,
     return cell;
 }
 
-/// Two surfaces, or one that moved: the later one stays, and is trusted less.
+/// Two surfaces, or a surface that moved: the later cell stays, and its variance grows.
 KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     KnownCell cell = later;
     const double apart_m =
@@ -117,7 +118,7 @@ KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     return cell;
 }
 
-/// `theirs` is known.
+/// Needs a known cell `theirs`.
 KnownCell merged(const FusionConfig& fusion,
                  RegionErrors errors,
                  const KnownCell& ours,
@@ -152,8 +153,8 @@ std::optional<std::string> problem_of(const MapRegion& into,
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(
-            "the maps are of two runs, whose frames {0} were placed at {1} and at {2} ns: each run "
-            "has an {0} of its own",
+            "the maps come from two runs, whose frames {0} were placed at {1} and at "
+            "{2} ns: each run places its own {0}",
             into.frame,
             into.frame_since_ns,
             from.frame_since_ns);
@@ -163,7 +164,7 @@ std::optional<std::string> problem_of(const MapRegion& into,
     return std::nullopt;
 }
 
-/// The head of the merged region is that of the later one.
+/// Copies stamp, pose and configuration from the later region.
 void take_later_head(MapRegion& into, const MapRegion& from) {
     if (from.stamp_ns <= into.stamp_ns) return;
     into.frame_since_ns = from.frame_since_ns;

@@ -9,33 +9,33 @@
 
 namespace surefoot::elevation {
 
-/// What the heights of two regions have in common.
+/// Common errors of the heights of two regions.
 enum class RegionErrors : std::uint8_t {
-    shared,       ///< one run: the same looks, matcher errors and drift may be in both
+    shared,       ///< one run: both may share observations, matcher errors, drift
     independent,  ///< two runs over the same ground, one placed in the frame of the other
 };
 
 struct MergeCounts {
-    std::int64_t taken = 0;      ///< cells that only `from` knew
-    std::int64_t agreed = 0;     ///< known to both, within the Mahalanobis gate
-    std::int64_t disagreed = 0;  ///< known to both, outside of it
+    std::int64_t taken = 0;      ///< cells known only in `from`
+    std::int64_t agreed = 0;     ///< known in both, within the Mahalanobis gate
+    std::int64_t disagreed = 0;  ///< known in both, outside of the gate
 };
 
-/// Puts what `from` knows into `into`, which grows to the smallest box around both. The cells
-/// do not depend on which is which. One rule for every cell:
-/// * known to one of them: it is taken as it is;
-/// * known to both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`): with shared
-///   errors the surer height stays as it is, nothing being gained (covariance intersection in one
-///   dimension, Julier and Uhlmann 1997); with independent errors both are fused by equation 6.1.
-///   The cell has the later sighting with its drift and confidence, and of extremes, clearance and
-///   density what warns more;
-/// * known to both, and they disagree: the cell that was seen later stays, and the squared
-///   difference of the heights is added to its variance.
+/// Merges `from` into `into`, which grows to the smallest box around both. The order of the two
+/// regions does not change the cells. Rules for a cell:
+/// * known in one region: the cell is copied;
+/// * known in both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`): with shared
+///   errors the height of smaller variance stays and nothing is gained (covariance intersection in
+///   one dimension, Julier and Uhlmann 1997); independent errors are fused by equation 6.1 (Lange
+///   2016). The cell takes time, drift and confidence of the later observation, and the more
+///   cautious of the extremes, clearances and densities;
+/// * known in both, and they disagree: the later observed cell stays, and its variance grows by the
+///   squared difference of the heights.
 ///
-/// Stamp, pose and configuration are those of the region with the later stamp; the cells of the
-/// other must have paid for the motion between (`pay_for_motion`). Fails, and changes nothing,
-/// where resolution or frame differ, or where both together are too large. With independent errors
-/// the frames need the same name only: that they are the same place is the caller's word.
+/// Stamp, pose and configuration come from the region with the later stamp. The cells of the other
+/// region must include the motion between the stamps (`pay_for_motion`). Fails without changes if
+/// resolution or frame differ, or if the merged region is too large. With independent errors only
+/// the frame names must match: the caller guarantees that they mean the same place.
 [[nodiscard]] Result<MergeCounts> merge(grid::MapRegion& into,
                                         const grid::MapRegion& from,
                                         const FusionConfig& fusion,

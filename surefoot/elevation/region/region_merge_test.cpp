@@ -77,7 +77,7 @@ std::map<Place, Cell> cells_of(const MapRegion& r) {
     return cells;
 }
 
-/// The rule of region_merge.hpp, cell by cell in words of its own.
+/// The rule of region_merge.hpp, written again cell by cell.
 Cell expected_of(const Cell& a, const Cell& b, double gate_sigma, double floor_m2, bool shared) {
     const bool b_is_later =
         b.seen_ns > a.seen_ns || (b.seen_ns == a.seen_ns &&
@@ -94,7 +94,7 @@ Cell expected_of(const Cell& a, const Cell& b, double gate_sigma, double floor_m
         out.var_m2 = surer.var_m2;
         out.count = std::max(a.count, b.count);
     } else {
-        // Equation 6.1 as the thesis writes it.
+        // Equation 6.1 as in Lange 2016.
         out.z_m = (b.var_m2 * a.z_m + a.var_m2 * b.z_m) / (a.var_m2 + b.var_m2);
         out.var_m2 = std::max(floor_m2, a.var_m2 * b.var_m2 / (a.var_m2 + b.var_m2));
         out.count = a.count + b.count;

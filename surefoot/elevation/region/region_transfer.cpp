@@ -9,7 +9,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A variance or drift that has left the range of a float says nothing any more.
+/// Makes cells unknown whose variance or drift has left the range of a float.
 void forget_boundless(grid::MapRegion& region) {
     for (std::size_t cell = 0; cell < region.height_m.size(); ++cell) {
         if (std::isnan(region.height_m.data()[cell])) continue;
@@ -48,8 +48,8 @@ Status pay_for_motion(grid::MapRegion& region,
     const MotionNoise noise(covariance, T_frame_body.R());
     if (!T_frame_body.all_finite() || !noise.is_finite()) {
         return input_error(
-            "the covariance or the pose that places the map is not finite: nothing is known of "
-            "where its cells are");
+            "the covariance or the pose that places the map is not finite: the position of its "
+            "cells is unknown");
     }
     const grid::GridGeometry geometry = region.geometry();
     for (int iy = 0; iy < region.box.ny; ++iy) {

@@ -45,7 +45,7 @@ void see_patch(ElevationMap& map,
     map.add_points(points, {}, T_odom_body, time_ns);
 }
 
-/// A map that saw two patches, walked with an uncertain motion, and saw one of them again.
+/// A map that observed two patches, moved with an uncertain motion, and observed one of them again.
 ElevationMap walked_map() {
     ElevationMap map(exact_config());
     see_patch(map, body_at(0, 0), 1.0, 0.5, 0.03, kFrame_ns);

@@ -12,7 +12,8 @@ bool is_measurement(const MeasuredPoint& point) {
            point.along_var_m2 >= 0.0F && point.lateral_var_m2 >= 0.0F;
 }
 
-/// Roll and pitch of the sensor err alike; in the sensor frame their axes are those across gravity.
+/// Covariance of equal errors in roll and pitch; in the sensor frame their axes are perpendicular
+/// to gravity.
 Matrix6 tilt_covariance(double sigma_rad, const Eigen::Vector3d& up_sensor) {
     Matrix6 covariance = Matrix6::Zero();
     covariance.bottomRightCorner<3, 3>() =

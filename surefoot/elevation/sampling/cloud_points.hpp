@@ -19,9 +19,9 @@ struct MeasuredPoint {
     float lateral_var_m2 = 0.0F;  ///< across it
 };
 
-/// Turns a cloud into points over a grid: range, height cut, height with its variance. Replaces the
-/// contents of `points`; counts what was left out. Points that are not finite, or at the sensor's
-/// origin, are no measurements and not counted. `grid_origin_m` as in `points_from_depth`.
+/// Converts a cloud into points over a grid: range filter, height cut, height with its variance.
+/// Replaces the contents of `points` and counts the rejected points. Points that are not finite or
+/// at the sensor's origin are skipped and not counted. `grid_origin_m` as in `points_from_depth`.
 void points_from_cloud(const ElevationConfig& config,
                        std::span<const MeasuredPoint> cloud,
                        const Pose& T_body_sensor,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole depth path on rendered scenes: exact geometry, noise of a known kind, truth from the
-// scene.
+// The whole depth path on rendered scenes: exact geometry, known noise, truth from the scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,7 +82,7 @@ DepthImage render(const StepScene& scene,
     return depth;
 }
 
-/// Normal noise that is the same within blocks of `block_px` (1 = independent pixels).
+/// Normal noise, equal within blocks of `block_px` (1 = independent pixels).
 void add_noise(DepthImage& depth, Rng& rng, int block_px) {
     const int columns = depth.disparity_px.width() / block_px + 1;
     std::vector<double> row_px(static_cast<std::size_t>(columns));
@@ -102,7 +101,7 @@ struct Errors {
     double mean_m = 0.0;
     double median_abs_m = 0.0;
     double worst_sigmas = 0.0;
-    double nees = 0.0;  ///< mean of (error / sigma)^2: 1 = true, more = over-confident
+    double nees = 0.0;  ///< mean of (error / sigma)^2: 1 = calibrated, more = over-confident
 };
 
 /// Compares cells farther than two cells from the edge with the scene.
@@ -139,7 +138,7 @@ TEST(DepthFusion, FloorWithoutNoiseIsExact) {
     EXPECT_GT(counts.cells_new, 7000);
     EXPECT_EQ(counts.cells_new, map.known_cells());
     const Errors errors = compare(map, floor);
-    // A float disparity of 10 px at 4 m is known to 5e-7 px: 1 um.
+    // A float disparity of 10 px at 4 m has a rounding error of 5e-7 px: 1 um.
     EXPECT_LT(errors.median_abs_m, 2e-6);
     EXPECT_TRUE(std::isnan(map.layers().height_m.at(120, 120))) << "under the body: not visible";
 }
@@ -171,7 +170,8 @@ TEST(DepthFusion, SharedErrorsOfAMatcherAreNotTakenForIndependent) {
         map.add(zed(), body_at(0), depth, 0);
         nees += compare(map, floor).nees / kSeeds;
     }
-    // Some 170 blocks per frame: the mean over 850 squared normals is known to sqrt(2 / 850) = 5 %.
+    // About 170 blocks per frame: the mean over 850 squared normals has the relative error sqrt(2 /
+    // 850) = 5 %.
     EXPECT_LT(nees, 1.0 + 4.0 * 0.05) << "over-confident";
     EXPECT_GT(nees, 0.5) << "needlessly modest";
 }
@@ -182,8 +182,8 @@ struct Border {
     double nees = 0.0;
 };
 
-/// The nearest cells of a floor that a standing camera sees for a while: the lower border of the
-/// image.
+/// The nearest cells of a floor that a standing camera observes for a while, at the lower border of
+/// the image.
 Border lower_border(double border_share) {
     const StepScene floor;
     // The lower border meets the floor 0.559 m before the camera, and so 1 mm beyond a cell.
@@ -227,7 +227,8 @@ TEST(DepthFusion, GroundBeyondTheImageIsNotMeasuredByPointsThatErrTowardsIt) {
     EXPECT_LT(wanted.nees, 1.5);
 }
 
-/// A wall fills the image from its lower to its upper border: no cell of it is wholly in view.
+/// A wall fills the image from its lower to its upper border, so no cell of the wall is wholly in
+/// view.
 TEST(DepthFusion, AWallThatReachesBeyondTheImageIsSeen) {
     StepScene wall;
     wall.edge_m = 0.45;
@@ -258,7 +259,7 @@ TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
     const Errors errors = compare(map, floor);
     EXPECT_LT(errors.median_abs_m, 0.6 * first_median_m);
     EXPECT_LT(errors.nees, 1.2);
-    // Seen while standing: the same picture again and again must change nothing.
+    // The camera stands: the same image again and again must change nothing.
     const Pose T_odom_body = body_at(0.3);
     DepthImage depth = render(floor, zed(), T_odom_body);
     add_noise(depth, rng, 40);
@@ -269,7 +270,8 @@ TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
     for (std::size_t i = 0; i < once.height_var_m2.size(); ++i) {
         lowered += map.layers().height_var_m2.data()[i] < once.height_var_m2.data()[i] ? 1 : 0;
     }
-    // Cells that disagreed (about 1 % for a gate of 2.5 sigma) were inflated and may settle again.
+    // Cells that disagreed (about 1 % for a gate of 2.5 sigma) were inflated; their variance may
+    // shrink again.
     EXPECT_LT(lowered, 0.03 * static_cast<double>(map.known_cells()));
 }
 
@@ -297,7 +299,7 @@ TEST(DepthFusion, StepUpHasBothLevelsAndTheEdgeCellTakesTheUpper) {
     EXPECT_GE(upper, 0.9 * known);
 }
 
-/// What a matcher makes of a drop: the disparities on both sides joined by a ramp across the edge.
+/// A drop as a matcher measures it: a ramp across the edge joins the disparities on both sides.
 void smear_columns(DepthImage& depth, int half_px) {
     const DepthImage sharp = depth;
     const Image<float>& d = sharp.disparity_px;
@@ -469,7 +471,7 @@ TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
     const auto frame = [&](int k) {
         Pose T_odom_body = body_at(0.011 * k);
         T_odom_body.translation_m.z() += k % 6 == 0 ? 0.05 : 0.0;
-        // While the first frames warm up, no motion makes a cell old.
+        // During the first frames, no motion makes a cell old.
         map.follow(T_odom_body, Matrix6::Identity() * (k < 2 ? 0.0 : 1e-8));
         map.add(rig, T_odom_body, depths[static_cast<std::size_t>(k % 2)], k);
         moved += map.height_drift().reason == HeightDriftReason::moved ? 1 : 0;

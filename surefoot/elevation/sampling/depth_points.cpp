@@ -8,7 +8,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// One frame on its way to points: what is constant in it, taken once.
+/// Conversion of one frame into points; holds the constants of the frame.
 class DepthWalk {
   public:
     DepthWalk(const ElevationConfig& config,
@@ -59,7 +59,7 @@ class DepthWalk {
     }
 
   private:
-    /// What the rays of one row share: the ray (x, y, 1) in odom is x * along + start.
+    /// Data shared by the rays of one row: the ray (x, y, 1) in odom is x * along + start.
     struct RowRays {
         RowRays(const DepthWalk& walk, int v)
             : y((v - walk.rig_.cy_px) / walk.rig_.fy_px),
@@ -88,7 +88,7 @@ class DepthWalk {
                 v + reach < d.height() ? d.row(v + reach)[u] : kNanF};
     }
 
-    /// `reading` is complete but for the range.
+    /// Needs a `reading` that is complete except for the range.
     void add_pixel(const RowRays& rays,
                    double x,
                    SensorReading& reading,
@@ -108,7 +108,7 @@ class DepthWalk {
             return;
         }
         const RayVariance ray = ray_variance(config_.sensor, reading);
-        // height_variance_m2() written out for an error of roll and pitch alone, equal in both.
+        // height_variance_m2() for equal errors of roll and pitch only.
         const double n_sq = ray_up * ray_up / ray_sq;
         const double beside_camera_sq_m2 = z_m * z_m * (ray_sq - ray_up * ray_up);
         const double var_m2 =

@@ -12,9 +12,9 @@
 
 namespace surefoot::elevation {
 
-/// Turns the trusted pixels of a depth image into points over a grid: pixel filters, range, height
-/// cut, height with its variance. Replaces the contents of `points`; counts what was left out.
-/// `grid_origin_m` is the corner of the grid in odom that x and y of the points count from.
+/// Converts the accepted pixels of a depth image into points over a grid: pixel filters, range,
+/// height cut, height with its variance. Replaces the contents of `points` and counts the rejected
+/// pixels. `grid_origin_m` is the grid corner in odom from which x and y of the points count.
 void points_from_depth(const ElevationConfig& config,
                        const camera::RectifiedRig& rig,
                        const Pose& T_odom_body,

@@ -25,7 +25,7 @@ HWY_INLINE V set(float value) {
     return hn::Set(D(), value);
 }
 
-/// SurfaceCheck::gradient
+/// Vector version of SurfaceCheck::gradient.
 HWY_INLINE V gradient(V before, V after, V here, V limit, V per_reach) {
     const V half = set(0.5F);
     const V departure = hn::Abs(hn::Sub(hn::Mul(half, hn::Add(before, after)), here));
@@ -45,7 +45,7 @@ HWY_INLINE V squared(V value) {
     return hn::Mul(value, value);
 }
 
-/// SurfaceCheck::accepts
+/// Vector version of SurfaceCheck::accepts.
 HWY_INLINE M accepts(const SurfaceLimits& l, const Pixels& p, V ray_x, V ray_y) {
     const V limit = hn::Add(set(l.jump_px), hn::Mul(set(l.jump_sigma), p.sigma));
     const V per_reach = set(l.per_reach);
@@ -76,7 +76,7 @@ HWY_INLINE V ray_along(const DepthRow& row, int axis, V x) {
     return hn::Add(set(row.start[axis]), hn::Mul(x, set(row.along[axis])));
 }
 
-/// Height variance of the model `matcher` and of an error of the camera's roll and pitch.
+/// Height variance from the model `matcher` and from an error of the camera's roll and pitch.
 HWY_INLINE V height_variance(const DepthFrame& f, V depth, V range, V sigma, V ray_up, V ray_sq) {
     const V along = hn::Div(hn::Mul(hn::Mul(depth, range), sigma), set(f.depth_to_disparity_px_m));
     const V lateral = hn::Mul(hn::Mul(set(f.lateral_px), depth), set(f.per_focal_px));
@@ -90,7 +90,7 @@ HWY_INLINE V height_variance(const DepthFrame& f, V depth, V range, V sigma, V r
         hn::Mul(set(f.tilt_var), beside_sq));
 }
 
-/// One register of pixels from column `u` on.
+/// Processes one register of pixels from column `u` on.
 HWY_INLINE void add_pixels(const DepthFrame& f,
                            const DepthRow& row,
                            const Pixels& p,

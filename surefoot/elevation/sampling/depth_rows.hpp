@@ -8,7 +8,7 @@
 
 namespace surefoot::elevation {
 
-/// What all pixels of a frame share, in floats. Heights and places count from where GridPoint's do.
+/// Data shared by all pixels of a frame, in floats. Heights and positions count as in GridPoint.
 struct DepthFrame {
     float cx_px = 0.0F;
     float per_fx = 0.0F;
@@ -35,7 +35,7 @@ struct DepthRow {
     const float* sigma_px = nullptr;
     const float* outlier_probability = nullptr;
     const float* before_px = nullptr;  ///< disparity `reach` columns before the first pixel, ...
-    const float* after_px = nullptr;   ///< ... after it, above and below: NaN = none
+    const float* after_px = nullptr;   ///< ... after it, above and below; NaN = no match
     const float* above_px = nullptr;
     const float* below_px = nullptr;
     int width = 0;
@@ -53,9 +53,9 @@ struct RowCounts {
     std::size_t samples = 0;
 };
 
-/// Samples of the trusted pixels of a row, from left to right; see `points_from_depth`, whose
-/// model `matcher` this is in floats. The same bytes on every instruction set. `out` may be written
-/// up to `CellSamples::kSlack` beyond the last sample.
+/// Writes the samples of the accepted pixels of a row, from left to right: the model `matcher` of
+/// `points_from_depth`, in floats. Every instruction set gives the same bytes. May write up to
+/// `CellSamples::kSlack` beyond the last sample of `out`.
 RowCounts samples_of_row(const DepthFrame& frame, const DepthRow& row, CellSamples::Columns out);
 
 }  // namespace surefoot::elevation

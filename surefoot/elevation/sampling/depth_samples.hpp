@@ -15,15 +15,15 @@
 
 namespace surefoot::elevation {
 
-/// The way from a depth image to samples in cells, in floats and registers: what
-/// `points_from_depth` and `samples_from_points` do for the sensor model `matcher`, without points
-/// in between. The same bytes for every executor and instruction set. Not thread-safe.
+/// Converts a depth image into samples of cells, in floats: the result of `points_from_depth` and
+/// `samples_from_points` for the sensor model `matcher`, without a list of points. Every executor
+/// and instruction set gives the same bytes. Not thread-safe.
 class DepthSampler {
   public:
-    /// Other sensor models, and filters that look at a cloud as a whole, need points.
+    /// True if this class supports the config. Other sensor models and cloud filters need points.
     [[nodiscard]] static bool can(const ElevationConfig& config) noexcept;
 
-    /// Adds what was left out to `counts`.
+    /// Adds the samples of one image, and counts the rejected pixels in `counts`.
     void sample(const ElevationConfig& config,
                 const camera::RectifiedRig& rig,
                 const Pose& T_odom_body,

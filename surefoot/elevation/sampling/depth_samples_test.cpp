@@ -33,7 +33,7 @@ camera::RectifiedRig rig() {
     return rig;
 }
 
-/// A tilted plane with steps, holes, wild values and doubtful pixels.
+/// A tilted plane with steps, holes, wild values and pixels with an outlier probability.
 DepthImage depth_image(Rng& rng) {
     DepthImage depth;
     depth.resize(kWidth, kHeight);
@@ -127,8 +127,8 @@ TEST(DepthSamples, AgreeWithThePointsInDoubles) {
         const Result b = fast(config, kBody, depth, geometry());
         EXPECT_EQ(a.counts.points, b.counts.points);
         EXPECT_EQ(a.counts.gated_confidence, b.counts.gated_confidence);
-        // Rounding decides at a limit: a point in 2^22 of the range of a float, some points a
-        // frame.
+        // At a limit, rounding decides. This affects one point in 2^22 of the range of a float, so
+        // some points a frame.
         constexpr int kAtALimit = 3;
         EXPECT_LE(std::abs(a.counts.gated_range - b.counts.gated_range), kAtALimit);
         EXPECT_LE(std::abs(a.counts.gated_height - b.counts.gated_height), kAtALimit);

@@ -22,8 +22,8 @@ ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
     axis_y_ = static_cast<float>(axis.y());
     axis_z_ = static_cast<float>(axis.z());
 
-    // Pixels reach half a pixel beyond their centres. The right eye sees no more than the left one
-    // but to its own left.
+    // A pixel extends half a pixel beyond its centre. The right camera limits the common view only
+    // at the left side.
     const double left = rig.cx_px + 0.5;
     const double top = rig.cy_px + 0.5;
     const std::array<Eigen::Vector3d, 4> inwards = {

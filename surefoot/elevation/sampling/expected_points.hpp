@@ -9,18 +9,18 @@
 
 namespace surefoot::elevation {
 
-/// How many pixels of a camera level ground in a cell covers: a cell of area A at the depth z along
-/// the optical axis and h below the camera is seen under the solid angle A h / r^3, a pixel under
-/// (z / r)^3 / (fx fy), so that
+/// Number of pixels that level ground in a cell covers. A cell of area A at the depth z along the
+/// optical axis and h below the camera covers the solid angle A h / r^3, a pixel covers (z / r)^3 /
+/// (fx fy), so that
 ///   n = A fx fy h / z^3.
-/// A vertical surface shows more (Oniga and Nedevschi 2010, who told obstacles from roads by it).
+/// A vertical surface shows more pixels (Oniga and Nedevschi 2010 detect obstacles by it).
 class ExpectedPoints {
   public:
     ExpectedPoints(const camera::RectifiedRig& rig,
                    const Pose& T_odom_body,
                    const grid::GridGeometry& geometry);
 
-    /// For ground at `z_m` in odom; 0 behind or above the camera.
+    /// Returns the number for ground at `z_m` in odom; 0 behind or above the camera.
     [[nodiscard]] float at(int ix, int iy, float z_m) const noexcept {
         const float x = x_m_ + resolution_m_ * static_cast<float>(ix);
         const float y = y_m_ + resolution_m_ * static_cast<float>(iy);
@@ -29,8 +29,8 @@ class ExpectedPoints {
         if (!(below_m > 0.0F && depth_m > 0.0F)) return 0.0F;
         return scale_m2_ * below_m / (depth_m * depth_m * depth_m);
     }
-    /// All of the cell, with its middle at `z_m` in odom, lies in the images of both eyes (the ball
-    /// around it does).
+    /// True if the whole cell, with its middle at `z_m` in odom, lies in both images (the test uses
+    /// the ball around the cell).
     [[nodiscard]] bool is_whole_in_view(int ix, int iy, float z_m) const noexcept {
         const float x = x_m_ + resolution_m_ * static_cast<float>(ix);
         const float y = y_m_ + resolution_m_ * static_cast<float>(iy);
@@ -50,8 +50,8 @@ class ExpectedPoints {
     float axis_x_;  ///< optical axis in odom
     float axis_y_;
     float axis_z_;
-    /// A side of what both eyes see, moved inwards by the radius of a cell: inside is
-    /// x x + y y + z z + offset >= 0, in odom from the camera.
+    /// One side of the common view of both cameras, moved inwards by the radius of a cell. Inside
+    /// is x x + y y + z z + offset >= 0, in odom axes from the camera.
     struct Side {
         float x;
         float y;

@@ -8,7 +8,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A camera that looks down by 32 deg, turned and tilted, with a lens of its own.
+/// A camera pitched down by 32 deg, turned and tilted, with its own lens.
 camera::RectifiedRig tilted_rig(
     int width, int height, double fx_px, double fy_px, double cx_px, double cy_px) {
     const Eigen::Quaterniond turned =
@@ -61,7 +61,8 @@ TEST(ExpectedPoints, AreThePixelsWhoseRaysMeetTheCell) {
         const int pixels = met.at(ix, iy);
         if (pixels < 100) continue;
         ++compared;
-        // Pixels on the border of a cell, in or out: four sides of sqrt(n), half of them by chance.
+        // Pixels on the border of a cell are in or out by chance: four sides of sqrt(n) pixels,
+        // half of them in.
         EXPECT_NEAR(expected.at(ix, iy, static_cast<float>(kGround_m)),
                     pixels,
                     2.0 * std::sqrt(static_cast<double>(pixels)))
@@ -104,7 +105,7 @@ TEST(ExpectedPoints, TellsWhichCellsBothEyesSeeWhole) {
                 ++whole;
                 ASSERT_EQ(seen_around(middle_m, 0.0353), 13) << ix << ", " << iy;
             } else {
-                // The ball is larger than the cell, seen at a slant.
+                // The ball is larger than the cell at a slant.
                 const int seen = seen_around(middle_m, 0.11);
                 ASSERT_LT(seen, 13) << ix << ", " << iy;
                 partial += seen > 0;

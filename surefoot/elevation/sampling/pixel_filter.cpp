@@ -10,7 +10,7 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                    max_outlier_probability,
                    0.0,
                    1.0,
-                   "pixels that are likelier wrong than this are not fused");
+                   "pixels with a larger outlier probability are not fused");
     visitor.boolean("surface_check",
                     surface_check,
                     "drop pixels at disparity jumps and at grazing incidence (keys below)");
@@ -34,7 +34,7 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                    90.0,
                    "the same for level surfaces: table tops seen from afar");
     visitor.number(
-        "level_deg", level_deg, 0.0, 45.0, "surfaces that lean less against gravity are level");
+        "level_deg", level_deg, 0.0, 45.0, "surfaces with less tilt against gravity are level");
 }
 
 namespace {

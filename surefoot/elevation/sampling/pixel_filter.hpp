@@ -9,24 +9,24 @@
 
 namespace surefoot::elevation {
 
-/// Which pixels of a depth image may be trusted with a height.
+/// Conditions under which a pixel of a depth image may give a height.
 struct PixelFilterConfig {
     double max_outlier_probability = 0.5;
     bool surface_check = true;  ///< the three keys below; needs neighbours in the image
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
     double jump_px = 0.5;     ///< a plane's disparity is linear in the pixel: largest departure ...
     double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
-    /// Matchers bridge depth edges with ramps along the line of sight. 70 with `min_points` 3
-    /// leaves 2 % of the cells hidden behind drop edges invented and 97 % of the visible floor
-    /// known (docs/lab/correlated_depth.md).
+    /// Matchers bridge depth edges with ramps along the line of sight. 70 deg with `min_points` 3
+    /// leaves 2 % of the cells hidden behind drop edges as invented ground, and keeps 97 % of the
+    /// visible floor (docs/lab/correlated_depth.md).
     double max_incidence_deg = 70.0;
-    /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under
-    /// it as the surface. It is level, which a bridge that follows the line of sight down is not.
+    /// A distant table top is observed at 80-84 deg; without its pixels, the floor under it becomes
+    /// the surface. A table top is level; a bridge along the line of sight is not.
     double max_incidence_level_deg = 85.0;
-    /// Surfaces that lean less against gravity are level, where a level one must be seen flatter
-    /// than `max_incidence_deg`: so flat, noise alone leans a table by 10 deg (with 8 its far half
-    /// went unseen, docs/lab/terrain.md). On steeper lines of sight what leans as little
-    /// and is seen as flat is a bridge behind a low kerb.
+    /// Surfaces with less tilt are level, if the line of sight is so flat that a level surface
+    /// exceeds `max_incidence_deg`. Noise alone tilts such a table by 10 deg (with a limit of 8,
+    /// its far half was lost, docs/lab/terrain.md). On steeper lines of sight, a surface with the
+    /// same small tilt and flat incidence is a bridge behind a low kerb.
     double level_deg = 15.0;
 
     void describe(ConfigVisitor& visitor);
@@ -40,7 +40,7 @@ struct Neighbours {
     float below_px = 0.0F;
 };
 
-/// What of the filter's settings a pixel needs.
+/// Filter settings that a pixel needs.
 struct SurfaceLimits {
     float fx_px = 0.0F;
     float fy_px = 0.0F;
@@ -55,22 +55,22 @@ struct SurfaceLimits {
     float min_level_cosine_sq = 0.0F;
 };
 
-/// Decides from the disparities around a pixel whether it lies on a surface that a stereo matcher
-/// can see. Holds what is constant in a frame; cheap enough for every pixel.
+/// Decides from the disparities around a pixel if it lies on a surface that a stereo matcher can
+/// measure. Holds the constants of a frame; cheap enough for every pixel.
 ///
 /// A plane n . p = h projects to a disparity that is linear in the pixel, d = d0 + a du + b dv, and
 ///   n ~ (a fx, b fy, d - a fx x - b fy y)   at the ray (x, y, 1), with n . ray ~ d,
 /// so the angle between normal and ray follows from the gradient alone.
 class SurfaceCheck {
   public:
-    /// `up_camera`: unit vector against gravity in the camera frame; zero = not known, no surface
-    /// is level.
+    /// `up_camera`: unit vector against gravity in the camera frame; zero = unknown, then no
+    /// surface counts as level.
     SurfaceCheck(const PixelFilterConfig& config,
                  double fx_px,
                  double fy_px,
                  const Eigen::Vector3d& up_camera = Eigen::Vector3d::Zero());
 
-    /// False for a disparity jump, a pixel without neighbours in one direction, grazing incidence.
+    /// False for a disparity jump, grazing incidence, or no neighbours in one direction.
     [[nodiscard]] bool accepts(const Neighbours& around,
                                float disparity_px,
                                float sigma_px,
@@ -97,8 +97,8 @@ class SurfaceCheck {
     [[nodiscard]] const SurfaceLimits& limits() const noexcept { return limits_; }
 
   private:
-    /// Per pixel; from one side alone where the other has no match; NaN where neither has one or
-    /// where the three do not lie on a line.
+    /// Gradient per pixel; from one side if the other has no match; NaN if both sides have no match
+    /// or if the three values do not lie on a line.
     [[nodiscard]] float gradient(float before_px,
                                  float after_px,
                                  float here_px,

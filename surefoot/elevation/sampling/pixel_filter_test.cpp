@@ -60,7 +60,7 @@ TEST(PixelFilter, RejectsPlanesExactlyBeyondTheIncidenceLimit) {
 }
 
 TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
-    // A plane whose normal leaves the line of sight (0, 0, 1) by 83 deg: n ~ (0, b f, d).
+    // The angle between normal and line of sight (0, 0, 1) is 83 deg: n ~ (0, b f, d).
     const float d = 17.0F;
     const double angle_rad = 83.0 * std::numbers::pi / 180.0;
     const auto step_px = static_cast<float>(3.0 * std::tan(angle_rad) / kFocal_px) * d;
@@ -78,8 +78,8 @@ TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
 }
 
 TEST(PixelFilter, BridgesBehindLowKerbsAreNoLevelSurfaces) {
-    // They lean by 14 deg and are seen at 72 deg, from 32 deg above; then the same from 18 deg
-    // above, where a level surface is seen as flat.
+    // The surfaces tilt by 14 deg. The incidence is 72 deg, first from 32 deg above, then from 18
+    // deg above, where a level surface has the same incidence.
     const float d = 25.0F;
     const auto radians = [](double deg) { return deg * std::numbers::pi / 180.0; };
     const double angle_rad = radians(72.0);
@@ -100,15 +100,15 @@ TEST(PixelFilter, RejectsJumpsAndPixelsWithoutNeighbours) {
     EXPECT_TRUE(check.accepts({d, d, d, d}, d, 0.1F, 0.0F, 0.0F));
     EXPECT_FALSE(check.accepts({d, d, d - 3.0F, d}, d, 0.1F, 0.0F, 0.0F)) << "depth edge above";
     EXPECT_TRUE(check.accepts({d, d, d - 0.9F, d}, d, 0.1F, 0.0F, 0.0F)) << "a bend, not a jump";
-    EXPECT_FALSE(check.accepts({kNanF, kNanF, d, d}, d, 0.1F, 0.0F, 0.0F));
-    EXPECT_TRUE(check.accepts({kNanF, d, d, kNanF}, d, 0.1F, 0.0F, 0.0F));
-    // Middle of a ramp that a matcher drew over 6 px between 27 and 21 px: linear, but grazing.
+    EXPECT_FALSE(check.accepts({kNan, kNan, d, d}, d, 0.1F, 0.0F, 0.0F));
+    EXPECT_TRUE(check.accepts({kNan, d, d, kNan}, d, 0.1F, 0.0F, 0.0F));
+    // Middle of a matcher's ramp over 6 px between 27 and 21 px: linear, but grazing.
     EXPECT_FALSE(check.accepts({24.0F, 24.0F, 21.0F, 27.0F}, 24.0F, 0.1F, 0.0F, 0.0F));
 }
 
 TEST(PixelFilter, NoisyDisparitiesPassAsLongAsTheySaySo) {
     PixelFilterConfig config;
-    config.max_incidence_deg = 80.0;  // seen from one side the bend is a plane at 74 deg
+    config.max_incidence_deg = 80.0;  // from one side alone the bend looks like a plane at 74 deg
     const SurfaceCheck check(config, kFocal_px, kFocal_px);
     const float d = 27.0F;
     EXPECT_FALSE(check.accepts({d, d, d - 1.6F, d}, d, 0.1F, 0.0F, 0.0F));  // limit 0.7 px on 0.8

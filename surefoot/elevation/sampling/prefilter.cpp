@@ -27,7 +27,7 @@ double offset_m(float p_m, std::int32_t index, double edge_m) {
     return static_cast<double>(p_m) - (index + 0.5) * edge_m;
 }
 
-/// Moves the points that are kept to the front, in order.
+/// Moves the kept points to the front, in order.
 std::size_t compact(std::span<GridPoint> points, std::span<const std::uint8_t> keep) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -65,7 +65,8 @@ void CloudFilter::reset_table(std::size_t points) {
 }
 
 std::size_t CloudFilter::slot_of(const Cube& cube) const {
-    // Teschner 2003's primes; the product is mixed once more because neighbours differ in low bits.
+    // Primes of Teschner 2003; the product is mixed once more, because neighbours differ in low
+    // bits.
     std::uint64_t hash = static_cast<std::uint32_t>(cube.x) * 73856093ULL;
     hash ^= static_cast<std::uint32_t>(cube.y) * 19349663ULL;
     hash ^= static_cast<std::uint32_t>(cube.z) * 83492791ULL;
@@ -113,7 +114,8 @@ int CloudFilter::count_neighbours(std::span<const GridPoint> points,
                                   int enough) const {
     const auto radius_sq_m2 = static_cast<float>(radius_m * radius_m);
     int count = 0;
-    // 27 cubes with an edge of one radius hold every neighbour; start with the point's own.
+    // 27 cubes with an edge of one radius contain every neighbour; the search starts with the
+    // point's own cube.
     constexpr int kOrder[3] = {0, -1, 1};
     for (const int dz : kOrder) {
         for (const int dy : kOrder) {

@@ -13,16 +13,16 @@
 
 namespace surefoot::elevation {
 
-/// What is thrown away before a cloud reaches the map; each filter has its own switch.
+/// Filters that remove points before a cloud reaches the map; each has its own switch.
 struct PrefilterConfig {
     bool range = true;
     double min_range_m = 0.3;
     double max_range_m = 20.0;
     bool height = true;
-    /// Over base_link; the floor lies near -1. Ground below it has no height in the map, but is
-    /// evidence of a drop (`free_above_m`).
+    /// Relative to base_link; the floor lies near -1. Ground below the limit has no height in the
+    /// map, but is evidence of a drop (`free_above_m`).
     double min_height_m = -3.0;
-    double max_height_m = 1.0;   ///< lintels and ceilings are no ground
+    double max_height_m = 1.0;   ///< excludes lintels and ceilings
     bool down_sampling = false;  ///< not needed where cells reduce their points
     double sampling_m = 0.01;
     bool outlier_removal = false;
@@ -32,29 +32,29 @@ struct PrefilterConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Range pass-through; NaN does not pass.
+/// True if the range passes the filter; NaN does not pass.
 [[nodiscard]] inline bool is_in_range(const PrefilterConfig& config, double range_m) noexcept {
     return !config.range || (range_m >= config.min_range_m && range_m <= config.max_range_m);
 }
-/// The lower height cut in odom.
+/// Returns the lower height limit in odom.
 [[nodiscard]] inline float lowest_z_m(const PrefilterConfig& config,
                                       const Pose& T_odom_body) noexcept {
     return config.height ? static_cast<float>(T_odom_body.translation_m.z() + config.min_height_m)
                          : -std::numeric_limits<float>::infinity();
 }
-/// Upper height cut on the height of a point over base_link; NaN does not pass. The lower one is
-/// for the heights of cells: where many points are too deep, there is a drop.
+/// True if a height over base_link passes the upper limit; NaN does not pass. The lower limit acts
+/// on the heights of cells: many points that are too deep show a drop.
 [[nodiscard]] inline bool is_in_height(const PrefilterConfig& config, double over_body_m) noexcept {
     return !config.height || over_body_m <= config.max_height_m;
 }
 
-/// The two filters that look at a cloud as a whole. Points count from the corner of a grid that
-/// they lie over or near; all are finite. Keeps the order of the points; no allocation once its
-/// tables have grown.
+/// The two filters that need the whole cloud. Points count from the corner of a grid and lie over
+/// or near it; all are finite. The order of the points stays. Does not allocate once its tables
+/// have grown.
 class CloudFilter {
   public:
-    /// One point per cube of `sampling_m`: the one nearest to the centre of the cube, the first of
-    /// equals. Returns how many are left, at the front of `points`.
+    /// Keeps one point per cube of `sampling_m`: the point nearest to the centre of the cube, the
+    /// first of equals. Returns the number of kept points, at the front of `points`.
     std::size_t down_sample(double sampling_m, std::span<GridPoint> points);
     /// Drops points with fewer than `min_neighbours` other points within `radius_m`, in 3D.
     std::size_t remove_outliers(double radius_m, int min_neighbours, std::span<GridPoint> points);
@@ -70,7 +70,7 @@ class CloudFilter {
 
     [[nodiscard]] static Cube cube_of(const GridPoint& point, double edge_m);
     void reset_table(std::size_t points);
-    /// Slot of a cube in the open-addressing table, empty or its own.
+    /// Returns the slot of a cube in the open-addressing table: an empty one or its own.
     [[nodiscard]] std::size_t slot_of(const Cube& cube) const;
     void link(std::span<const GridPoint> points, double edge_m);
     [[nodiscard]] int count_neighbours(std::span<const GridPoint> points,

@@ -26,7 +26,7 @@ std::vector<GridPoint> random_cloud(Rng& rng, int count, double edge_m) {
     return points;
 }
 
-/// The variance carries the point's number.
+/// Returns the numbers of the points, which the test stores in their variances.
 std::vector<int> numbers(std::span<const GridPoint> points) {
     std::vector<int> result;
     for (const GridPoint& point : points) result.push_back(static_cast<int>(point.var_m2));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who walks through the picture must leave the map; what stands there must not.
+// A person who walks through the image must leave the map; a standing object must stay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Box {
     Eigen::Vector3d high_m;
 };
 
-const Box kPerson{{1.4, -0.25, 0.0}, {1.7, 0.25, 0.95}};  // what of it is below the height cut
+const Box kPerson{{1.4, -0.25, 0.0}, {1.7, 0.25, 0.95}};  // its part below the height cut
 const Box kCrate{{1.2, 0.6, 0.0}, {1.6, 1.0, 0.3}};
 const Box kTableTop{{1.3, -1.4, 0.68}, {2.0, -0.6, 0.71}};
 
@@ -48,7 +48,7 @@ Pose body_at(double x_m) {
     return {Eigen::Quaterniond::Identity(), {x_m, 0.0, 1.05}};
 }
 
-/// How far along a ray a box is met; infinite if it is missed (slabs).
+/// Returns the distance along a ray to a box; infinite without an intersection (slab method).
 double meet(const Box& box, const Eigen::Vector3d& from_m, const Eigen::Vector3d& ray) {
     double enter = 0.0;
     double leave = std::numeric_limits<double>::infinity();
@@ -95,8 +95,8 @@ struct Found {
     int floor = 0;
     int higher = 0;
     int unknown = 0;
-    int blocked = 0;  ///< something is believed to hang over the cell
-    int free = 0;     ///< floor, and nothing over it
+    int blocked = 0;  ///< an object counts as hanging over the cell
+    int free = 0;     ///< floor, without an object over it
 };
 
 Found over(const ElevationMap& map, const Box& box) {
@@ -203,8 +203,8 @@ TEST_F(CleanUp, OnlyWhatStandsOnTheGroundIsShownInPlaceOfIt) {
     ASSERT_GT(blocked, 30);
     grid::Layer surface_m;
     map_.surface(surface_m);
-    // A cell at the rim holds points of the lamp and of the floor in one frame, like a face that
-    // stands on the floor. Farther in, the floor below stays what is shown.
+    // In one frame, a cell at the rim holds points of the lamp and of the floor, like a face that
+    // stands on the floor. Farther inside, the floor below stays the shown surface.
     constexpr double kRim_m = 0.06;
     for (int iy = 0; iy < surface_m.height(); ++iy) {
         for (int ix = 0; ix < surface_m.width(); ++ix) {
@@ -221,7 +221,7 @@ TEST_F(CleanUp, WhatStandsThereStays) {
     const Found table = over(map_, kTableTop);
     ASSERT_GT(crate.higher, 150);
     ASSERT_GT(table.higher + table.blocked, 100);
-    // Standing for two seconds, then walking on until both leave the picture.
+    // The machine stands for two seconds, then walks on until both objects leave the image.
     frames({kCrate, kTableTop}, 2 * kSecond);
     frames({kCrate, kTableTop}, 4 * kSecond, 0.01);
     EXPECT_GE(over(map_, kCrate).higher, crate.higher);
@@ -231,7 +231,8 @@ TEST_F(CleanUp, WhatStandsThereStays) {
     EXPECT_LE(later.free, table.free) << "floor seen under the table is not free to walk on";
 }
 
-/// The machine stands 0.3 m higher than the floor that begins 1.2 m ahead: 0.48 m of it are hidden.
+/// The machine stands 0.3 m higher than the floor that begins 1.2 m ahead. The edge hides 0.48 m of
+/// the floor.
 const Box kPlatform{{-3.0, -3.0, 0.0}, {1.2, 3.0, 0.3}};
 
 TEST_F(CleanUp, LinesOfSightSayHowDeepHiddenGroundLies) {
@@ -248,9 +249,9 @@ TEST_F(CleanUp, LinesOfSightSayHowDeepHiddenGroundLies) {
             const bool behind = at.x() > 1.26 && at.x() < 1.58 && std::abs(at.y()) < 0.3;
             if (!behind || !std::isnan(layers.height_m.at(ix, iy))) continue;
             ++hidden;
-            // Between the line from the camera, 1.05 m up, over the edge, and one that ends on the
-            // floor a few cells behind what is hidden (1.68 m), or three sigma over it, as sure as
-            // one look is there: 16 mm; noise.
+            // The bound lies between two lines from the camera at 1.05 m: the line over the edge,
+            // and a line that ends on the floor a few cells behind the hidden part (1.68 m), or
+            // three sigma of one observation (16 mm) above the floor; plus noise.
             constexpr double kNoise_m = 0.01;
             constexpr double kEnd_m = 3.0 * 0.016;
             EXPECT_GT(static_cast<double>(free_m), 1.05 - 0.75 / 1.2 * at.x() - kNoise_m);
@@ -259,13 +260,13 @@ TEST_F(CleanUp, LinesOfSightSayHowDeepHiddenGroundLies) {
         }
     }
     EXPECT_GT(hidden, 200);
-    frames({kPlatform}, 5, 0.1);  // from nearer the edge, more is seen, and the rest lies deeper
+    frames({kPlatform}, 5, 0.1);  // nearer to the edge more is visible, and the bound is deeper
     const auto cell = map_.geometry().cell_at(1.5, 0.0);
     EXPECT_NEAR(static_cast<double>(layers.height_m.at(cell->ix, cell->iy)), 0.0, 0.02);
     EXPECT_TRUE(std::isnan(layers.free_above_m.at(cell->ix, cell->iy)));
 }
 
-/// Cells over which lines of sight say how deep hidden ground lies.
+/// Returns the number of cells whose hidden ground the lines of sight bound.
 std::int64_t looked_over(const ElevationMap& map) {
     const float* free_m = map.layers().free_above_m.data();
     return std::count_if(free_m, free_m + map.layers().free_above_m.size(), [](float z_m) {

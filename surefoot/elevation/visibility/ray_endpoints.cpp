@@ -9,9 +9,9 @@
 namespace surefoot::elevation {
 namespace {
 
-/// What is nearer than this to the camera, along x or y in cells, has no direction.
+/// Cells nearer to the camera than this, along x or y in cells, have no direction.
 constexpr float kNearest = 2.0F;
-/// A surface covers a cell or two: lines that end so near beyond it may have ended at it.
+/// A surface covers one or two cells, so a line that ends this near beyond it may have ended at it.
 constexpr int kOwnCells = 3;
 
 }  // namespace
@@ -38,7 +38,7 @@ bool RayEndpoints::passed(grid::Cell cell, float z_m) const {
     const float distance = away.cwiseAbs().maxCoeff();
     if (!(distance >= kNearest)) return false;
     const Eigen::Vector2f step = away / distance;
-    const float fall_m = (camera_z_m_ - z_m) / distance;  // of the line, from one step to the next
+    const float fall_m = (camera_z_m_ - z_m) / distance;  // fall of the line per step
     const float rounding_m = std::abs(fall_m);
     for (int k = kOwnCells;; ++k) {
         const auto steps = static_cast<float>(k);
@@ -53,7 +53,8 @@ bool RayEndpoints::passed(grid::Cell cell, float z_m) const {
         if (std::isnan(z_m_[i])) continue;
         const float line_z_m = z_m - steps * fall_m;
         if (line_z_m > z_m_[i] + rounding_m) continue;
-        // It met this surface, or is below it: then what it met was not seen.
+        // The line met this surface, or passes below it. Below it, the endpoint of the line was not
+        // observed.
         return line_z_m >= bottom_m_[i] - rounding_m;
     }
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr float kMargin_m = 0.05F;
 const Eigen::Vector3d kCamera_m(5.013, 0.21, 1.04);
 
-/// 6 m x 3 m ahead of the camera.
+/// A grid of 6 m x 3 m ahead of the camera.
 grid::GridGeometry geometry() {
     grid::GridGeometry geometry;
     geometry.resolution_m = 0.025;
@@ -35,7 +35,7 @@ struct CellObservation {
     float bottom_m = kNanF;
 };
 
-/// Shows every cell of the map for which `look(x, y)` has a height.
+/// Sets every cell of the map for which `look(x, y)` gives a height.
 template <class FrameObservation>
 RayEndpoints seen(const FrameObservation& look, const Eigen::Vector3d& camera_m = kCamera_m) {
     const grid::GridGeometry g = geometry();
@@ -57,17 +57,17 @@ constexpr float kTop_m = 0.72F;
 bool is_table(double x_m, double y_m) {
     return x_m > 6.0 && x_m < 6.9 && y_m > -0.3 && y_m < 0.4;
 }
-/// The line from the camera to a place on the floor meets the top.
+/// True if the line from the camera to a place on the floor meets the top.
 bool in_its_shadow(double x_m, double y_m) {
     const double share = (kCamera_m.z() - static_cast<double>(kTop_m)) / kCamera_m.z();
     return is_table(kCamera_m.x() + share * (x_m - kCamera_m.x()),
                     kCamera_m.y() + share * (y_m - kCamera_m.y()));
 }
 
-/// Of 1008 cells, those at corners may be taken for the air beside them.
+/// Limit of wrong cells out of 1008: cells at corners may look like the free space beside them.
 constexpr int kCorners = 8;
 
-/// Cells of the top of which lines of sight say that it is not there.
+/// Number of cells of the top that lines of sight contradict.
 int contradicted(const RayEndpoints& ends) {
     const grid::GridGeometry g = geometry();
     int cells = 0;
@@ -82,7 +82,8 @@ int contradicted(const RayEndpoints& ends) {
 }
 
 TEST(RayEndpoints, FloorSeenUnderATableDoesNotContradictItsTop) {
-    // From so near, floor under the table is seen, and nothing of the top: it is below the picture.
+    // From this near, the camera observes floor under the table but no part of the top, which is
+    // below the image.
     const RayEndpoints ends = seen([](double x_m, double y_m) {
         return in_its_shadow(x_m, y_m) ? CellObservation{} : CellObservation{0.0F, 0.0F};
     });
@@ -142,8 +143,8 @@ TEST(RayEndpoints, SayNothingWithoutADirection) {
     }
 }
 
-/// Marching along the line in small steps, in doubles, over a map of which every cell was seen.
-/// Whether it ends within the map, at least `clear_cells` from its border.
+/// Marches along the line in small steps, in doubles, over a fully observed map. Returns where the
+/// line ends: `inside` is more than 3 cells from the border, `near_the_border` is closer.
 enum class End : std::uint8_t { inside, outside, near_the_border };
 End march(const RayEndpoints& ends, grid::Cell cell, double z_m) {
     const grid::GridGeometry g = geometry();
@@ -169,7 +170,7 @@ TEST(RayEndpoints, AgreesWithMarchingAlongTheLine) {
     int outside = 0;
     for (int scene = 0; scene < 20; ++scene) {
         const double phase = rng.uniform(0.0, 6.0);
-        // Nowhere steeper than the lines: none enters a cell from the side.
+        // The ground is nowhere steeper than the lines, so no line enters a cell from the side.
         const double rise = rng.uniform(0.01, 0.04);
         const RayEndpoints ends = seen([&](double x_m, double y_m) {
             const double z_m = rise * std::sin(3.0 * x_m + phase) * std::cos(2.0 * y_m);
@@ -183,7 +184,8 @@ TEST(RayEndpoints, AgreesWithMarchingAlongTheLine) {
             if (end == End::near_the_border) continue;
             const auto line_m = static_cast<float>(z_m);
             const bool passed = ends.passed_through(cell, line_m, line_m);
-            // A line that leaves the map just above the ground may be rounded down to it.
+            // Rounding may put the end of a line that leaves the map just above the ground onto the
+            // ground.
             if (end == End::outside && passed) continue;
             EXPECT_EQ(passed, end == End::inside) << cell.ix << ", " << cell.iy << ", " << z_m;
             (passed ? inside : outside) += 1;

@@ -12,26 +12,26 @@
 namespace surefoot::elevation {
 
 struct ViewpointConfig {
-    double min_translation_m = 0.005;  ///< nearer views repeat the matcher's errors
+    double min_translation_m = 0.005;  ///< closer viewpoints repeat the matcher's errors
     double min_rotation_deg = 0.5;
     void describe(ConfigVisitor& visitor);
 };
 
-/// Remembers from where the ground was seen, so that a camera that stands still does not count the
-/// same error many times as independent evidence. Poses closer than a quarter of the limits share
-/// an entry, which is how exact the limits are kept. Beyond 1024 entries (at least 1.2 m of way
-/// with the defaults) the oldest are forgotten and count as far away. No allocation after
-/// construction.
+/// Remembers the viewpoints from which the ground was observed, so that a standing camera does not
+/// count the same error many times as independent evidence. Poses closer than a quarter of the
+/// limits share an entry; this bounds the accuracy of the limits. Beyond 1024 entries (at least 1.2
+/// m of travel with the defaults) the oldest entries are dropped and count as far away. No
+/// allocation after construction.
 class ViewpointHistory {
   public:
     using Id = std::uint32_t;
-    /// No view: differs from every pose.
+    /// No viewpoint: differs from every pose.
     static constexpr Id kNever = 0;
 
     explicit ViewpointHistory(const ViewpointConfig& config);
-    /// Takes the pose as the present view and returns its id; ids grow.
+    /// Sets the pose as the present viewpoint and returns its id. Ids increase.
     Id look_from(const Pose& T_odom_body);
-    /// Whether the present view is farther from the view `id` than the limits: new information.
+    /// True if the present viewpoint is farther from viewpoint `id` than the limits allow.
     [[nodiscard]] bool is_new_since(Id id) const;
 
   private:

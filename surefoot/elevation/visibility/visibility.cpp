@@ -9,17 +9,17 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// What is nearer than this to the camera, |dx| + |dy| in cells, has no direction.
+/// Cells nearer to the camera than this, |dx| + |dy| in cells, have no direction.
 constexpr float kNearest = 2.0F;
-/// A line says nothing about its own end: the surface there covers a cell or two.
+/// A line gives no evidence at its own end: the surface there covers one or two cells.
 constexpr int kEndRings = 3;
 
 }  // namespace
 
 void VisibilityConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
-        "cleanup", cleanup, "forget surfaces that lines of sight pass through (keys below)");
-    visitor.boolean("drops", drops, "lines of sight over unknown ground say how deep it must lie");
+        "cleanup", cleanup, "remove surfaces that lines of sight pass through (keys below)");
+    visitor.boolean("drops", drops, "lines of sight over unknown ground bound its depth");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
@@ -30,12 +30,12 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                    neighbour_s,
                    0.0,
                    60.0,
-                   "a cell beside it, as high, that was seen this lately vouches for a cell");
+                   "a neighbour of equal height, confirmed this recently, keeps a cell");
     visitor.integer("frames",
                     frames,
                     1,
                     255,
-                    "frames with such a line until a height that every look had shown is gone");
+                    "frames with such a line that remove a height shown by every observation");
 }
 
 void FreeSpaceRays::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
@@ -53,8 +53,8 @@ void FreeSpaceRays::reset(const grid::GridGeometry& geometry, const Eigen::Vecto
     camera_x_ = static_cast<float>(corner_cells.x());
     camera_y_ = static_cast<float>(corner_cells.y());
     camera_z_m_ = static_cast<float>(camera_m.z());
-    // As far as the corner that is farthest from the camera. From afar, or from nowhere (NaN), no
-    // line says anything.
+    // The table reaches to the corner that is farthest from the camera. If the camera is far
+    // outside or not finite, the table is empty.
     const auto nx = static_cast<float>(geometry.nx);
     const auto ny = static_cast<float>(geometry.ny);
     const float farthest =
@@ -92,9 +92,9 @@ void FreeSpaceRays::add(grid::Cell cell, float z_m) {
     const int ring = static_cast<int>(place.distance) - kEndRings;
     if (ring < 0) return;
     const float slope = (z_m - camera_z_m_) / place.distance;
-    // Ends side by side leave no gap: what they see through, they see through everywhere.
+    // Neighbouring endpoints leave no gap between their lines.
     const float half_width = 0.5F * kQuarter / place.distance;
-    // Rounded down: a turn of one quarter more keeps what is converted positive.
+    // Rounded down: adding one quarter keeps the converted value positive.
     // in range: from 0.75 to 5.25 quarters, as the distance is at least kNearest
     const float around = place.direction + kQuarter;
     const int first = static_cast<int>(around - half_width) - kQuarter;  // in range: as above
@@ -127,7 +127,7 @@ void FreeSpaceRays::finish() {
 float FreeSpaceRays::lowest_over(grid::Cell cell) const {
     const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
-    // On the border of two quarters a direction may count for either.
+    // On the border of two quarters, a direction may belong to either.
     if (!used_[quarter_of(dx, dy)] && dx != 0.0F && dy != 0.0F) return kInfinity;
     const Place place = place_of(dx, dy);
     if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_ - 1))) {

@@ -11,44 +11,44 @@
 
 namespace surefoot::elevation {
 
-/// When a remembered surface that lines of sight pass through is gone. ASSUMPTION, all of them;
-/// what they lead to: docs/evidence/accuracy.md.
+/// When free-space evidence removes a remembered surface. ASSUMPTION, all of them; for their
+/// effects see docs/evidence/accuracy.md.
 struct VisibilityConfig {
     bool cleanup = true;
-    /// Lines of sight that pass over unknown cells say how deep the ground there must lie.
+    /// Lines of sight over unknown cells bound the depth of the ground there.
     bool drops = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
-    /// Frames with such a line, and without a look that agrees in between, until a surface that
-    /// every look had shown is gone; a surface seen in every third look gets three times as many.
+    /// Frames with such a line, without an agreeing observation in between, that remove a surface
+    /// shown by every observation; a surface shown by every third one needs three times as many.
     int frames = 3;
-    /// A cell is vouched for by one beside it, as high, that a look agreed with this lately.
+    /// A neighbour of equal height, confirmed this recently, keeps a cell from removal.
     double neighbour_s = 0.4;
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// What the lines of sight of one frame say about the air in front of the measured surfaces: a line
-/// of sight that ends at a surface has passed, at every nearer place in the same direction, through
-/// nothing. So a remembered surface that stands in its way is gone.
+/// Free-space evidence of one frame: the space between the camera and a measured surface is empty.
+/// So a remembered surface in that space is gone.
 ///
-/// All lines start at the camera. In one direction, a line to a surface at distance r and height dz
-/// over the camera is at r' < r at the height dz/r * r': the lowest line over a place is the one
-/// with the smallest dz/r among those that end beyond it. So one table of directions and distances,
-/// with a running minimum from far to near, holds all of them, and its cost does not depend on how
-/// long the lines are (casting them cell by cell costs the ancestor 199 ms a frame).
+/// All lines start at the camera. In one direction, a line to a surface at distance r and height
+/// dz over the camera is at r' < r at the height dz/r * r'. The lowest line over a place is the
+/// line with the smallest dz/r among all that end beyond it. So one table over direction and
+/// distance, with a running minimum from far to near, holds all lines. Its cost does not depend on
+/// the length of the lines; the reference implementation casts them cell by cell in 199 ms a
+/// frame.
 ///
 /// Directions and distances are those of the diamond |x| + |y| = 1: no square root, no angle.
 class FreeSpaceRays {
   public:
-    /// Starts a frame seen from a camera at `camera_m` in odom.
+    /// Starts a frame with the camera at `camera_m` in odom.
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);
-    /// A surface at the height `z_m` in odom was seen in that cell.
+    /// Adds an observed surface at the height `z_m` in odom in that cell.
     void add(grid::Cell cell, float z_m);
     /// Call once after the last `add`.
     void finish();
-    /// Height in odom of the lowest line of sight over the middle of a cell that ends at least two
-    /// cells beyond it; +inf if there is none.
+    /// Returns the height in odom of the lowest line of sight over the middle of a cell that ends
+    /// at least two cells beyond it; +inf without such a line.
     [[nodiscard]] float lowest_over(grid::Cell cell) const;
 
   private:
@@ -61,7 +61,7 @@ class FreeSpaceRays {
         float distance = 0.0F;   ///< |dx| + |dy| in cells
     };
     [[nodiscard]] Place place_of(float dx_cells, float dy_cells) const;
-    /// In which quarter of the diamond a direction lies.
+    /// Returns the quarter of the diamond in which a direction lies.
     [[nodiscard]] static std::size_t quarter_of(float dx_cells, float dy_cells) noexcept;
 
     grid::GridGeometry geometry_;
@@ -70,7 +70,7 @@ class FreeSpaceRays {
     float camera_z_m_ = 0.0F;
     int rings_ = 0;
     std::vector<float> lowest_;  ///< ring by ring: smallest height over distance [m per cell]
-    /// A camera looks ahead: the quarters that no line passes are left out.
+    /// A camera points ahead, so quarters without any line are skipped.
     std::array<bool, 4> used_{};
 };
 

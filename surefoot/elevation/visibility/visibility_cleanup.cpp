@@ -11,7 +11,7 @@
 namespace surefoot::elevation {
 namespace {
 
-constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie this near
+constexpr int kBeside = 2;  ///< distance of neighbours that confirm a cell
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void VisibilityCleanup::reset(const grid::GridGeometry& geometry, const Eigen::V
 std::int64_t VisibilityCleanup::apply(std::int64_t time_ns,
                                       Executor& executor,
                                       ElevationCells& cells) {
-    // One reference, so that std::function needs no memory for it.
+    // A single reference, so std::function needs no memory for the closure.
     struct Job {
         VisibilityCleanup& check;
         ElevationCells& cells;
@@ -49,7 +49,7 @@ std::int64_t VisibilityCleanup::apply(std::int64_t time_ns,
     std::fill(of_cell_.begin(), of_cell_.end(), 0.0F);
     executor.parallel_for(
         blocks, [&job](int block) { job.check.find_gone(block, job.time_ns, job.cells); });
-    // Not before all have been asked: neighbours vouch for each other.
+    // Remove the cells only after all checks, because neighbours confirm each other.
     std::int64_t forgotten = 0;
     for (std::size_t cell = 0; cell < of_cell_.size(); ++cell) {
         if (of_cell_[cell] == 0.0F) continue;
@@ -73,8 +73,8 @@ void VisibilityCleanup::collect_lines(std::int64_t time_ns, const ElevationLayer
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix, ++cell) {
             if (std::isnan(ends_.z_m(cell))) continue;
-            // A single wrong match far below the floor would make a drop of all that lies before
-            // it: an end counts once a look has agreed with another.
+            // One wrong match far below the floor would turn all ground before it into a drop. So
+            // an endpoint counts only if two observations agree.
             const bool is_agreed =
                 layers.seen_ns.data()[cell] == time_ns && layers.count.data()[cell] > 1;
             if (is_agreed) lines_.add({ix, iy}, of_cell_[cell]);
@@ -98,13 +98,14 @@ void VisibilityCleanup::find_gone(int block, std::int64_t time_ns, ElevationCell
     const std::int64_t* agreed_ns = layers.seen_ns.data();
     RowBlocks(geometry_).for_each_cell(block, [&](grid::Cell at, std::size_t cell) {
         if (std::isnan(height_m[cell]) || agreed_ns[cell] == time_ns) return;
-        // A look that ended here, below the height, has passed by it as well.
+        // An observation that ended here, below the height, has passed the surface as well.
         const float line_z_m = lines_.lowest_over(at);
         const float seen_z_m = ends_.z_m(cell);
         const float lowest_m = seen_z_m < line_z_m ? seen_z_m : line_z_m;
         if (!cells.is_above(cell, lowest_m)) return;
-        // What stands on the ground is in the way of all lines below its height, what hangs of
-        // those alone that meet it. What one look alone showed may be a wrong match.
+        // A surface that stands on the ground blocks all lines below its height; an overhanging
+        // surface blocks only lines that meet it. A surface with a single observation may be a
+        // wrong match.
         const bool stands =
             cells.bottom_m(cell) - lowest_m <= hangs_m_ || layers.count.data()[cell] == 1;
         if (!stands && !passed_through(at, height_m[cell])) return;
@@ -119,7 +120,8 @@ bool VisibilityCleanup::passed_through(grid::Cell cell, float z_m) const {
 bool VisibilityCleanup::stands_beside(grid::Cell cell,
                                       std::int64_t time_ns,
                                       const ElevationLayers& layers) const {
-    // Cells on an edge, or seen edge-on, are often missed. What they belong to is not.
+    // Cells on an edge, or observed edge-on, are often missed; their neighbours on the same object
+    // are not.
     const std::int64_t since_ns = time_ns - ns_from_seconds(config_.neighbour_s);
     const float height_m = layers.height_m.row(cell.iy)[cell.ix];
     const int last_iy = std::min(cell.iy + kBeside, geometry_.ny - 1);

@@ -28,11 +28,11 @@ struct End {
     float z_m;
 };
 
-/// How far the middle of a cell lies beside the line from the camera to the middle of another one,
-/// and which share of the line lies before it.
+/// Position of a cell's middle relative to the line from the camera to the middle of another cell:
+/// distance beside the line, and share of the line before it.
 struct Along {
     double beside_cells = 0.0;
-    double beside_end_cells = 0.0;  ///< the same, seen at the end of the line
+    double beside_end_cells = 0.0;  ///< the same, scaled to the end of the line
     double share = 0.0;
     double beyond_cells = 0.0;
 };
@@ -47,8 +47,8 @@ Along along(const Eigen::Vector2d& camera_cells, grid::Cell cell, grid::Cell end
     return {beside, beside * length / way, way / length, length - way};
 }
 
-/// Casting every line: over a cell the lowest of those that pass it closer than `beside_cells` and,
-/// seen at their end, than `beside_end_cells`.
+/// Casts every line. Over a cell it returns the lowest line that passes closer than `beside_cells`
+/// and, scaled to its end, closer than `beside_end_cells`.
 double cast_all(const std::vector<End>& ends,
                 const Eigen::Vector3d& camera_m,
                 const grid::GridGeometry& g,
@@ -87,15 +87,16 @@ TEST(FreeSpaceRays, LieBetweenTheNarrowAndTheWideCast) {
         for (int ix = 0; ix < g.nx; ix += 3) {
             const float lowest_m = lines.lowest_over({ix, iy});
             const double wide_m = cast_all(ends, camera_m, g, {ix, iy}, 2.0, 1e9, 1.0);
-            // What is found is there: some line passes within two cells, at about that height. A
-            // line's height differs along the cells that it is rounded to, by its slope.
+            // A returned height belongs to a real line: some line passes within two cells at about
+            // that height. A line's height differs, by its slope, along the cells to which it is
+            // rounded.
             constexpr double kSlopeOfTwoCells_m = 0.06;
             if (std::isfinite(lowest_m)) {
                 ++passed;
                 EXPECT_GE(static_cast<double>(lowest_m), wide_m - kSlopeOfTwoCells_m)
                     << ix << ", " << iy;
             }
-            // What passes near the middle is found.
+            // The table contains every line that passes near the middle.
             const double narrow_m = cast_all(ends, camera_m, g, {ix, iy}, 0.1, 0.3, 6.0);
             const double from_camera_cells = (Eigen::Vector2d(ix + 0.5, iy + 0.5) -
                                               (camera_m.head<2>() - g.origin_m) / g.resolution_m)
@@ -120,7 +121,8 @@ TEST(FreeSpaceRays, SayNothingOfTheirEndsAndOfWhatIsBeyond) {
     EXPECT_EQ(lines.lowest_over({99, 80}), kInfinity);
     EXPECT_EQ(lines.lowest_over({120, 80}), kInfinity);
     EXPECT_EQ(lines.lowest_over({50, 120}), kInfinity);
-    // Half way: half way down, but for the half cell that the middles lie off the axis.
+    // At half the distance the line is half way down, except for the half cell between the cell
+    // middles and the axis.
     EXPECT_NEAR(lines.lowest_over({50, 80}), 0.5F, 0.01F);
 }
 
