@@ -83,7 +83,7 @@ class Depth(CliTest):
         left, right = self.pair(rows, shifted(rows, 20))
         process = self.run_ok("depth", left, right, "--out", self.dir / "good")
         self.assertEqual(process.stderr, "")
-        self.assertIn("no cloud without a --rig", process.stdout)
+        self.assertIn("give --rig to get a point cloud", process.stdout)
         self.assertFalse((self.dir / "good" / "cloud.ply").exists())
         _, _, disparity = read_pfm(self.dir / "good" / "disparity.pfm")
         self.assertAlmostEqual(disparity[100 * 320 + 200], 20.0, delta=0.1)

@@ -533,12 +533,12 @@ class Ports(CliTest):
             other.listen()
             port = other.getsockname()[1]
             process = self.run_ok("serve", *SCENE, "--max-frames", 1, "--once", "--port", 0, "--page-port", port)
-        self.assertIn(f"port {port} is taken", process.stderr)
+        self.assertIn(f"port {port} is in use", process.stderr)
         self.assertRegex(process.stdout, r"the page is at http://127\.0\.0\.1:\d+/")
         self.assertNotIn(f"127.0.0.1:{port}/", process.stdout)
 
     def test_only_a_simulated_machine_is_steered_and_by_one(self):
-        for words, said in (((*SCENE, "--joystick", "--no-page"), "without the page"),
+        for words, said in (((*SCENE, "--joystick", "--no-page"), "needs the page"),
                             (("sim:walk_floor", "--joystick", "--walk", "9"), "not both")):
             process = subprocess.run([BINARY, "serve", *words, "--once", "--port", "0", "--page-port", "0"],
                                      capture_output=True, text=True, timeout=60)

@@ -199,7 +199,7 @@ class FullDisks(CliTest):
         self.assertRegex(answer["error"], r"File too large.*\(and \d+ other results could not be written\)")
         self.assertEqual(answer["output_error"], answer["error"])
         self.assertEqual(answer["frames"], FRAMES)
-        self.assertRegex(process.stderr, "holds only a part of the results")
+        self.assertRegex(process.stderr, "contains only a part of the results")
         self.assertEqual(len(read_tum(out / "trajectory.tum")), FRAMES)
         self.assertEqual(list(out.glob("*.tmp*")), [])
 
