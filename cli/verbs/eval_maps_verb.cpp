@@ -118,17 +118,16 @@ Status write_pictures(const EvalMapsOptions& options,
         return io::write_file(options.out_dir + "/" + name, png);
     };
     Writes writes;
-    writes += write(
-        "confusion.png",
-        eval::render_confusion(
-            maps.geometry,
-            result.calls,
-            {"Traversability compared with the truth",
-             fmt::format(
-                 "{:.2f} % of the unsafe cells rated safe, {:.2f} % of the safe cells rated unsafe",
-                 100.0 * result.traversability.false_safe,
-                 100.0 * result.traversability.false_unsafe)},
-            overlays));
+    writes +=
+        write("confusion.png",
+              eval::render_confusion(maps.geometry,
+                                     result.calls,
+                                     {"Traversability compared with the truth",
+                                      fmt::format("{:.2f} % of the unsafe cells called safe, "
+                                                  "{:.2f} % of the safe cells called unsafe",
+                                                  100.0 * result.traversability.false_safe,
+                                                  100.0 * result.traversability.false_unsafe)},
+                                     overlays));
     writes += write("error.png",
                     eval::render_error_map(maps.geometry,
                                            result.error_m,
@@ -143,8 +142,8 @@ Status write_pictures(const EvalMapsOptions& options,
 void print_figures(const eval::MapComparison& result) {
     fmt::print(
         "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
-        "{:.2f} % above 50 mm\ntraversability: {:.2f} % of the unsafe cells rated safe, {:.2f} % "
-        "of the safe cells rated unsafe\n{:.1f} % of the true cells are known\n",
+        "{:.2f} % above 50 mm\ntraversability: {:.2f} % of the unsafe cells called safe, {:.2f} % "
+        "of the safe cells called unsafe\n{:.1f} % of the true cells are known\n",
         1e3 * result.elevation.median_abs_m,
         1e3 * result.elevation.p90_abs_m,
         result.elevation.count,

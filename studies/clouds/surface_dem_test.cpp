@@ -197,7 +197,7 @@ TEST(SurfaceDem, SameBytesForAnyOrderAndNumberOfThreads) {
 TEST(SurfaceDem, CrossedHeightsAreAUsageError) {
     const auto crossed = surface_rules(1.0, 0.5);
     ASSERT_FALSE(crossed);
-    EXPECT_NE(crossed.error().message.find("--min-height 1 is not below --max-height 0.5"),
+    EXPECT_NE(crossed.error().message.find("--min-height 1 must be below --max-height 0.5"),
               std::string::npos);
 }
 

@@ -387,8 +387,8 @@ class Measures(CliTest):
         self.assertIn("number of steps correct in 1 of 1", self.run_ok("eval", "stairs", found, truth).stdout)
         narrow = json.loads(self.run_ok("eval", "stairs", found, truth, "--across", 0.01, "--json").stdout)
         self.assertEqual(narrow["flights"]["matched"], 0)
-        for text, says in (('{"flights": 3}', "flights is no list"), ('{"flights": [{"kind": "up", "steps": 2}]}', "flights[0].pose"),
-                           ('{"kerbs": [{"pose": [0, 0, 0, 0]}]}', "kerbs[0].kind"), ("{}", "none of flights"), ("[1]", "no JSON object"),
+        for text, says in (('{"flights": 3}', "flights is not a list"), ('{"flights": [{"kind": "up", "steps": 2}]}', "flights[0].pose"),
+                           ('{"kerbs": [{"pose": [0, 0, 0, 0]}]}', "kerbs[0].kind"), ("{}", "no list of flights"), ("[1]", "not a JSON object"),
                            ('{"edges": [{"from": [0, 0], "to": [0, "x"]}]}', "edges[0].to"), ('{"sills": [', "truth.json"),
                            ('{"flights": [{"kind": "up", "steps": -1, "pose": [0, 0, 0, 0]}]}', "flights[0].steps")):
             truth.write_text(text)
