@@ -111,7 +111,7 @@ class Measured {
     [[nodiscard]] double to_gate_ms() const {
         constexpr std::string_view kKey = R"("decided_ns":")";
         const auto at = answer_.find(kKey);
-        if (at == std::string::npos) throw std::runtime_error("an answer without its time");
+        if (at == std::string::npos) throw std::runtime_error("an answer has no decided_ns");
         const std::chrono::nanoseconds decided(std::stoll(answer_.substr(at + kKey.size())));
         const std::chrono::duration<double, std::milli> took = decided - begin_.time_since_epoch();
         return took.count();
@@ -131,7 +131,7 @@ void wait_for_ok(Measured& client) {
         if (client.was_ok()) return;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    throw std::runtime_error("the gate said OK never once in a minute");
+    throw std::runtime_error("the gate gave no OK within a minute");
 }
 
 struct Measurement {
@@ -205,12 +205,12 @@ int run(std::uint16_t port, int queries, double rate_hz, int others) {
 
 int main(int argc, char** argv) {
     if (argc != 5) {
-        std::fputs("gate_service_benchmark PORT QUERIES RATE_HZ OTHERS\n", stderr);
+        std::fputs("usage: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS\n", stderr);
         return 2;
     }
     try {
         const int queries = std::atoi(argv[2]);
-        if (queries < 1) throw std::invalid_argument("one question at least");
+        if (queries < 1) throw std::invalid_argument("QUERIES must be at least 1");
         return run(static_cast<std::uint16_t>(std::atoi(argv[1])),
                    queries,
                    std::atof(argv[3]),

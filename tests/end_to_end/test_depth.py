@@ -93,7 +93,7 @@ class Depth(CliTest):
         left, right = self.pair(shifted(rows, 20), rows)
         process = surefoot("depth", left, right, "--out", self.dir / "exchanged")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("left and right seem to be exchanged", process.stderr)
+        self.assertIn("left and right camera seem to be swapped", process.stderr)
         self.assertFalse((self.dir / "exchanged").exists())
 
     def test_bad_pairs(self):

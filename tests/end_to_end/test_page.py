@@ -424,7 +424,7 @@ class JoystickOnPages(PageTest):
         self.assertIn("0 to 255", page.listen(3.0).goodbye[1])
         page = self.page()
         page.send(1, b'{"op":"playback","paused":true}')
-        self.assertIn("no recording", page.listen(3.0).goodbye[1])
+        self.assertIn("not a recording", page.listen(3.0).goodbye[1])
 
 
 class Recordings(PageTest):
@@ -471,7 +471,7 @@ class Recordings(PageTest):
         # And back from the end.
         self.ask(page, lambda said: said["state"] == "running" and 5 < said["playback"]["frame"] < 60, frame=5, speed=1)
         page.send(1, b'{"op":"joystick","command":9}')
-        self.assertIn("nobody steers", page.listen(3.0).goodbye[1])
+        self.assertIn("cannot steer this source", page.listen(3.0).goodbye[1])
 
 
 class OtherMachine(PageTest):
