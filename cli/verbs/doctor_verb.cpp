@@ -40,8 +40,8 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
 }
 
 /// Smallest standard deviation that the matcher reports, reached on well textured ground. The depth
-/// sigmas below and those of `depth-accuracy --design` assume it. The typical pixel of a scene has
-/// half as much again.
+/// sigmas below and those of `depth-accuracy --design` assume it. The standard deviation of a
+/// typical pixel of a scene is 50 % larger.
 constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,
