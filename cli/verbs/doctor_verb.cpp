@@ -97,7 +97,7 @@ void print(const RigView& view) {
 }
 
 void print(const std::vector<CameraNode>& cameras) {
-    if (cameras.empty()) fmt::print("cameras: none (no /dev/video*)\n");
+    if (cameras.empty()) fmt::print("cameras: no camera found (no /dev/video*)\n");
     for (const CameraNode& node : cameras) {
         if (node.problem.empty()) {
             fmt::print("camera {}: {}\n", node.device, node.card);

@@ -143,8 +143,8 @@ void add_measure(VerbGroup verbs) {
         .value("CLOUD");
     verb.option("--door",
                 o.door,
-                "a place in a doorway and the way through it, metres and degrees: its clear "
-                "width")
+                "position in a doorway in m, and the walking direction through it in deg: measures "
+                "its clear width")
         .value("X,Y,YAW");
     verb.option(
             "--box",

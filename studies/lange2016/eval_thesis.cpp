@@ -47,7 +47,7 @@ Result<std::vector<ThesisRun>> chosen_runs(const EvalSuiteOptions& options) {
         const auto at = std::find(names.begin(), names.end(), name);
         if (at == names.end()) {
             return usage_error(
-                fmt::format("--runs {}: there is no such experiment{} Choose from: {}",
+                fmt::format("--runs {}: there is no such experiment{} (choose from: {})",
                             name,
                             did_you_mean(name, names),
                             fmt::join(names, ", ")));

@@ -344,7 +344,7 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
         "Seeds from 10000 on were never used during development.",
         eval::kConfusionLegend};
     add_key_figures(results, content);
-    content.plots_title = "Size and place of the map errors";
+    content.plots_title = "Size and position of the map errors";
     for (const BinView& view : kBinViews) {
         for (const NoiseBins& level : levels)
             content.plots.push_back(bin_plot(level, view, tallest_mm(levels, view)));
