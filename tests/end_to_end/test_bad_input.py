@@ -363,7 +363,7 @@ class BadImages(CliTest):
         self.write("small.png", [bytes(160)] * 100)
         pairs = self.dir / "pairs.txt"
         for line, words in (("l.png small.png 1", "differ in size"), ("small.png small.png 1", "160x100 px but rig"),
-                            ("r.png l.png 1", "exchanged")):
+                            ("r.png l.png 1", "swapped")):
             pairs.write_text(line + "\n")
             process = surefoot("depth-accuracy", "--pairs", pairs, "--rig", self.dir / "rig.yaml",
                                "--out", self.dir / "out")

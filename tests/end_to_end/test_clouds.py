@@ -395,7 +395,7 @@ class BadInput(CliTest):
                            ("--neighbours", ["sor", good, "--neighbours", 1, "--out", self.dir / "o.ply"]),
                            ("not '.las'", ["voxel", good, "--out", self.dir / "o.las"]),
                            ("--guess", ["icp", good, good, "--guess", "1,2"]),
-                           ("m3c2 alone", ["eval", "clouds", good, good, "--core", good]),
+                           ("m3c2 only", ["eval", "clouds", good, good, "--core", good]),
                            ("cannot be numbered", ["voxel", good, "--size", "1e-5", "--out", self.dir / "o.ply"])):
             if why == "cannot be numbered":
                 (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))

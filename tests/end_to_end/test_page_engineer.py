@@ -163,7 +163,7 @@ class Settings(PageTest):
         self.assertIn("page.map_hz: '50' is outside 0.2 .. 10 (a page asked for it)", self.logged())
         page = self.page()
         page.ask(op="set", key="page.map_hz", value=5)
-        self.assertIn("is wanted", page.listen(3.0).goodbye[1])
+        self.assertIn("expected", page.listen(3.0).goodbye[1])
 
     def test_nothing_is_recorded_where_no_folder_was_named(self):
         page = self.page()
