@@ -136,8 +136,8 @@ void warn(const geometry::CloudAlignment& found) {
     }
     if (found.edge_directions > 0) {
         log_info(
-            fmt::format("only edges between two points determine {} of 6 directions; their sigma "
-                        "is the spacing of the points",
+            fmt::format("only edges determine {} of 6 directions; an edge ends somewhere between "
+                        "two points, so sigma there is the spacing of the points",
                         found.edge_directions));
     }
     if (found.border_directions > 0) {
