@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long does a client of the running gate process wait for an answer while other clients ask and
-// listen? Usage: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS. RATE_HZ 0 = ask again as soon
-// as the answer is there; OTHERS: number of other clients. Prints one line of JSON.
+// Measures how long a client of the running gate process waits for an answer while other clients
+// ask and listen. Usage: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS. RATE_HZ: questions per
+// second, 0 = ask again as soon as the answer has arrived. OTHERS: number of other clients. Prints
+// one line of JSON.
 #include <algorithm>
 #include <array>
 #include <boost/asio/io_context.hpp>
@@ -42,7 +43,8 @@ void open(Socket& socket, std::uint16_t port) {
     socket.text(true);
 }
 
-/// Asks three times a second, and reads all that comes of two topics, five times a second each.
+/// Another client: asks three times a second, and reads two topics of at most five messages a
+/// second each.
 class Other {
   public:
     static constexpr std::chrono::milliseconds kPeriod{333};
@@ -89,12 +91,13 @@ class Other {
     std::uint64_t& received_;
 };
 
-/// The client whose waiting is timed.
+/// The client whose waiting time is measured.
 class Measured {
   public:
     explicit Measured(std::uint16_t port) { open(socket_, port); }
 
-    /// One question: milliseconds from before it is sent to after its answer was read.
+    /// Asks one question. Returns the milliseconds from before the sending to after the reading of
+    /// the answer.
     double ask() {
         begin_ = Clock::now();
         socket_.write(asio::buffer(kQuestion));
@@ -107,11 +110,12 @@ class Measured {
     [[nodiscard]] bool was_ok() const {
         return answer_.find(R"("verdict":"OK")") != std::string::npos;
     }
-    /// Milliseconds until the gate had the last question: it tells the steady clock.
+    /// Milliseconds from the sending of the last question until the gate decided, by the steady
+    /// clock that both processes share.
     [[nodiscard]] double to_gate_ms() const {
         constexpr std::string_view kKey = R"("decided_ns":")";
         const auto at = answer_.find(kKey);
-        if (at == std::string::npos) throw std::runtime_error("an answer without its time");
+        if (at == std::string::npos) throw std::runtime_error("an answer has no decided_ns");
         const std::chrono::nanoseconds decided(std::stoll(answer_.substr(at + kKey.size())));
         const std::chrono::duration<double, std::milli> took = decided - begin_.time_since_epoch();
         return took.count();
@@ -131,17 +135,17 @@ void wait_for_ok(Measured& client) {
         if (client.was_ok()) return;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    throw std::runtime_error("the gate said OK never once in a minute");
+    throw std::runtime_error("the gate gave no OK within a minute");
 }
 
 struct Measurement {
     std::vector<double> times_ms;    ///< sorted
-    std::vector<double> to_gate_ms;  ///< sorted: what of it passed before the gate had the question
+    std::vector<double> to_gate_ms;  ///< sorted: part of the time before the gate decided
     int ok = 0;
 };
 
-/// `rate_hz` 0 = the next question when the answer is there. A question that is late because the
-/// one before took long is asked at once.
+/// `rate_hz` 0 = ask the next question as soon as the answer has arrived. A question that is late
+/// because the previous one took long is asked at once.
 Measurement measure(Measured& client, int queries, double rate_hz) {
     Measurement found;
     found.times_ms.reserve(static_cast<std::size_t>(queries));
@@ -159,7 +163,7 @@ Measurement measure(Measured& client, int queries, double rate_hz) {
     return found;
 }
 
-/// The smallest time that so large a share of all keeps.
+/// The percentile of the sorted times: `share` of the times are not longer.
 double at(const std::vector<double>& sorted, double share) {
     const auto rank =
         static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
@@ -205,12 +209,12 @@ int run(std::uint16_t port, int queries, double rate_hz, int others) {
 
 int main(int argc, char** argv) {
     if (argc != 5) {
-        std::fputs("gate_service_benchmark PORT QUERIES RATE_HZ OTHERS\n", stderr);
+        std::fputs("usage: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS\n", stderr);
         return 2;
     }
     try {
         const int queries = std::atoi(argv[2]);
-        if (queries < 1) throw std::invalid_argument("one question at least");
+        if (queries < 1) throw std::invalid_argument("QUERIES must be at least 1");
         return run(static_cast<std::uint16_t>(std::atoi(argv[1])),
                    queries,
                    std::atof(argv[3]),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The workloads of `surefoot bench terrain` under Google Benchmark, on one thread: for its filters,
-// repetitions and comparison of files. Some are also run the plain way.
+// Runs the workloads of `surefoot bench terrain` under Google Benchmark, on one thread, to use its
+// filters, repetitions and comparison of files. Some workloads also run by the plain reference
+// implementation.
 #include <benchmark/benchmark.h>
 
 #include <iterator>

@@ -28,8 +28,9 @@ CLI::Validator finite_number() {
     return {[](const std::string& text) {
                 double value = 0.0;
                 const bool is_number = CLI::detail::lexical_cast(text, value);
-                return is_number && !std::isfinite(value) ? "Value " + text + " is no number"
-                                                          : std::string();
+                return is_number && !std::isfinite(value)
+                           ? "Value " + text + " is not a finite number"
+                           : std::string();
             },
             ""};
 }
@@ -42,18 +43,25 @@ CLI::App* add_subcommand(CLI::App& app, const char* name, const char* what, cons
 }
 
 void add_common(Verb verb, CommonOptions& common) {
-    verb.option("--config", common.config_file, "YAML file of settings; unknown keys are errors")
+    verb.option("--config", common.config_file, "YAML file of settings; an unknown key is an error")
         .value("FILE");
-    verb.option("--set", common.settings, "one setting, as key=value; may be repeated")
+    verb.option("--set",
+                common.settings,
+                "set one setting, for example elevation.length_m=8; repeat the option for more "
+                "settings")
         .value("KEY=VALUE")
         .one_value_each();
-    verb.option("--preset", common.preset, "rex_zed, rex_demo_stairs, laser or ethz").value("NAME");
-    verb.flag("--json", common.json, "print one JSON object on stdout");
+    verb.option("--preset",
+                common.preset,
+                "named set of traversability settings: rex_zed, rex_demo_stairs, laser or ethz")
+        .value("NAME");
+    verb.flag("--json", common.json, "print the result as one JSON object on stdout");
     verb.option("--threads",
                 common.threads,
-                "threads to use (0 = all cores); results do not depend on it")
+                "number of threads, 0 = all cores (default 0); the results do not depend on it")
         .in(0, 256);
-    verb.option("--seed", common.seed, "seed of simulated scenes, the only thing that is random");
+    verb.option(
+        "--seed", common.seed, "seed of the random numbers of simulated scenes (default 1)");
 }
 
 int check_settings(const CommonOptions& common, const std::string& verb, Reads reads) {
@@ -65,7 +73,8 @@ int check_settings(const CommonOptions& common, const std::string& verb, Reads r
     const bool given =
         !common.config_file.empty() || !common.preset.empty() || !common.settings.empty();
     if (reads == Reads::no_settings && given)
-        log_warning(verb + ": --config, --set and --preset change nothing here");
+        log_warning(verb +
+                    ": this verb reads no settings; --config, --set and --preset have no effect");
     return kExitOk;
 }
 
@@ -105,7 +114,7 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
     const std::string name = verb_of_call(app).get_name();
     const std::string verb = name.empty() ? "" : name + ": ";
     log_error(verb + sentence_of(app, error));
-    fmt::print(stderr, "Run with --help for what there is.\n");
+    fmt::print(stderr, "Run with --help to see the verbs and options.\n");
     return kExitUsage;
 }
 
@@ -257,34 +266,37 @@ Verb VerbGroup::declare(const char* name,
 void add_reading(Verb verb, ReadingOptions& reading) {
     verb.option("--pair-tolerance",
                 reading.pair_tolerance_s,
-                "largest difference between the stamps of both images of a frame (default: a fifth "
-                "of the frame time; TUM RGB-D: 0.02)")
+                "largest time difference between the two images of a frame, in s (default: 1/5 of "
+                "the frame time; TUM RGB-D: 0.02)")
         .value("S")
         .in(0.0, 10.0);
-    verb.option("--depth-factor",
-                reading.depth_codes_per_m,
-                "RGB-D: codes of a metre in the depth images (TUM: 5000, millimetres: 1000)")
+    verb.option(
+            "--depth-factor",
+            reading.depth_codes_per_m,
+            "RGB-D: value of a depth image for a distance of 1 m (TUM: 5000; images in mm: 1000)")
         .value("N")
         .in(1.0, 1e6);
     verb.option("--image-bits",
                 reading.image_bits,
-                "16-bit camera images: bits of the largest value, of which the upper 8 are used")
+                "16-bit camera images: number of bits in use; Surefoot reads the upper 8 of them")
         .value("N")
         .in(9, 16);
 }
 void add_skip_broken(Verb verb, ReadingOptions& reading) {
     verb.flag("--skip-broken",
               reading.skip_broken,
-              "pass over frames of a recording that cannot be read, and count them, instead of "
-              "ending at the first");
+              "skip and count the frames of a recording that cannot be read; without this option "
+              "the verb stops at the first such frame");
 }
 
 int run_command_line(int argc, char** argv) {
     cv::setNumThreads(1);  // only the executor creates threads
-    CLI::App app{"surefoot: is it safe to step there?"};
+    CLI::App app{
+        "surefoot: is it safe to step there? Depth, odometry, elevation map, stairs and gate for a "
+        "stereo camera on a walking machine"};
     app.set_version_flag("--version", SUREFOOT_VERSION);
     app.require_subcommand(1);
-    app.footer("Run 'surefoot VERB --help' for the options and an example of a verb.");
+    app.footer("Run 'surefoot VERB --help' to see the options and an example of a verb.");
 
     int exit_code = kExitOk;
     add_all_verbs(VerbGroup(&app, exit_code));

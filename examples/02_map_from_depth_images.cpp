@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds an elevation map from depth images and poses that another program measured: no stereo, no
-// odometry of ours. Here a computed view of a level floor stands for your camera.
+// Builds an elevation map from depth images and poses that another program measured, without the
+// stereo and odometry of Surefoot. A computed view of a level floor replaces your camera.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <iostream>
@@ -33,9 +33,9 @@ int main() {
     Pose T_body_camera = T_body_optical();
     T_body_camera.translation_m = {0.0, 0.0, 0.9};
     for (int frame = 0; frame < 10; ++frame) {
-        Pose T_odom_body;  // your pose: 2 cm of motion a frame
+        Pose T_odom_body;  // your pose: 2 cm of motion per frame
         T_odom_body.translation_m.x() = 0.02 * frame;
-        const Matrix6 covariance = 1e-8 * Matrix6::Identity();  // of the motion since the last one
+        const Matrix6 covariance = 1e-8 * Matrix6::Identity();  // motion since the last frame
         map.follow(T_odom_body, covariance);
         const std::int64_t time_ns = frame * 33'000'000LL;
         map.add_points(points_of(0.9F), T_body_camera, T_odom_body, time_ns);

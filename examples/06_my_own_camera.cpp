@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connects a camera that Surefoot does not know. Here a camera that sees a random pattern stands
-// for yours: replace the body of `next` by your driver, and the numbers of the rig by your
+// Connects a camera that Surefoot does not know. The camera of this example sees a random
+// pattern. Replace the body of `next` with your driver, and the numbers of the rig with your
 // calibration.
 #include <iostream>
 
@@ -22,7 +22,7 @@ class MyCamera final : public surefoot::camera::FrameSource {
     }
     [[nodiscard]] const surefoot::camera::StereoRig& rig() const override { return rig_; }
     [[nodiscard]] const surefoot::camera::SourceInfo& info() const override { return info_; }
-    /// The next pair, nothing when the camera was switched off, or an error with a sentence.
+    /// The next pair, an empty value after the camera is switched off, or an error with a sentence.
     [[nodiscard]] surefoot::Result<std::optional<surefoot::StereoFrame>> next() override {
         if (index_ == kFrames) return std::optional<surefoot::StereoFrame>{};
         surefoot::StereoFrame frame;
@@ -71,5 +71,5 @@ int main() {
     };
     for (auto frame = camera.next(); frame.ok() && frame->has_value(); frame = camera.next())
         print(perception->process(**frame));
-    print(perception->finish());  // the start-up still waits for ground, and no frame will come
+    print(perception->finish());  // the start-up may still wait for ground; no more frames come
 }

@@ -208,7 +208,7 @@ def evaluate(folder):
     faults = rows(folder / "faults.csv", Fault)
     about = json.loads((folder / "about.json").read_text())
     state = json.loads((folder / "state.json").read_text())
-    restarts = (folder / "serve.log").read_text().count("was started again")
+    restarts = (folder / "serve.log").read_text().count("was restarted")
     wanted = sum(f.kind in ("gate_kill", "audit_unwritable") for f in faults)
     missed, latencies_ms, parts = judge_queries(queries, faults)
     inhibits_ms = first_inhibits_ms(queries, faults)

@@ -152,10 +152,11 @@ void tell_notes(const std::string& cloud, const std::vector<std::string>& notes)
 
 void tell_shift(const Eigen::Vector3d& shift_m) {
     if (shift_m.isZero()) return;
-    log_info(fmt::format("coordinates are counted from ({:g}, {:g}, {:g}) m in between",
-                         shift_m.x(),
-                         shift_m.y(),
-                         shift_m.z()));
+    log_info(fmt::format(
+        "coordinates are computed relative to ({:g}, {:g}, {:g}) m to keep their precision",
+        shift_m.x(),
+        shift_m.y(),
+        shift_m.z()));
 }
 
 }  // namespace surefoot::app

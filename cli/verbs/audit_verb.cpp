@@ -23,7 +23,9 @@ void say_what_is_missing(const gate_process::AuditSummary& summary) {
     for (const std::string& sentence : summary.unfinished) log_warning(sentence);
     if (summary.gaps > 0)
         log_warning(fmt::format(
-            "{} verdicts were lost in {} gaps: the disk took nothing", summary.lost, summary.gaps));
+            "{} verdicts are missing in {} gaps of the log, because the disk accepted no data",
+            summary.lost,
+            summary.gaps));
     if (summary.damage) log_error(summary.damage->text());
 }
 
@@ -53,7 +55,8 @@ void print_act(const gate_process::Act& act) {
     if (act.kind == gate_process::ActKind::attest)
         fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
     if (!act.text.empty()) fmt::print(", {}", act.text);
-    if (act.left_out > 0) fmt::print(" ({} refused acts before it were left out)", act.left_out);
+    if (act.left_out > 0)
+        fmt::print(" ({} refused acts before it are not in the log)", act.left_out);
     fmt::print("\n");
 }
 
@@ -81,7 +84,7 @@ int audit_verify(const AuditOptions& options) {
     if (options.common.json) {
         print_answer(audit_json(*summary));
     } else {
-        fmt::print("{}: {}\n", text_of(*summary), summary->damage ? "DAMAGED" : "whole");
+        fmt::print("{}: {}\n", text_of(*summary), summary->damage ? "DAMAGED" : "intact");
     }
     return summary->damage ? kExitFailed : kExitOk;
 }
@@ -113,7 +116,8 @@ int audit_replay(const AuditOptions& options) {
                    summary->damage ? ", DAMAGED" : "");
         if (replay.first) print_difference(*replay.first);
     }
-    if (replay.different > 0) log_error("the gate decides otherwise than the log says");
+    if (replay.different > 0)
+        log_error("the gate of this version gives other verdicts than the log");
     return summary->damage || replay.different > 0 ? kExitFailed : kExitOk;
 }
 
@@ -125,18 +129,21 @@ void add_audit(VerbGroup verbs) {
                          const char* example,
                          int (*handler)(const AuditOptions&)) {
         auto [verb, o] = verbs.add(name, what, example, handler, Reads::no_settings);
-        verb.option("path", o.path, "folder of a log, or one file of it").required().value("PATH");
+        verb.option("path", o.path, "folder of an audit log, or one file of it")
+            .required()
+            .value("PATH");
     };
     add("verify",
-        "checksums, chain and gaps; exit 1 where a log is damaged",
+        "check the checksums, the hash chain and the gaps of a log; exit code 1 = a log is damaged",
         "surefoot audit verify out/audit --json",
         audit_verify);
     add("acts",
-        "who attested the ground, re-armed, showed a token, or was refused; with the role",
+        "list who attested the ground, re-armed the gate, showed a token or was refused, with the "
+        "role of each client",
         "surefoot audit acts out/audit",
         audit_acts);
     add("replay",
-        "decides every verdict anew; exit 0 only when all are the same, bit for bit",
+        "decide every logged verdict again; exit code 0 = all verdicts are the same, bit for bit",
         "surefoot audit replay out/audit",
         audit_replay);
 }

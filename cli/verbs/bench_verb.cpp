@@ -260,10 +260,14 @@ int bench(const BenchOptions& options) {
 
 void add_bench(VerbGroup verbs) {
     auto [verb, o] = verbs.add<BenchOptions>(
-        "bench", "time of the chain and its parts on this machine", "surefoot bench gate", bench);
+        "bench",
+        "measure the run time of the whole chain and of its parts on this computer",
+        "surefoot bench gate",
+        bench);
     verb.option("group",
                 o.group,
-                "chain, camera, odometry, stereo, terrain, gate, places, clouds, sim; empty = all")
+                "group of benchmarks: chain, camera, odometry, stereo, terrain, gate, places, "
+                "clouds or sim (default: all)")
         .one_of({"chain",
                  "camera",
                  "odometry",

@@ -42,7 +42,9 @@ Result<camera::StereoRig> rig_of(const std::string& path_or_name) {
 int render_boards(const BoardImagesOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board)
-        return report(usage_error(fmt::format("--board '{}' cannot be read", options.board)));
+        return report(usage_error(fmt::format(
+            "--board '{}': no such board; see --board in 'surefoot calibrate mono --help'",
+            options.board)));
     const auto sheet = calibration::print_of(*board);
     if (!sheet) return report(sheet.error());
     const auto rig = rig_of(options.rig);
@@ -51,12 +53,12 @@ int render_boards(const BoardImagesOptions& options) {
     Rng rng(options.common.seed);
     const auto poses = shown_poses(*board, cameras, options.views, rng);
     if (std::ssize(poses) < options.views) {
-        return report(usage_error(fmt::format(
-            "only {} of {} views were found in which the whole board is seen by {}; take a wider "
-            "lens or a smaller baseline",
-            poses.size(),
-            options.views,
-            cameras.size() == 1 ? "the camera" : "both cameras")));
+        return report(
+            usage_error(fmt::format("only {} of {} views show the whole board in {}; use a wider "
+                                    "lens or a smaller baseline",
+                                    poses.size(),
+                                    options.views,
+                                    cameras.size() == 1 ? "the camera" : "both cameras")));
     }
     if (const Status made = io::make_folder(options.out_dir); !made) return report(made.error());
     ThreadPool pool(options.common.threads);
@@ -89,17 +91,21 @@ int render_boards(const BoardImagesOptions& options) {
 void add_calibrate_render(VerbGroup verbs) {
     auto [verb, o] = verbs.add<BoardImagesOptions>(
         "render",
-        "draws images of a board as a careful operator shows it, with their truth",
+        "render images of a calibration board in varied positions, with the true calibration",
         "surefoot calibrate render --board chessboard:8x5:0.03 --rig zed_vga --views "
         "12 --out out/chess",
         render_boards,
         Reads::no_settings);
-    verb.option("--board", o.board, "as for mono").required().value("TEXT");
-    verb.option("--rig", o.rig, "calibration file, or name of a built-in rig")
+    verb.option("--board", o.board, "the board; see 'surefoot calibrate mono --help'")
+        .required()
+        .value("TEXT");
+    verb.option("--rig",
+                o.rig,
+                "calibration file, or name of a built-in rig ('surefoot doctor' lists them)")
         .required()
         .value("FILE|NAME");
-    verb.option("--views", o.views, "how many").in(1, 500);
-    verb.option("--out", o.out_dir, "folder for left*.png, right*.png, rig.yaml")
+    verb.option("--views", o.views, "number of views").in(1, 500);
+    verb.option("--out", o.out_dir, "folder for left*.png, right*.png and rig.yaml")
         .required()
         .value("DIR");
 }

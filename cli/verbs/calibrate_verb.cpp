@@ -72,12 +72,13 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
     };
     const GreyImage& odd = differs(images.left) ? images.left : images.right;
     if (!differs(images.left) && !(stereo && differs(images.right))) return {};
-    return fmt::format("{}: {} x {} px, but the first image has {} x {}; all must be alike",
-                       images.name,
-                       odd.width(),
-                       odd.height(),
-                       size.width,
-                       size.height);
+    return fmt::format(
+        "{}: image of {} x {} px, but the first image has {} x {} px; give images of one size",
+        images.name,
+        odd.width(),
+        odd.height(),
+        size.width,
+        size.height);
 }
 
 /// Takes images of a live camera and logs after each of them which views are still missing.
@@ -93,10 +94,10 @@ Result<BoardSource> show_live(const CalibrateOptions& options,
                        .config = settings->live,
                        .stop = [] { return interrupted(); }};
     session.opened = [] {
-        log_info(
-            fmt::format("show the board, a new place or tilt every second; {} images, or Ctrl-C "
-                        "when nothing is missing",
-                        kMostVideoViews));
+        log_info(fmt::format(
+            "show the board in a new position or tilt every second; the recording ends after {} "
+            "images, or with Ctrl-C when the advice says that nothing is missing",
+            kMostVideoViews));
     };
     const Status status =
         for_live_images(io::kernel_video_device(), session, [&](BoardImages images) {
@@ -140,11 +141,9 @@ Status check_found(const CalibrationRun& run) {
     });
     if (found || run.views.empty()) return {};
     return input_error(
-        fmt::format("calibration: none of {} images shows the board '{}' ({}); count it "
-                    "(COLUMNSxROWS are inner "
-                    "corners or circles; write COLUMNSxROWSsquares where you count squares), and "
-                    "show the board "
-                    "{}",
+        fmt::format("calibration: none of {} images shows the board '{}' ({}). Check the size "
+                    "(COLUMNSxROWS counts inner corners or circles; write COLUMNSxROWSsquares to "
+                    "count squares), and show the board {}",
                     run.views.size(),
                     run.board_text,
                     calibration::size_in_words(run.board),
@@ -211,15 +210,16 @@ Status write_results(const CalibrateOptions& options, const CalibrationRun& run)
 }
 
 std::string depth_words(const calibration::DepthError& error) {
-    if (std::isnan(error.sigma_m)) return fmt::format("not seen at {:g} m;", error.distance_m);
+    if (std::isnan(error.sigma_m))
+        return fmt::format("outside the view at {:g} m;", error.distance_m);
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
 /// Explains a large uncertainty in a part of the image; empty if it is small everywhere.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
-    return ": a corner that no board came near; it matters only if you use the image there (then "
-           "show the board in that corner)";
+    return ": an image corner without board positions; if you use the image there, show the board "
+           "in that corner too";
 }
 
 void print_result(const CalibrationRun& run, const std::string& folder) {
@@ -229,9 +229,9 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     }
     for (const CalibratedCamera& this_camera : calibrated_cameras(run)) {
         fmt::print(
-            "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
-            "+- {:.2f} px; "
-            "directions +- {:.3f} px in the image, {:.2f} where it is known worst{}\n",
+            "{}: focal length {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, "
+            "{:.2f} +- {:.2f} px; direction error {:.3f} px (median), {:.2f} px at the worst point "
+            "of the image{}\n",
             this_camera.name,
             this_camera.parameters[0],
             this_camera.sigmas[0],
@@ -247,7 +247,7 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     }
     const double radius_m = run.stereo ? run.stereo->disc_radius_m : run.mono->disc_radius_m;
     if (radius_m > 0.0)
-        fmt::print("circles: diameter {:.2f} mm, as measured\n", 2.0 * kMillimetres * radius_m);
+        fmt::print("circles: measured diameter {:.2f} mm\n", 2.0 * kMillimetres * radius_m);
     const std::size_t used = calibrated_cameras(run).front().views.size();
     fmt::print("{} of {} views used, rms {:.3f} px",
                used,
@@ -256,9 +256,8 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     if (run.stereo) {
         const auto& stereo = *run.stereo;
         fmt::print(
-            ", rows after rectification {:.3f} px at f {:.0f} px\nbaseline {:.2f} mm; depth error "
-            "of the "
-            "calibration, one sigma:",
+            ", row error after rectification {:.3f} px at a focal length of {:.0f} px\nbaseline "
+            "{:.2f} mm; depth error of the calibration (one sigma):",
             stereo.row_rms_px,
             stereo.row_focal_px,
             kMillimetres * stereo.rig.T_left_right.translation_m.norm());
@@ -273,7 +272,7 @@ int calibrate(const CalibrateOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board) {
         return report(usage_error(
-            fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING, for example "
+            fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING in metres, for example "
                         "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04 or "
                         "charuco:8x5:0.03:0.022[:DICT_5X5_100] (inner corners), or "
                         "charuco:9x6squares:0.03:0.022",
@@ -286,7 +285,8 @@ int calibrate(const CalibrateOptions& options) {
     const auto* const kind = std::find(
         std::begin(calibration::kLensKindNames), std::end(calibration::kLensKindNames), model);
     if (kind == std::end(calibration::kLensKindNames))
-        return report(usage_error(fmt::format("--model '{}': no such lens model", options.model)));
+        return report(usage_error(fmt::format(
+            "--model '{}': there is no such lens model; --help lists them", options.model)));
     const auto chosen =
         static_cast<calibration::LensKind>(kind - std::begin(calibration::kLensKindNames));
     CalibrationRun run;
@@ -311,17 +311,18 @@ int calibrate(const CalibrateOptions& options) {
 void add_calibration(Verb verb, CalibrateOptions& o) {
     verb.option("--board",
                 o.board,
-                "KIND:COLUMNSxROWS:SPACING in metres: chessboard:9x6:0.025 (inner corners), "
-                "circles:6x6:0.02, asymmetric_circles:4x11:0.04 (their diameter is measured), "
-                "charuco:8x5:0.03:0.022[:DICT_5X5_100]; with counted squares: "
-                "charuco:9x6squares:0.03:0.022")
+                "the board as KIND:COLUMNSxROWS:SPACING, lengths in m: chessboard:9x6:0.025 (inner "
+                "corners), circles:6x6:0.02, asymmetric_circles:4x11:0.04 (the program measures "
+                "the diameter of the circles), charuco:8x5:0.03:0.022[:DICT_5X5_100]; with counted "
+                "squares: charuco:9x6squares:0.03:0.022")
         .required()
         .value("TEXT");
     verb.option("--model",
                 o.model,
-                "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3, rational k4 k5 k6")
+                "lens model: pinhole or pinhole4 (k1 k2 p1 p2), pinhole5 (k3 too; default), "
+                "rational (k4 k5 k6 too), or fisheye (Kannala-Brandt)")
         .one_of({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"});
-    verb.option("--out", o.out_dir, "folder for the rig, report.html, views.json")
+    verb.option("--out", o.out_dir, "folder for the calibration file, report.html and views.json")
         .required()
         .value("DIR");
 }
@@ -331,27 +332,29 @@ void add_calibration(Verb verb, CalibrateOptions& o) {
 void add_calibrate_mono(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<CalibrateOptions>("mono",
-                                    "one camera from images of a board",
+                                    "calibrate one camera from images of a board",
                                     "surefoot calibrate mono out/chess --eye left --board "
                                     "chessboard:8x5:0.03 --out out/camera --json",
                                     calibrate);
     verb.option("source", o.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
         .required()
         .value("SOURCE");
-    verb.option("--eye", o.camera, "where there are two eyes: which").one_of({"left", "right"});
+    verb.option("--eye", o.camera, "the camera to calibrate, if the source has two")
+        .one_of({"left", "right"});
     add_calibration(verb, o);
 }
 
 void add_calibrate_stereo(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<CalibrateOptions>("stereo",
-                                                 "two cameras and how they stand to each other",
-                                                 "surefoot calibrate stereo out/chess --board "
-                                                 "chessboard:8x5:0.03 --out out/rig",
-                                                 calibrate);
+    auto [verb, o] =
+        verbs.add<CalibrateOptions>("stereo",
+                                    "calibrate two cameras and the pose of one to the other",
+                                    "surefoot calibrate stereo out/chess --board "
+                                    "chessboard:8x5:0.03 --out out/rig",
+                                    calibrate);
     verb.option("source",
                 o.source,
-                "folder with left* and right*, with folders left and right, or side-by-side "
-                "images; a side-by-side video; or v4l2:DEVICE@WIDTHxHEIGHT of both eyes")
+                "folder with left* and right*, with folders left and right, or with side-by-side "
+                "images; a side-by-side video; or v4l2:DEVICE@WIDTHxHEIGHT of both cameras")
         .required()
         .value("SOURCE");
     o.stereo = true;

@@ -38,7 +38,7 @@ Result<grid::Layer> heights_of(const DemOptions& options,
                                const eval::DemGrid& grid) {
     if (options.lowest_z_m || options.highest_z_m) {
         return usage_error(fmt::format(
-            "--min-height and --max-height belong to --reduce surface, not to --reduce {}",
+            "--min-height and --max-height work with --reduce surface only, not with --reduce {}",
             options.reduce));
     }
     const auto executor = make_executor(options.common);
@@ -98,7 +98,7 @@ int dem(const DemOptions& options) {
     if (options.common.json) {
         print_answer(dem_json(grid->geometry, known, bounds, options.out_file));
     } else {
-        fmt::print("{} points on {} x {} cells of {:g} m, {} of them known, in {}\n",
+        fmt::print("{} points on {} x {} cells of {:g} m, {} of them known; written to {}\n",
                    bounds.points(),
                    grid->geometry.nx,
                    grid->geometry.ny,
@@ -113,33 +113,36 @@ int dem(const DemOptions& options) {
 
 void add_dem(VerbGroup verbs) {
     auto [verb, o] = verbs.add<DemOptions>("dem",
-                                           "height map of a cloud",
+                                           "make a height map of a point cloud",
                                            "surefoot dem out/floor/map.ply --resolution 0.05 --out "
                                            "out/floor_dem.asc",
                                            dem,
                                            Reads::no_settings);
-    verb.option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ of any size, z up")
+    verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ of any size, z up")
         .required()
         .value("CLOUD");
-    verb.option("--resolution", o.resolution_m, "side of a cell")
+    verb.option("--resolution", o.resolution_m, "side of a cell, in m")
         .required()
         .value("M")
         .in(1e-4, 1e3);
     verb.option("--reduce",
                 o.reduce,
-                "which height a cell takes of its points; surface: that of the highest "
-                "surface that enough points share and that does not hang, as in the live map")
+                "how a cell gets its height from the z of its points (default max); surface: the "
+                "highest surface that enough points share and that does not hang in the air, as in "
+                "the live map")
         .one_of({"max", "mean", "min", "surface"});
-    verb.option("--min-height", o.lowest_z_m, "surface: points lower than this z are left out")
+    verb.option("--min-height", o.lowest_z_m, "surface: leave out the points below this z, in m")
         .value("M");
-    verb.option("--max-height", o.highest_z_m, "surface: points higher than this z are left out")
+    verb.option("--max-height", o.highest_z_m, "surface: leave out the points above this z, in m")
         .value("M");
     verb.option("--lattice",
                 o.lattice,
-                "cell: borders on multiples of the resolution; node: centres counted from the "
-                "smallest x and y")
+                "cell: cell borders lie on multiples of the resolution (default); node: cell "
+                "centres are counted from the smallest x and y")
         .one_of({"cell", "node"});
-    verb.option("--out", o.out_file, "ESRI ASCII grid").required().value("F.asc");
+    verb.option("--out", o.out_file, "the height map, an ESRI ASCII grid")
+        .required()
+        .value("F.asc");
 }
 
 }  // namespace surefoot::app

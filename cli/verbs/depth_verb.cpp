@@ -71,10 +71,10 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
     writes += io::write_pfm(at("outlier_probability.pfm"), depth.outlier_probability);
     writes += write_picture(
         at("disparity.png"),
-        eval::render_disparity(depth.disparity_px, fb, {"Disparity of the left eye", size}));
+        eval::render_disparity(depth.disparity_px, fb, {"Disparity of the left camera", size}));
     writes += write_picture(
         at("sigma.png"),
-        eval::render_sigma(depth.sigma_px, "px", {"One sigma of the disparity", size}));
+        eval::render_sigma(depth.sigma_px, "px", {"Standard deviation of the disparity", size}));
     if (measured.rig) {
         writes += io::write_ply(at("cloud.ply"), cloud_of(measured, *measured.rig));
     } else {
@@ -96,11 +96,12 @@ void print_depth(const MeasuredPair& measured, const std::string& folder) {
         fmt::print("; median sigma {:.3f} px", figures.median_sigma_px);
     fmt::print("\n");
     if (measured.check.enough()) {
-        fmt::print("rows differ by {:.2f} px (median of {} corners)\n",
+        fmt::print("corresponding rows differ by {:.2f} px (median of {} corners)\n",
                    measured.check.row_error_px,
                    measured.check.matched);
     }
-    fmt::print("written to {}{}\n", folder, measured.rig ? "" : "; no cloud without a --rig");
+    fmt::print(
+        "written to {}{}\n", folder, measured.rig ? "" : "; give --rig to get a point cloud");
 }
 
 /// `surefoot depth`: matches one pair of images.
@@ -132,19 +133,19 @@ int depth(const DepthOptions& options) {
 }  // namespace
 
 void add_depth(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<DepthOptions>("depth",
-                                "disparity, its sigma and points of one pair of images",
-                                "surefoot depth out/floor_recording/mav0/cam0/data/1000000000.png "
-                                "out/floor_recording/mav0/cam1/data/1000000000.png --rig zed_vga "
-                                "--out out/floor_depth",
-                                depth);
-    verb.option("left", o.left, "image of the left eye").required().value("LEFT");
-    verb.option("right", o.right, "image of the right eye").required().value("RIGHT");
+    auto [verb, o] = verbs.add<DepthOptions>(
+        "depth",
+        "compute the disparity of one image pair, its standard deviation and a point cloud",
+        "surefoot depth out/floor_recording/mav0/cam0/data/1000000000.png "
+        "out/floor_recording/mav0/cam1/data/1000000000.png --rig zed_vga "
+        "--out out/floor_depth",
+        depth);
+    verb.option("left", o.left, "image of the left camera").required().value("LEFT");
+    verb.option("right", o.right, "image of the right camera").required().value("RIGHT");
     verb.option("--rig",
                 o.rig,
-                "calibration file, or name of a built-in rig; without it the pair is taken as "
-                "rectified, and there is no cloud")
+                "calibration file, or name of a built-in rig ('surefoot doctor' lists them); "
+                "without it the images must be rectified, and the verb writes no point cloud")
         .value("FILE|NAME");
     verb.option("--out",
                 o.out_dir,

@@ -40,8 +40,8 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
 }
 
 /// Smallest standard deviation that the matcher reports, reached on well textured ground. The depth
-/// sigmas below and those of `depth-accuracy --design` assume it. The typical pixel of a scene has
-/// half as much again.
+/// sigmas below and those of `depth-accuracy --design` assume it. The standard deviation of a
+/// typical pixel of a scene is 50 % larger.
 constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,
@@ -77,31 +77,32 @@ void print(const RigView& view) {
                view.height,
                view.focal_px,
                1e3 * view.baseline_m);
-    fmt::print("depth sigma on well textured ground ({:g} px):", view.disparity_sigma_px);
+    fmt::print("standard deviation of depth on well textured ground (disparity {:g} px):",
+               view.disparity_sigma_px);
     for (const auto& depth : view.depths)
         fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * depth.sigma_m, depth.z_m);
     fmt::print(
-        "\nblind zone: floor nearer than {:.2f} m ahead of base_link is never seen; view ends at "
-        "{:.2f} m\n",
+        "\nblind zone: the camera never sees floor nearer than {:.2f} m ahead of base_link; its "
+        "view ends at {:.2f} m\n",
         view.floor.near_m,
         view.floor.far_m);
     for (const auto& step : view.steps) {
-        fmt::print(
-            "command {} ({}): the foot lands up to {:.2f} m ahead, {}\n",
-            step.command,
-            step.name,
-            step.toe_m,
-            step.remembered ? "all of it on remembered ground" : "partly on ground seen now");
+        fmt::print("command {} ({}): the foot lands up to {:.2f} m ahead, {}\n",
+                   step.command,
+                   step.name,
+                   step.toe_m,
+                   step.remembered ? "all of it on ground that only the map remembers"
+                                   : "partly on ground that the camera sees now");
     }
 }
 
 void print(const std::vector<CameraNode>& cameras) {
-    if (cameras.empty()) fmt::print("cameras: none (no /dev/video*)\n");
+    if (cameras.empty()) fmt::print("cameras: no camera found (no /dev/video*)\n");
     for (const CameraNode& node : cameras) {
         if (node.problem.empty()) {
             fmt::print("camera {}: {}\n", node.device, node.card);
         } else {
-            fmt::print("no camera at {}\n", node.problem);
+            fmt::print("not a usable camera: {}\n", node.problem);
         }
     }
 }
@@ -135,13 +136,14 @@ int doctor(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<DoctorOptions>("doctor",
-                                 "what is missing on this machine; the blind zone of a rig",
-                                 "surefoot doctor --machine rex",
-                                 doctor);
+    auto [verb, o] = verbs.add<DoctorOptions>("doctor",
+                                              "check the computer, the settings, the cameras and "
+                                              "the machine file; print the blind zone of each rig",
+                                              "surefoot doctor --machine rex",
+                                              doctor);
     verb.option("--rig", o.rig_file, "calibration file").value("FILE");
-    verb.option("--machine", o.machine, "machine file or built-in name").value("FILE|NAME");
+    verb.option("--machine", o.machine, "machine file, or name of a built-in machine")
+        .value("FILE|NAME");
 }
 
 }  // namespace surefoot::app

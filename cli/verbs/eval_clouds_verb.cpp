@@ -125,7 +125,7 @@ int eval_clouds(const EvalCloudsOptions& options) {
     if (!settings) return report(settings.error());
     const bool m3c2 = options.method == "m3c2";
     if (!m3c2 && !options.cores.empty())
-        return report(usage_error("--core: core points are of --method m3c2 alone"));
+        return report(usage_error("--core: works with --method m3c2 only"));
     const auto executor = make_executor(options.common);
     auto result =
         m3c2 ? compare_m3c2(options, settings->m3c2, *executor) : compare_c2c(options, *executor);
@@ -135,8 +135,8 @@ int eval_clouds(const EvalCloudsOptions& options) {
     comparison.figures = eval::distance_figures(result->distances_m);
     if (comparison.figures.count == 0) {
         return report(input_error(
-            fmt::format("{} and {} have nothing in common: no cylinder holds points of both; are "
-                        "they in one frame? eval.m3c2.half_length_m = {:g} can be set longer",
+            fmt::format("{} and {} do not overlap: no cylinder contains points of both. Check that "
+                        "both are in the same frame, or increase eval.m3c2.half_length_m = {:g}",
                         options.reference,
                         options.compared,
                         settings->m3c2.half_length_m)));
@@ -146,12 +146,12 @@ int eval_clouds(const EvalCloudsOptions& options) {
             return report(status.error());
     }
     if (!options.out_dir.empty()) {
-        const PlacedDistances placed{
-            result->points_m,
-            result->distances_m,
-            m3c2,
-            m3c2 ? "M3C2: compared less reference" : "C2C: to the nearest point of the reference",
-            sentence_of(comparison)};
+        const PlacedDistances placed{result->points_m,
+                                     result->distances_m,
+                                     m3c2,
+                                     m3c2 ? "M3C2: compared minus reference"
+                                          : "C2C: distance to the nearest point of the reference",
+                                     sentence_of(comparison)};
         if (const auto status = write_cloud_pictures(options.out_dir, placed, comparison.shift_m);
             !status)
             return report(status.error());
@@ -178,30 +178,33 @@ int eval_clouds(const EvalCloudsOptions& options) {
 void add_eval_clouds(VerbGroup verbs) {
     auto [verb, o] = verbs.add<EvalCloudsOptions>(
         "clouds",
-        "distances between two clouds: C2C, or M3C2 with its level of "
-        "detection",
+        "compute the distances between two point clouds: C2C, or M3C2 with its level of detection",
         "surefoot eval clouds out/stairs.ply out/stairs_10mm.ply --out "
         "out/clouds --json\n"
         "  surefoot eval clouds out/stairs.ply out/stairs_10mm.ply "
         "--method m3c2 --set eval.m3c2.normals=pca",
         eval_clouds);
-    verb.option("reference", o.reference, "PLY, PCD, LAS, VTK or XYZ")
+    verb.option("reference", o.reference, "reference point cloud: PLY, PCD, LAS, VTK or XYZ")
         .required()
         .value("REFERENCE");
-    verb.option("compared", o.compared, "in the same frame").required().value("COMPARED");
+    verb.option("compared", o.compared, "point cloud to compare, in the same frame")
+        .required()
+        .value("COMPARED");
     verb.option("--method",
                 o.method,
                 "c2c: to the nearest point of the reference; m3c2: along normals, settings "
                 "eval.m3c2.*")
         .one_of({"c2c", "m3c2"});
-    verb.option("--core", o.cores, "m3c2: where to look (default: every reference point)")
+    verb.option("--core",
+                o.cores,
+                "m3c2: points at which the distance is computed (default: every reference point)")
         .value("CLOUD");
     verb.option("--values",
                 o.values_file,
-                "a line for each compared point (c2c: the distance) or core point (m3c2: "
-                "distance,lod,std1,std2,n1,n2,significant)")
+                "file with one line for each compared point (c2c: the distance) or core point "
+                "(m3c2: distance,lod,std1,std2,n1,n2,significant)")
         .value("F.csv");
-    verb.option("--out", o.out_dir, "folder for distances.png, histogram.svg, distances.ply")
+    verb.option("--out", o.out_dir, "folder for distances.png, histogram.svg and distances.ply")
         .value("DIR");
 }
 

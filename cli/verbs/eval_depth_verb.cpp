@@ -88,10 +88,9 @@ Result<GreyImage> read_mask(const std::string& path) {
 
 void print_errors(const eval::DepthErrors& errors) {
     fmt::print(
-        "{} pixels with truth, {:.2f} % of them known\n"
-        "gaps filled: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\n"
-        "known only:  {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px; median {:.3f} "
-        "px\n",
+        "{} pixels have a true disparity; {:.2f} % of them have an estimate\ngaps filled: {:.2f} % "
+        "over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\nestimates only: {:.2f} % over 0.5 "
+        "px, {:.2f} % over 1 px, {:.2f} % over 2 px; median {:.3f} px\n",
         errors.counted,
         errors.density_percent,
         errors.bad.over_0_5_percent,
@@ -103,8 +102,8 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.known.median_abs);
     if (errors.coverage.count == 0) return;
     fmt::print(
-        "within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} %; sparsification {:.3f} (0 = perfect order, "
-        "1 = chance)\n",
+        "within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} %; sparsification {:.3f} (0 = sigma orders "
+        "the errors perfectly, 1 = no better than chance)\n",
         100.0 * errors.coverage.within_1_sigma,
         100.0 * errors.coverage.within_2_sigma,
         100.0 * errors.coverage.within_3_sigma,
@@ -123,15 +122,16 @@ void warn_of_scale(const EvalDepthOptions& options,
                    const Truth& truth,
                    double ratio,
                    double scale) {
-    log_warning(fmt::format(
-        "{}: divided by {:g}, its disparities are {:.3g} times those of {} (median): the figures "
-        "below mean nothing if it holds {:g} times the disparity; then use --scale {:g}",
-        options.truth,
-        truth.scale,
-        ratio,
-        options.estimate,
-        scale,
-        scale));
+    log_warning(
+        fmt::format("{}: after division by {:g}, its disparities are {:.3g} times those of {} "
+                    "(median). If the file stores {:g} times the disparity, the figures below are "
+                    "wrong: run again with --scale {:g}",
+                    options.truth,
+                    truth.scale,
+                    ratio,
+                    options.estimate,
+                    scale,
+                    scale));
 }
 
 /// `surefoot eval depth`: compares a disparity image with the truth.
@@ -148,10 +148,10 @@ int eval_depth(const EvalDepthOptions& options) {
         {estimate_px->view(), truth->disparity_px.view(), mask->view(), sigma_px->view()});
     if (!errors) return report(errors.error());
     if (errors->counted == 0) {
-        return report(
-            input_error(fmt::format("{}: no pixel has a truth{}",
-                                    options.truth,
-                                    options.mask.empty() ? "" : " that the mask lets through")));
+        return report(input_error(
+            fmt::format("{}: no pixel has a true disparity{}",
+                        options.truth,
+                        options.mask.empty() ? "" : " inside the mask; check both files")));
     }
     const auto suspected = suspected_scale(*errors, truth->scale);
     if (suspected) warn_of_scale(options, *truth, errors->truth_over_estimate, *suspected);
@@ -168,28 +168,28 @@ int eval_depth(const EvalDepthOptions& options) {
 void add_eval_depth(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<EvalDepthOptions>("depth",
-                                    "a disparity image against the true one",
+                                    "compare a disparity image with the true one",
                                     "surefoot eval depth tests/conformance/depth/disparity.pfm "
                                     "tests/conformance/depth/truth.pfm --sigma "
                                     "tests/conformance/depth/sigma.pfm --json",
                                     eval_depth,
                                     Reads::no_settings);
-    verb.option("estimate", o.estimate, "disparity in pixels, unknown = +inf")
+    verb.option("estimate", o.estimate, "estimated disparity, in px; unknown = +inf")
         .required()
         .value("EST.pfm");
-    verb.option("truth", o.truth, "PFM, or a grey PNG in which 0 is unknown")
+    verb.option("truth", o.truth, "true disparity: PFM, or a grey PNG in which 0 means unknown")
         .required()
         .value("TRUTH");
     verb.option("--scale",
                 o.scale,
-                "the truth holds this times the disparity (default: 256 for 16-bit images as "
-                "KITTI has them, 1 for others)")
+                "factor between stored values and disparities in px (default: 256 for 16-bit "
+                "images, as in KITTI; 1 for others)")
         .value("S")
         .positive();
-    verb.option("--mask", o.mask, "image; only pixels above 200 count (seen by both eyes)")
+    verb.option(
+            "--mask", o.mask, "mask image; only pixels above 200 (visible in both cameras) count")
         .value("M");
-    verb.option("--sigma", o.sigma, "standard deviation of the estimate in pixels")
-        .value("SIGMA.pfm");
+    verb.option("--sigma", o.sigma, "standard deviation of the estimate, in px").value("SIGMA.pfm");
 }
 
 }  // namespace surefoot::app

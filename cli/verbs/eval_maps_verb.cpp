@@ -118,16 +118,16 @@ Status write_pictures(const EvalMapsOptions& options,
         return io::write_file(options.out_dir + "/" + name, png);
     };
     Writes writes;
-    writes += write("confusion.png",
-                    eval::render_confusion(
-                        maps.geometry,
-                        result.calls,
-                        {"Traversability against the truth",
-                         fmt::format("{:.2f} % of the unsafe cells called safe, {:.2f} % of the "
-                                     "safe ones called unsafe",
-                                     100.0 * result.traversability.false_safe,
-                                     100.0 * result.traversability.false_unsafe)},
-                        overlays));
+    writes +=
+        write("confusion.png",
+              eval::render_confusion(maps.geometry,
+                                     result.calls,
+                                     {"Traversability compared with the truth",
+                                      fmt::format("{:.2f} % of the unsafe cells called safe, "
+                                                  "{:.2f} % of the safe cells called unsafe",
+                                                  100.0 * result.traversability.false_safe,
+                                                  100.0 * result.traversability.false_unsafe)},
+                                     overlays));
     writes += write("error.png",
                     eval::render_error_map(maps.geometry,
                                            result.error_m,
@@ -142,10 +142,8 @@ Status write_pictures(const EvalMapsOptions& options,
 void print_figures(const eval::MapComparison& result) {
     fmt::print(
         "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
-        "{:.2f} % above 50 mm\n"
-        "traversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe ones "
-        "called unsafe\n"
-        "{:.1f} % of the true cells are known\n",
+        "{:.2f} % above 50 mm\ntraversability: {:.2f} % of the unsafe cells called safe, {:.2f} % "
+        "of the safe cells called unsafe\n{:.1f} % of the true cells are known\n",
         1e3 * result.elevation.median_abs_m,
         1e3 * result.elevation.p90_abs_m,
         result.elevation.count,
@@ -161,8 +159,8 @@ void print_figures(const eval::MapComparison& result) {
     }
     if (result.floor.count > 0) {
         fmt::print(
-            "level floor: spread {:.1f} mm, 99 % of the jumps between neighbours below "
-            "{:.1f} mm\n",
+            "level floor: spread {:.1f} mm, 99 % of the height steps between neighbouring cells "
+            "are below {:.1f} mm\n",
             1e3 * result.floor.spread_m,
             1e3 * result.edges.p99_abs);
     }
@@ -176,10 +174,10 @@ int eval_maps(const EvalMapsOptions& options) {
     if (!maps) return report(maps.error());
     const eval::MapComparison result = eval::compare_maps(*maps, settings->maps);
     if (result.elevation.count == 0) {
-        return report(input_error(
-            fmt::format("{} and {} have no known cell in common: are both in the same frame?",
-                        options.live_dir,
-                        options.truth_dir)));
+        return report(input_error(fmt::format(
+            "{} and {} have no known cell in common; check that both are in the same frame",
+            options.live_dir,
+            options.truth_dir)));
     }
     if (options.common.json) {
         print_answer(maps_json(result));
@@ -196,12 +194,14 @@ int eval_maps(const EvalMapsOptions& options) {
 void add_eval_maps(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<EvalMapsOptions>("maps",
-                                   "elevation and traversability against a true map",
+                                   "compare elevation and traversability with a true map",
                                    "surefoot eval maps out/floor out/floor_recording --json",
                                    eval_maps,
                                    Reads::own_settings);
-    verb.option("live", o.live_dir, "folder of a run").required().value("LIVE_DIR");
-    verb.option("truth", o.truth_dir, "folder with the true elevation.asc")
+    verb.option("live", o.live_dir, "output folder of 'surefoot run'").required().value("LIVE_DIR");
+    verb.option("truth",
+                o.truth_dir,
+                "folder with the true elevation.asc, for example of 'surefoot sim'")
         .required()
         .value("TRUTH_DIR");
     verb.option("--out", o.out_dir, "folder for confusion.png and error.png").value("DIR");

@@ -36,7 +36,7 @@ std::string in_mm(const eval::MatchErrors& figures) {
 }
 
 void print_kind(const char* name, const eval::KindErrors& kind, const char* height) {
-    fmt::print("{:8} {:3} of {:3} found, {:3} more; place across {}, {} {}\n",
+    fmt::print("{:8} {:3} of {:3} found, {:3} without a true partner; position across {}, {} {}\n",
                name,
                kind.matched,
                kind.truth,
@@ -47,10 +47,10 @@ void print_kind(const char* name, const eval::KindErrors& kind, const char* heig
 }
 
 void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>& lists) {
-    fmt::print("found minus true [mm]: mean / standard deviation / largest (pairs)\n");
+    fmt::print("found minus true [mm]: mean / standard deviation / largest (number of pairs)\n");
     if (lists.contains("flights")) {
         print_kind("flights", errors.flights, "riser");
-        fmt::print("         steps right in {} of {}; going {}, width {}\n",
+        fmt::print("         number of steps correct in {} of {}; going {}, width {}\n",
                    errors.flights.steps_right,
                    errors.flights.matched,
                    in_mm(errors.flights.going),
@@ -78,7 +78,9 @@ int eval_stairs(const EvalStairsOptions& options) {
             lists.insert(list);
         } else {
             log_warning(fmt::format(
-                "{}: has no list {}, which the truth has: not compared", options.found, list));
+                "{}: the list '{}' is missing; it is in the truth, but cannot be compared",
+                options.found,
+                list));
         }
     }
     const eval::FeatureErrors errors =
@@ -96,29 +98,33 @@ int eval_stairs(const EvalStairsOptions& options) {
 void add_eval_stairs(VerbGroup verbs) {
     auto [verb, o] = verbs.add<EvalStairsOptions>(
         "stairs",
-        "flights, drops, kerbs, sills, doors and edges against the true ones",
+        "compare flights, drops, kerbs, sills, doors and edges with the true ones",
         "surefoot stairs out/floor_recording/elevation.asc --out out/floor_truth\n"
         "  surefoot eval stairs out/floor out/floor_truth --json",
         eval_stairs,
         Reads::no_settings);
-    verb.option("found", o.found, "stairs.json, or the folder of a run that holds it")
+    verb.option("found", o.found, "stairs.json, or the output folder of a verb that wrote it")
         .required()
         .value("FOUND");
     verb.option("truth",
                 o.truth,
-                "the same in the same frame: of true heights (stairs), or written by hand "
-                "with the lists that are known")
+                "true features in the same frame: stairs.json made from true heights by 'surefoot "
+                "stairs', or a file written by hand with the lists that you know")
         .required()
         .value("TRUTH");
-    verb.option("--across", o.match.across_m, "how far a match may lie off along the way over it")
+    verb.option("--across",
+                o.match.across_m,
+                "largest distance of a match in the walking direction, in m")
         .value("M")
         .positive()
         .show_default();
-    verb.option("--along", o.match.along_m, "how far to its side")
+    verb.option("--along", o.match.along_m, "largest sideways distance of a match, in m")
         .value("M")
         .positive()
         .show_default();
-    verb.option("--turn", o.match.turn_deg, "how far turned")
+    verb.option("--turn",
+                o.match.turn_deg,
+                "largest angle between the walking directions of a match, in deg")
         .value("DEG")
         .positive()
         .show_default();

@@ -41,7 +41,8 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
     settings->sim.profile = profile_of(options.camera);
     const auto machine = load_machine(options.machine);
     if (!machine) return machine.error();
-    if (!*machine) return usage_error("--machine: a machine file or name is needed");
+    if (!*machine)
+        return usage_error("--machine: give a machine file, or the name of a built-in machine");
     const double reach_m =
         options.quick ? std::min(options.reach_m, kQuickReach_m) : options.reach_m;
     return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
@@ -102,8 +103,8 @@ class SuiteRun {
     void fail(const std::string& name, const Error& error) {
         if (error.code == ErrorCode::interrupted) {
             stopped_ = true;
-            first_error_ = Error{error.code,
-                                 "interrupted by the user; the same call goes on where it stopped"};
+            first_error_ =
+                Error{error.code, "interrupted by the user; repeat the same call to continue"};
             return;
         }
         const Error named{error.code, fmt::format("{}: {}", name, error.message)};
@@ -189,52 +190,77 @@ int eval_suite(const EvalSuiteOptions& options) {
 void add_eval_suite(VerbGroup verbs) {
     auto [suite, s] = verbs.add<EvalSuiteOptions>(
         "suite",
-        "scenes x carriers x seeds x noise through the whole chain against the truth; "
-        "--threads cases at a time",
+        "run the whole chain on simulated scenes x motion models x seeds x noise, and compare the "
+        "results with the truth; --threads is the number of cases at a time",
         "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite",
         eval_suite);
     suite
         .option("--out",
                 s.out_dir,
-                "folder for suite.html, suite.json, cases.csv; a suite that was stopped goes "
-                "on where it was")
+                "folder for suite.html, suite.json and cases.csv; a repeated call continues an "
+                "interrupted suite")
         .required()
         .value("DIR");
-    suite.flag("--quick", s.quick, "a few short scenes, for every change of the code");
+    suite.flag("--quick",
+               s.quick,
+               "run a few short scenes only, for a check after each change of the code");
     const Option thesis = suite.flag(
         "--thesis",
         s.thesis,
-        "instead: the experiments of the reference thesis on its rebuilt places, with its values "
-        "beside ours: thesis.html, thesis.json, thesis.csv");
-    suite.option("--runs", s.runs, "of --thesis, separated by commas; default all")
+        "run the experiments of the reference thesis (Lange 2016) on rebuilt scenes instead, and "
+        "compare its values with ours: thesis.html, thesis.json, thesis.csv");
+    suite
+        .option("--runs",
+                s.runs,
+                "--thesis: names of the experiments, separated by commas (default: all)")
         .separated_by_commas()
         .value("NAMES")
         .needs(thesis);
-    suite.option("--scenes", s.scenes, "names or scene files, separated by commas; default all")
+    suite
+        .option("--scenes",
+                s.scenes,
+                "names of scenes, or scene files, separated by commas (default: all)")
         .separated_by_commas()
         .value("NAMES");
     suite
         .option("--carriers",
                 s.motion_models,
-                "who goes each scene's way: scene = as its file says; a way that a carrier "
-                "cannot go is named and left out")
+                "motion models that move the camera through each scene; scene = the one in the "
+                "scene file (default). A combination that is not possible is named and left out")
         .separated_by_commas()
         .one_of({"scene", "trolley", "rex", "hand"})
         .value("NAMES");
-    suite.option("--camera", s.camera, "whose noise: nominal is what the real ZED showed")
+    suite
+        .option(
+            "--camera", s.camera, "profile of the camera noise (default zed: noise of a real ZED)")
         .one_of({"ideal", "zed", "euroc"});
-    suite.option("--seeds", s.seeds, "variants of each scene, from --seed on").in(1, 100000);
-    suite.option("--noise", s.noise, "factors on the noise amplitude, separated by commas")
+    suite
+        .option(
+            "--seeds",
+            s.seeds,
+            "number of variants of each scene; the first one has the seed of --seed (default 1)")
+        .in(1, 100000);
+    suite
+        .option(
+            "--noise", s.noise, "factors on the noise amplitude, separated by commas (default 1,2)")
         .separated_by_commas()
         .in(0.0, 10.0)
         .value("FACTORS");
-    suite.option("--frames", s.frames, "stop each case after this many frames").positive();
+    suite
+        .option("--frames",
+                s.frames,
+                "stop each case after this number of frames (default: the whole path)")
+        .positive();
     suite
         .option(
-            "--reach", s.reach_m, "how far around the last pose the gate is asked; 0 = only there")
+            "--reach",
+            s.reach_m,
+            "radius around the last pose in which the gate is asked, in m; 0 = only at that pose")
         .value("M")
         .in(0.0, 2.0);
-    suite.option("--machine", s.machine, "machine file or built-in name").value("FILE|NAME");
+    suite
+        .option("--machine", s.machine, "machine file, or name of a built-in machine (default rex)")
+        .value("FILE|NAME");
 }
 
 }  // namespace surefoot::app

@@ -36,7 +36,8 @@ struct TrajectoryPair {
 Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
     if (pair.estimate.has_stamps() && pair.truth.has_stamps()) {
         return usage_error(fmt::format(
-            "--times {}: both trajectories have stamps of their own; leave it away", times_file));
+            "--times {}: both trajectories have time stamps of their own; remove --times",
+            times_file));
     }
     const auto times_ns = io::read_times(times_file);
     if (!times_ns) return times_ns.error();
@@ -50,7 +51,7 @@ Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
 /// Stamps pose i of the truth with i / --rate after the first pose of the estimate.
 Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     if (pair.truth.has_stamps()) {
-        return usage_error(fmt::format("--rate {:g}: {} has stamps of its own; leave it away",
+        return usage_error(fmt::format("--rate {:g}: {} has time stamps of its own; remove --rate",
                                        options.rate_hz,
                                        options.truth));
     }
@@ -73,15 +74,15 @@ Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair
     if (bare.rows == other.poses.size()) {
         std::vector<std::int64_t> times_ns;
         for (const StampedPose& pose : other.poses) times_ns.push_back(pose.time_ns);
-        return io::give_stamps(times_ns, "row by row as the other trajectory", bare);
+        return io::give_stamps(times_ns, "the same rows as the other trajectory", bare);
     }
     if (!of_estimate) return {};
-    return input_error(
-        fmt::format("{}: {} poses without stamps, and {} has {}: give their stamps with --times",
-                    options.estimate,
-                    bare.rows,
-                    options.truth,
-                    other.poses.size()));
+    return input_error(fmt::format(
+        "{}: {} poses without time stamps, and {} has {} poses; give the time stamps with --times",
+        options.estimate,
+        bare.rows,
+        options.truth,
+        other.poses.size()));
 }
 
 Result<TrajectoryPair> read_pair(const EvalTrajectoryOptions& options) {
@@ -150,12 +151,13 @@ void print_errors(const EvalTrajectoryOptions& options,
         errors.rpe_rot_rmse_deg);
     for (const eval::PathError& error : by_length) {
         if (error.count == 0) continue;
-        fmt::print("RPE {:.4f} m ({:.2f} %), {:.4f} deg rmse over {:g} m of path ({} stretches)\n",
-                   error.trans_rmse_m,
-                   error.trans_percent,
-                   error.rot_rmse_deg,
-                   error.length_m,
-                   error.count);
+        fmt::print(
+            "RPE {:.4f} m ({:.2f} %), {:.4f} deg rmse over {:g} m of path ({} path sections)\n",
+            error.trans_rmse_m,
+            error.trans_percent,
+            error.rot_rmse_deg,
+            error.length_m,
+            error.count);
     }
     fmt::print("drift {:.2f} %\n", errors.drift_percent);
 }
@@ -194,34 +196,40 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
 }  // namespace
 
 void add_eval_trajectory(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<EvalTrajectoryOptions>("trajectory",
-                                                      "ATE, RPE and drift of a trajectory",
-                                                      "surefoot eval trajectory out/floor/trajectory.tum "
-                                                      "out/floor_recording/groundtruth.tum --json",
-                                                      eval_trajectory,
-                                                      Reads::no_settings);
-    verb.option("estimate", o.estimate, "trajectory: TUM, EuRoC csv, KITTI 3x4 poses")
+    auto [verb, o] =
+        verbs.add<EvalTrajectoryOptions>("trajectory",
+                                         "compute ATE, RPE and drift of a trajectory",
+                                         "surefoot eval trajectory out/floor/trajectory.tum "
+                                         "out/floor_recording/groundtruth.tum --json",
+                                         eval_trajectory,
+                                         Reads::no_settings);
+    verb.option("estimate", o.estimate, "estimated trajectory: TUM, EuRoC csv, or KITTI 3x4 poses")
         .required()
         .value("EST");
-    verb.option("truth", o.truth, "the true one, in any of these formats")
+    verb.option("truth", o.truth, "true trajectory, in any of these formats")
         .required()
         .value("TRUTH");
-    verb.option("--align", o.align, "how the estimate is laid onto the truth")
+    verb.option("--align",
+                o.align,
+                "transformation that aligns the estimate to the truth (default se3)")
         .one_of({"se3", "yaw", "none"});
-    const Option rate = verb.option("--rate", o.rate_hz, "true KITTI poses without times.txt")
-                            .value("HZ")
-                            .in(0.01, 1000.0);
-    verb.option("--times", o.times_file, "stamps of KITTI poses, one in a line")
+    const Option rate =
+        verb.option("--rate", o.rate_hz, "rate of true KITTI poses without times.txt, in Hz")
+            .value("HZ")
+            .in(0.01, 1000.0);
+    verb.option("--times", o.times_file, "file with the time stamps of KITTI poses, one per line")
         .value("FILE")
         .excludes(rate);
     verb.option("--delta",
                 o.lengths_m,
-                "length of path for relative errors; may be repeated (default 0.1, 0.5, 1, 2, "
-                "5)")
+                "path length for relative errors, in m; repeat the option for more lengths "
+                "(default 0.1, 0.5, 1, 2, 5)")
         .value("M")
         .one_value_each()
         .in(1e-3, 1e6);
-    verb.option("--plot", o.plot_file, "picture: from above, and the error over time")
+    verb.option("--plot",
+                o.plot_file,
+                "picture of the trajectory from above, and of the error over time")
         .value("F.png");
 }
 

@@ -35,7 +35,8 @@ Result<elevation::AncestorConfig> load(const CommonOptions& options) {
     FuseSettings settings;
     if (options.preset != "ethz") {
         return usage_error(
-            fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
+            fmt::format("fuse --preset '{}': this verb works with --preset ethz only, the map "
+                        "update of the reference implementation",
                         options.preset));
     }
     if (auto status = apply_overrides(settings_request(options), io::describe_config(settings));
@@ -48,10 +49,10 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     const auto values = io::read_floats(path);
     if (!values) return values.error();
     if (values->size() % 4 != 0) {
-        return input_error(
-            fmt::format("{}: {} values are no whole number of points (x, y, z, variance)",
-                        path,
-                        values->size()));
+        return input_error(fmt::format(
+            "{}: {} values; the number of values must be a multiple of 4 (x, y, z, variance)",
+            path,
+            values->size()));
     }
     std::vector<elevation::AncestorPoint> points(values->size() / 4);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -60,15 +61,15 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
         const bool is_measurement =
             std::all_of(v, v + 4, [](float value) { return std::isfinite(value); }) && v[3] >= 0.0F;
         if (!is_measurement) {
-            return input_error(fmt::format(
-                "{}: point {} (from 0) is ({}, {}, {}) with variance {}; finite numbers and a "
-                "variance of at least 0 are expected",
-                path,
-                i,
-                v[0],
-                v[1],
-                v[2],
-                v[3]));
+            return input_error(
+                fmt::format("{}: point {} (counted from 0) is ({}, {}, {}) with variance {}; give "
+                            "finite numbers and a variance of at least 0",
+                            path,
+                            i,
+                            v[0],
+                            v[1],
+                            v[2],
+                            v[3]));
         }
     }
     return points;
@@ -85,7 +86,7 @@ Result<elevation::FuseStep> parse_step(std::string_view line,
     }
     if (words.size() < 6 || words[1] != "time" || words[3] != "move_to") {
         return input_error(
-            fmt::format("{}: 'K time T move_to X Y' is expected, found '{}'", where, line));
+            fmt::format("{}: expected 'K time T move_to X Y', found '{}'", where, line));
     }
     const auto index = io::parse_int64(words[0]);
     const auto time_s = io::parse_double(words[2]);
@@ -95,7 +96,7 @@ Result<elevation::FuseStep> parse_step(std::string_view line,
         return value && std::isfinite(*value);
     };
     if (!index || !is_number(time_s) || !is_number(x_m) || !is_number(y_m)) {
-        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no finite number",
+        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is not a finite number",
                                        where,
                                        words[0],
                                        words[2],
@@ -119,7 +120,9 @@ Result<std::vector<elevation::FuseStep>> read_steps(const std::string& path) {
         if (!step) return step.error();
         steps.push_back(std::move(step).value());
     }
-    if (steps.empty()) return input_error(fmt::format("{}: holds no step", path));
+    if (steps.empty())
+        return input_error(
+            fmt::format("{}: the file contains no step; add lines 'K time T move_to X Y'", path));
     return steps;
 }
 
@@ -146,7 +149,7 @@ int fuse(const FuseOptions& options) {
     if (options.common.json) {
         print_answer(fuse_json(results.size(), options.out_dir));
     } else {
-        fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);
+        fmt::print("{} steps fused; layers of each step in {}/\n", results.size(), options.out_dir);
     }
     return kExitOk;
 }
@@ -156,11 +159,12 @@ int fuse(const FuseOptions& options) {
 void add_fuse(VerbGroup verbs) {
     auto [verb, o] = verbs.add<FuseOptions>(
         "fuse",
-        "the elevation update alone, on given clouds",
+        "run only the elevation map update, on given point clouds",
         "surefoot fuse tests/conformance/elevation/steps.txt --preset ethz --out out/fused",
         fuse,
         Reads::own_settings);
-    verb.option("steps", o.steps, "steps.txt beside cloud0.f32, cloud1.f32, ...")
+    verb.option(
+            "steps", o.steps, "file of steps; the files cloud0.f32, cloud1.f32, ... lie beside it")
         .required()
         .value("STEPS.txt");
     verb.option("--out", o.out_dir, "folder for the layers").required().value("DIR");

@@ -65,7 +65,7 @@ Status write_audit(const std::string& folder,
     log.stop();
     const gate_process::AuditReport done = log.report();
     if (done.written == 1 && !done.failing) return {};
-    return output_error("the verdict is not in the audit log: " + done.last_error);
+    return output_error("the verdict was not written to the audit log: " + done.last_error);
 }
 
 /// The configured movements of a machine as text, for example "9 N, 25 left".
@@ -83,8 +83,8 @@ Result<std::uint8_t> parse_command(const std::string& text, const Machine& machi
     const auto code = io::parse_int64(text);
     if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
     return usage_error(
-        fmt::format("--command '{}': a whole number from 0 to 255 is needed, the code of a "
-                    "joystick sector (1-24) or turn; this machine has {}",
+        fmt::format("--command '{}': give a whole number from 0 to 255, the code of a joystick "
+                    "sector (1-24) or of a turn; this machine has {}",
                     text,
                     movements_of(machine)));
 }
@@ -95,7 +95,9 @@ int gate(const GateOptions& options) {
     if (!pose) return report(pose.error());
     const auto machine = load_machine(options.machine.empty() ? kUsualMachine : options.machine);
     if (!machine) return report(machine.error());
-    if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
+    if (!*machine)
+        return report(
+            usage_error("--machine: give a machine file, or the name of a built-in machine"));
     const auto command = parse_command(options.command, machine->value().machine);
     if (!command) return report(command.error());
     auto map = load_offline_map(options.map_dir);
@@ -143,21 +145,26 @@ int gate(const GateOptions& options) {
 void add_gate(VerbGroup verbs) {
     auto [verb, o] = verbs.add<GateOptions>(
         "gate",
-        "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR; 2 "
-        "wrong call, 1 internal error: no permission either",
+        "give one verdict: may the machine take this step? Exit codes: 0 OK, 3 NOT_TRAVERSABLE, 4 "
+        "ERROR, 2 wrong call, 1 internal error. Only 0 is a permission",
         "surefoot gate --map out/floor --pose 0,0,0 --command 9\n"
         "  surefoot gate --map out/floor --pose 0,0,0 --command 25 --audit out/audit",
         gate,
         Reads::no_settings);
-    verb.option("--map", o.map_dir, "folder of a run").required().value("DIR");
-    verb.option("--pose", o.pose, "base_link in odom: metres and radians")
+    verb.option("--map", o.map_dir, "output folder of 'surefoot run'").required().value("DIR");
+    verb.option("--pose", o.pose, "pose of base_link in odom, in m, m and rad")
         .required()
         .value("X,Y,YAW");
-    verb.option("--command", o.command, "joystick sector 1-24, 25 turn left, 26 turn right")
+    verb.option("--command",
+                o.command,
+                "code of the movement: joystick sector 1-24, 25 = turn left, 26 = turn right")
         .required()
         .value("N");
-    verb.option("--machine", o.machine, "machine file or built-in name").value("FILE|NAME");
-    verb.option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")
+    verb.option("--machine", o.machine, "machine file, or name of a built-in machine (default rex)")
+        .value("FILE|NAME");
+    verb.option("--explain",
+                o.explain_file,
+                "picture of the footprint, the corridor and the deciding cell")
         .value("F.png");
     verb.option("--vouch",
                 o.attestation_radius_m,
@@ -167,9 +174,8 @@ void add_gate(VerbGroup verbs) {
                 "reaches to the ends of the present feet, and lists it in 'assumed'")
         .value("M")
         .not_negative();
-    verb.option("--audit",
-                o.audit_dir,
-                "audit log that the verdict is added to, with all that it was made from")
+    verb.option(
+            "--audit", o.audit_dir, "audit log to which the verdict and all its inputs are added")
         .value("DIR");
 }
 

@@ -49,10 +49,11 @@ std::string failure(const GroundOptions& options,
                     bool optical) {
     if (optical)
         return fmt::format(
-            "{}: no ground plane: {}: tilt 0-{:g} deg is searched; {:.0f} % of the points look "
-            "like floor; is --origin ({}) where the sensor was, and is the cloud in optical axes "
-            "as taken (--frame)? ground.search_down_deg, ground.min_image_share = {:g} and "
-            "ground.max_search_rms_m = {:g} can be set wider",
+            "{}: no ground plane: {}: the search covers tilts of 0-{:g} deg; {:.0f} % of the "
+            "points look like floor. Check that --origin ({}) is the position of the sensor and "
+            "that the cloud has optical axes as recorded (--frame). You can relax "
+            "ground.search_down_deg, ground.min_image_share = {:g} and ground.max_search_rms_m = "
+            "{:g}",
             options.cloud,
             to_string(sighting.reason),
             config.search_down_deg,
@@ -61,9 +62,9 @@ std::string failure(const GroundOptions& options,
             config.min_image_share,
             config.max_search_rms_m);
     return fmt::format(
-        "{}: no ground plane: {}; is --origin ({}) where the sensor was, and is the cloud in body "
-        "axes as taken (--frame)? ground.max_tilt_deg = {:g}, ground.max_range_m = {:g} and "
-        "ground.tolerance_m = {:g} can be set wider",
+        "{}: no ground plane: {}. Check that --origin ({}) is the position of the sensor and that "
+        "the cloud has body axes as recorded (--frame). You can relax ground.max_tilt_deg = {:g}, "
+        "ground.max_range_m = {:g} and ground.tolerance_m = {:g}",
         options.cloud,
         to_string(sighting.reason),
         options.origin,
@@ -108,15 +109,20 @@ int ground(const GroundOptions& options) {
 }  // namespace
 
 void add_ground(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<GroundOptions>("ground",
-                                 "ground plane of a cloud: tilt, height, inliers",
-                                 "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json",
-                                 ground);
-    verb.option("cloud", o.cloud, "PCD, PLY or XYZ").required().value("CLOUD");
-    verb.option("--origin", o.origin, "where the sensor is in the cloud; heights count from there")
+    auto [verb, o] = verbs.add<GroundOptions>(
+        "ground",
+        "estimate the ground plane of a point cloud: tilt, height, inliers",
+        "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json",
+        ground);
+    verb.option("cloud", o.cloud, "point cloud: PCD, PLY or XYZ").required().value("CLOUD");
+    verb.option("--origin",
+                o.origin,
+                "position of the sensor in the cloud, in m; the height of the ground is measured "
+                "from there (default 0,0,0)")
         .value("X,Y,Z");
-    verb.option("--frame", o.frame, "axes of the cloud; without it organised clouds are optical")
+    verb.option("--frame",
+                o.frame,
+                "axes of the cloud (default: optical for organised clouds, else body)")
         .one_of({"optical", "body"});
 }
 

@@ -49,7 +49,7 @@ Result<Pose> parse_guess(const std::string& guess) {
             return Pose{exp_so3({0.0, 0.0, kRadPerDeg * n[3]}), {n[0], n[1], n[2]}};
         }
         return usage_error(
-            fmt::format("--guess {}: neither a file nor x,y,z,yaw (metres and degrees)", guess));
+            fmt::format("--guess {}: not a file, and not x,y,z,yaw in metres and degrees", guess));
     }
     const auto text = io::read_file(guess, io::limits::kSettingsBytes);
     if (!text) return text.error();
@@ -66,7 +66,8 @@ Result<Pose> parse_guess(const std::string& guess) {
     constexpr double kRigid = 1e-3;
     if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid ||
         R.determinant() < 0.0) {
-        return usage_error(fmt::format("{}: the matrix does not turn and move alone", guess));
+        return usage_error(fmt::format(
+            "{}: the matrix is not a rigid motion (rotation and translation only)", guess));
     }
     return Pose::from_matrix(T);
 }
@@ -103,24 +104,22 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     switch (found.outcome) {
         case AlignmentOutcome::converged: return;
         case AlignmentOutcome::no_pairs:
-            log_warning(
-                "no pair of points counts: is the guess near enough, and --reach large enough?");
+            log_warning("no pair of points counts: give a better --guess or a larger --reach");
             return;
         case AlignmentOutcome::too_few_points:
             log_warning(
-                "too few points: an alignment needs at least 36 points of the reference that lie "
-                "on "
-                "surfaces and are paired, so that the others contradict a wrong one; give denser "
-                "clouds, or a larger --reach");
+                "too few points: an alignment needs at least 36 reference points that lie on "
+                "surfaces and have a partner. Give denser clouds or a larger --reach");
             return;
         case AlignmentOutcome::no_overlap:
-            log_warning(fmt::format(
-                "the clouds do not overlap: {:.1f} % of the moved points lie where the reference "
-                "has points, at least 5 % must; give --guess, and check the units of both files",
-                100.0 * found.overlap));
+            log_warning(
+                fmt::format("the clouds do not overlap: {:.1f} % of the moved points lie where the "
+                            "reference has points, and at least 5 % are needed. Give --guess, and "
+                            "check the units of both files",
+                            100.0 * found.overlap));
             return;
         case AlignmentOutcome::not_settled:
-            log_warning(fmt::format("not converged in {} iterations: give a better --guess",
+            log_warning(fmt::format("not converged after {} iterations: give a better --guess",
                                     found.steps.size()));
             return;
     }
@@ -130,19 +129,20 @@ void tell_outcome(const geometry::CloudAlignment& found) {
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {
-        log_warning(fmt::format(
-            "{} of 6 directions are held by nothing in the clouds: there the guess stays as it was",
-            found.free_directions));
+        log_warning(
+            fmt::format("the clouds do not determine {} of 6 directions; in these the initial "
+                        "guess stays unchanged",
+                        found.free_directions));
     }
     if (found.edge_directions > 0) {
-        log_info(fmt::format(
-            "{} of 6 directions are held by edges that end between two points: sigma is that of "
-            "the spacing of the points",
-            found.edge_directions));
+        log_info(
+            fmt::format("only edges determine {} of 6 directions; an edge ends somewhere between "
+                        "two points, so sigma there is the spacing of the points",
+                        found.edge_directions));
     }
     if (found.border_directions > 0) {
         log_info(
-            fmt::format("{} of 6 directions are held by no surface, but by where both clouds end",
+            fmt::format("no surface determines {} of 6 directions; the borders of both clouds do",
                         found.border_directions));
     }
 }
@@ -186,16 +186,16 @@ int icp(const IcpOptions& options) {
         fmt::print("{}", matrix_text(found.T_reference_moved));
         const geometry::AlignmentStep& last = found.steps.back();
         fmt::print(
-            "after {} iterations: {} pairs, {:.2f} mm across the surface (rms), {:.2f} mm to the "
-            "nearest point; {}\n",
+            "after {} iterations: {} pairs, {:.2f} mm from the surface (rms), {:.2f} mm from the "
+            "nearest point (rms); {}\n",
             found.steps.size(),
             last.pairs,
             1e3 * last.rms_m,
             1e3 * last.nearest_rms_m,
-            found.converged() ? fmt::format("place and turn to {:.2f} mm and {:.4f} deg",
+            found.converged() ? fmt::format("one sigma {:.2f} mm and {:.4f} deg",
                                             1e3 * found.sigma_m,
                                             found.sigma_rad * 180.0 / M_PI)
-                              : "this is no answer");
+                              : "not converged: do not use this result");
         tell_shift(shift_m);
     }
     return found.converged() ? kExitOk : kExitFailed;
@@ -204,42 +204,49 @@ int icp(const IcpOptions& options) {
 }  // namespace
 
 void add_icp(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<IcpOptions>("icp",
-                              "lays a cloud onto another, to the reference's surfaces; exit 1 "
-                              "where it does not converge",
-                              "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
-                              "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply",
-                              icp,
-                              Reads::no_settings);
-    verb.option("reference", o.reference, "stays where it is").required().value("REFERENCE");
-    verb.option("moved", o.moved, "is laid onto it").required().value("MOVED");
+    auto [verb, o] = verbs.add<IcpOptions>(
+        "icp",
+        "align one point cloud to the surfaces of another (ICP); exit code 1 = not converged",
+        "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
+        "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply",
+        icp,
+        Reads::no_settings);
+    verb.option("reference", o.reference, "reference point cloud; it stays where it is")
+        .required()
+        .value("REFERENCE");
+    verb.option("moved", o.moved, "point cloud that is moved to fit the reference")
+        .required()
+        .value("MOVED");
     verb.option("--guess",
                 o.guess,
-                "where the moved cloud is by eye: a file with the 4x4 matrix to the "
-                "reference, or metres and degrees (default: where it is)")
+                "initial pose of the moved cloud: a file with the 4x4 matrix from the moved cloud "
+                "to the reference, or x, y, z in m and yaw in deg (default: no motion)")
         .value("FILE|X,Y,Z,YAW");
     verb.option("--trim",
                 o.kept_share,
-                "share of the pairs that counts, nearest first; below 1 where the clouds do "
-                "not cover each other (default 1)")
+                "share of the point pairs that count, nearest first (default 1); use a smaller "
+                "share if the clouds overlap only in part")
         .value("SHARE")
         .in(0.01, 1.0);
-    verb.option("--reach", o.reach_m, "pairs farther apart do not count (default: all do)")
+    verb.option("--reach",
+                o.reach_m,
+                "largest distance of a pair that counts, in m (default: no limit)")
         .value("M")
         .positive();
     verb.option("--points",
                 o.most_points,
-                "of the moved cloud that are used, taken evenly (default 100000)")
+                "number of points of the moved cloud to use, evenly spread (default 100000)")
         .value("N")
         .in(100, 100000000);
     verb.flag("--surfaces-alone",
               o.surfaces_alone,
-              "where no surface holds a direction, leave the guess: do not look at where both "
-              "clouds end");
-    verb.option("--out", o.out_file, "the moved cloud in its new place: PLY, PCD or XYZ")
-        .value("F.ply");
-    verb.option("--transform", o.transform_file, "the 4x4 matrix as text").value("F.txt");
+              "keep the initial guess in each direction that no surface determines; without this "
+              "option the borders of both clouds determine it");
+    verb.option("--out", o.out_file, "aligned point cloud: PLY, PCD or XYZ").value("F.ply");
+    verb.option("--transform",
+                o.transform_file,
+                "text file for the 4x4 matrix from the moved cloud to the reference")
+        .value("F.txt");
 }
 
 }  // namespace surefoot::app

@@ -38,7 +38,7 @@ int info_of_camera(const InfoOptions& options) {
                    control.min,
                    control.max,
                    control.step,
-                   control.writable ? "" : ", not settable now");
+                   control.writable ? "" : ", cannot be set now");
     }
     return kExitOk;
 }
@@ -63,13 +63,13 @@ int info(const InfoOptions& options) {
                i.rate_hz,
                static_cast<double>(i.bytes) * 1e-6);
     if (i.announced_frames && *i.announced_frames != i.frames) {
-        fmt::print("the container announces {} frames, {} of them can be decoded\n",
+        fmt::print("the container announces {} frames; {} of them can be decoded\n",
                    *i.announced_frames,
                    i.frames);
     }
     if (!i.incomplete.empty()) fmt::print("incomplete: {}\n", i.incomplete);
     if (i.pair_tolerance_s > 0.0) {
-        fmt::print("pairs: stamps differ by up to {:.3f} ms, {:g} ms are allowed\n",
+        fmt::print("pairs: time stamps differ by up to {:.3f} ms; the limit is {:g} ms\n",
                    1e3 * i.largest_pair_difference_s,
                    1e3 * i.pair_tolerance_s);
     }
@@ -80,11 +80,12 @@ int info(const InfoOptions& options) {
                i.unpaired,
                i.missing_images,
                i.first_missing.empty() ? "" : fmt::format(" (first: {})", i.first_missing));
-    fmt::print("stamps that do not grow: {}, IMU: {} samples at {:.1f} Hz, ground truth: {}\n",
-               i.bad_stamps,
-               i.imu_samples,
-               i.imu_rate_hz,
-               i.has_truth ? "yes" : "no");
+    fmt::print(
+        "time stamps that do not increase: {}, IMU: {} samples at {:.1f} Hz, ground truth: {}\n",
+        i.bad_stamps,
+        i.imu_samples,
+        i.imu_rate_hz,
+        i.has_truth ? "yes" : "no");
     fmt::print("left camera {}x{}, baseline {:.1f} mm\n",
                i.rig.left.width,
                i.rig.left.height,
@@ -97,14 +98,19 @@ int info(const InfoOptions& options) {
 void add_info(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<InfoOptions>("info",
-                               "what a recording holds: frames, rate, gaps, rig, IMU; what a live "
-                               "camera (v4l2:DEVICE) can do: modes, controls",
+                               "show the contents of a recording (frames, rate, gaps, rig, IMU), "
+                               "or the modes and controls of a live camera (v4l2:DEVICE)",
                                "surefoot info out/floor_recording --json",
                                info,
                                Reads::no_settings);
     add_reading(verb, o.reading);
-    verb.option("source", o.source, "as for run").required().value("SOURCE");
-    verb.option("--rig", o.rig_file, "calibration").value("FILE");
+    verb.option("source", o.source, "the source; see 'surefoot run --help'")
+        .required()
+        .value("SOURCE");
+    verb.option("--rig",
+                o.rig_file,
+                "calibration file, or name of a built-in rig; replaces that of the recording")
+        .value("FILE");
 }
 
 }  // namespace surefoot::app

@@ -138,7 +138,7 @@ int map_export(const MapExportOptions& options) {
     if (options.common.json) {
         print_answer(map_export_json(region, out.files, options.out_dir));
     } else {
-        fmt::print("{} of {} cells known, {} files in {}/\n",
+        fmt::print("{} of {} cells known; {} files written to {}/\n",
                    region.known_cells(),
                    region.height_m.size(),
                    out.files.size(),
@@ -152,13 +152,15 @@ int map_export(const MapExportOptions& options) {
 void add_map_export(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<MapExportOptions>("export",
-                                    "every layer as .asc, the cells as a cloud, pictures of "
-                                    "elevation and sigma",
+                                    "write every layer as .asc, the cells as a point cloud, and "
+                                    "pictures of elevation and its standard deviation",
                                     "surefoot map export out/modelled/floor.region --out "
                                     "out/floor_map",
                                     map_export,
                                     Reads::no_settings);
-    verb.option("file", o.file, "of run --save-map").required().value("FILE");
+    verb.option("file", o.file, "saved map, written by 'surefoot run --save-map'")
+        .required()
+        .value("FILE");
     verb.option("--out", o.out_dir, "folder for the files").required().value("DIR");
 }
 

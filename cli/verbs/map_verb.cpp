@@ -34,11 +34,12 @@ struct MapMergeOptions {
 
 void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     for (const std::string& layer : map.skipped_layers) {
-        log_warning(fmt::format("{}: layer {} is of version {}.{} and is left out",
-                                file,
-                                layer,
-                                io::kMapFileMajor,
-                                map.minor));
+        log_warning(fmt::format(
+            "{}: layer {} belongs to the newer version {}.{} of the format and is left out",
+            file,
+            layer,
+            io::kMapFileMajor,
+            map.minor));
     }
 }
 
@@ -49,7 +50,8 @@ Result<Matrix6> motion_covariance(const std::string& text) {
     if (!sigma) return sigma.error();
     const auto [horizontal_m, vertical_m, angle_deg] = *sigma;
     if (horizontal_m < 0.0 || vertical_m < 0.0 || angle_deg < 0.0)
-        return usage_error(fmt::format("--motion-sigma {}: no sigma is negative", text));
+        return usage_error(
+            fmt::format("--motion-sigma {}: a standard deviation must not be negative", text));
     const double angle_rad = angle_deg * kRadPerDeg;
     Vector6 sigmas;
     sigmas << horizontal_m, horizontal_m, vertical_m, angle_rad, angle_rad, angle_rad;
@@ -68,8 +70,8 @@ Status pay_for_the_way(const Matrix6& covariance,
     const grid::MapRegion& younger = first_is_older ? second : first;
     if (covariance.isZero(0.0)) {
         log_warning(fmt::format(
-            "{}: its variances are as seen {:.3f} s before those of the other map, and nothing is "
-            "added for the way between; say how well that is known with --motion-sigma",
+            "{}: this map is {:.3f} s older than the other one, and its variances do not include "
+            "the motion between them; give the uncertainty of this motion with --motion-sigma",
             first_is_older ? options.first : options.second,
             seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
         return {};
@@ -95,14 +97,15 @@ int map_info(const MapInfoOptions& options) {
                r.box.ny,
                r.resolution_m,
                r.known_cells());
-    fmt::print("in frame {} of the run that began at {:.3f} s, from ({:.3f}, {:.3f}) m on\n",
-               r.frame,
-               seconds_from_ns(r.frame_since_ns),
-               origin_m.x(),
-               origin_m.y());
     fmt::print(
-        "as known at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; "
-        "settings {:016x}\n",
+        "in frame {} of the run that began at {:.3f} s; first corner at ({:.3f}, {:.3f}) m\n",
+        r.frame,
+        seconds_from_ns(r.frame_since_ns),
+        origin_m.x(),
+        origin_m.y());
+    fmt::print(
+        "saved at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; settings "
+        "{:016x}\n",
         seconds_from_ns(r.stamp_ns),
         body_m.x(),
         body_m.y(),
@@ -143,7 +146,7 @@ int map_merge(const MapMergeOptions& options) {
     if (options.common.json) {
         print_answer(map_merge_json(merged, *counts, options.out_file));
     } else {
-        fmt::print("{} cells known in {}: {} of the second map alone, {} agreed, {} disagreed\n",
+        fmt::print("{} cells known in {}: {} only in the second map, {} agreed, {} disagreed\n",
                    merged.known_cells(),
                    options.out_file,
                    counts->taken,
@@ -156,35 +159,38 @@ int map_merge(const MapMergeOptions& options) {
 }  // namespace
 
 void add_map_info(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<MapInfoOptions>("info",
-                                               "what a saved map holds, and of which run",
-                                               "surefoot map info out/modelled/floor.region --json",
-                                               map_info,
-                                               Reads::no_settings);
-    verb.option("file", o.file, "of run --save-map").required().value("FILE");
+    auto [verb, o] =
+        verbs.add<MapInfoOptions>("info",
+                                  "show the contents of a saved map and the run that made it",
+                                  "surefoot map info out/modelled/floor.region --json",
+                                  map_info,
+                                  Reads::no_settings);
+    verb.option("file", o.file, "saved map, written by 'surefoot run --save-map'")
+        .required()
+        .value("FILE");
 }
 
 void add_map_merge(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<MapMergeOptions>("merge",
-                                   "two maps of one run, or of one frame, as one map",
+                                   "merge two maps of one run, or of one frame, into one map",
                                    "surefoot map merge out/modelled/floor.region "
                                    "out/modelled/floor.region --out out/modelled/both.region",
                                    map_merge);
-    verb.option("first", o.first, "a saved map").required().value("A");
-    verb.option("second", o.second, "another; which comes first does not matter")
+    verb.option("first", o.first, "first saved map").required().value("A");
+    verb.option("second", o.second, "second saved map; the order does not matter")
         .required()
         .value("B");
-    verb.option("--out", o.out_file, "the merged map").required().value("C");
+    verb.option("--out", o.out_file, "file for the merged map").required().value("C");
     verb.option("--motion-sigma",
                 o.motion_sigma,
-                "one sigma of the way from the older map's pose to the younger's, for which "
-                "the older one's cells pay: horizontal and vertical in metres, angle in "
-                "degrees")
+                "standard deviation of the motion from the older map's pose to the newer one: "
+                "horizontal and vertical in m, angle in deg (default 0,0,0). It is added to the "
+                "variances of the older map")
         .value("H,V,DEG");
     verb.flag("--independent",
               o.independent,
-              "the maps are of two runs, and you know that their odom is the same place: "
+              "the maps come from two runs, and you know that their odom frames are the same; "
               "heights that agree are averaged");
 }
 

@@ -34,7 +34,9 @@ Result<eval::DoorPlace> parse_door(const std::string& text,
     const auto xyyaw = parse_three_numbers("--door", text, "x,y,yaw (m, m, deg)");
     if (!xyyaw) return xyyaw.error();
     if (heights.levels.empty()) {
-        return input_error("--door: no level surface was found to count heights of the jambs from");
+        return input_error(
+            "--door: the cloud has no level surface, so the heights of the door frame have no "
+            "zero; give a cloud that shows the floor");
     }
     return eval::DoorPlace{Eigen::Vector2d((*xyyaw)[0], (*xyyaw)[1]) - shift_m.head<2>(),
                            kRadPerDeg * (*xyyaw)[2],
@@ -53,12 +55,12 @@ Status keep_box(const std::string& text, io::ShiftedCloud& cloud) {
         return (xy_m.array() < low_m.array()).any() || (xy_m.array() > high_m.array()).any();
     });
     if (!cloud.points_m.empty()) return {};
-    return usage_error(fmt::format("--box {}: no point of the cloud lies in it", text));
+    return usage_error(fmt::format("--box {}: the box contains no point of the cloud", text));
 }
 
 void print_repeated(const char* what, const eval::Repeated& r) {
     if (r.values_m.empty()) return;
-    fmt::print("{}: {:.1f} +- {:.1f} mm, scatter {:.1f} mm, {} of them\n",
+    fmt::print("{}: {:.1f} +- {:.1f} mm, scatter {:.1f} mm, number {}\n",
                what,
                1e3 * r.mean_m,
                1e3 * r.std_error_m,
@@ -73,7 +75,7 @@ void print_figures(const eval::HeightHistogram& heights,
     if (heights.levels.empty()) fmt::print("no level surface\n");
     for (const eval::Level& level : heights.levels) {
         fmt::print(
-            "level at {:.4f} m: {} points, {:.1f} mm across its plane (rms), tilt {:.2f} deg\n",
+            "level at {:.4f} m: {} points, {:.1f} mm from its plane (rms), tilt {:.2f} deg\n",
             level.height_m + shift_m.z(),
             level.points,
             1e3 * level.rms_m,
@@ -105,7 +107,9 @@ int measure_cloud(const MeasureOptions& options) {
         if (!door) return report(door.error());
         door_width_m = eval::door_width_m(cloud->points_m, *door);
         if (!*door_width_m)
-            log_warning("--door: nothing stands within 3 m on one side, or too few points do");
+            log_warning(
+                "--door: one side of the doorway has too few points within 3 m; check the position "
+                "and the direction");
     }
     if (!options.histogram_file.empty()) {
         const auto status = io::write_file(
@@ -124,26 +128,34 @@ int measure_cloud(const MeasureOptions& options) {
 }  // namespace
 
 void add_measure(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<MeasureOptions>("measure",
-                                  "level surfaces of a cloud (z up) by the histogram of its "
-                                  "heights: heights and planes, risers and goings of a straight "
-                                  "flight, the width of a door",
-                                  "surefoot measure out/stairs_10mm.ply --histogram "
-                                  "out/heights.svg --json",
-                                  measure_cloud,
-                                  Reads::no_settings);
-    verb.option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ; map.ply of a run")
+    auto [verb, o] = verbs.add<MeasureOptions>(
+        "measure",
+        "measure the level surfaces of a point cloud (z up) with the histogram of its heights: "
+        "heights and planes, risers and goings of a straight flight, the width of a door",
+        "surefoot measure out/stairs_10mm.ply --histogram "
+        "out/heights.svg --json",
+        measure_cloud,
+        Reads::no_settings);
+    verb.option("cloud",
+                o.cloud,
+                "point cloud: PLY, PCD, LAS, VTK or XYZ, for example map.ply of a run")
         .required()
         .value("CLOUD");
     verb.option("--door",
                 o.door,
-                "a place in a doorway and the way through it, metres and degrees: its clear "
-                "width")
+                "position in a doorway in m, and the walking direction through it in deg: measures "
+                "its clear width")
         .value("X,Y,YAW");
-    verb.option("--box", o.box, "what is looked at, from above: two corners").value("X0,Y0,X1,Y1");
-    verb.option("--bin", o.bin_m, "of the histogram (default 0.005)").value("M").in(1e-4, 0.05);
-    verb.option("--histogram", o.histogram_file, "picture of the heights").value("F.svg");
+    verb.option(
+            "--box",
+            o.box,
+            "rectangle to measure, seen from above: two corners, in m (default: the whole cloud)")
+        .value("X0,Y0,X1,Y1");
+    verb.option("--bin", o.bin_m, "bin width of the histogram, in m (default 0.005)")
+        .value("M")
+        .in(1e-4, 0.05);
+    verb.option("--histogram", o.histogram_file, "file for the picture of the histogram")
+        .value("F.svg");
 }
 
 }  // namespace surefoot::app

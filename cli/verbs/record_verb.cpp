@@ -60,17 +60,21 @@ int record(const RecordOptions& options) {
 void add_record(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<RecordOptions>("record",
-                                 "writes any source as a recording (EuRoC layout)",
+                                 "record any source to a folder in EuRoC layout",
                                  "surefoot record sim:floor --max-frames 4 --out out/copy",
                                  record);
-    verb.option("source", o.source, "as for run").required().value("SOURCE");
+    verb.option("source", o.source, "see 'surefoot run --help'").required().value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the recording").required().value("DIR");
     add_reading(verb, o.reading);
     add_skip_broken(verb, o.reading);
-    verb.option("--rig", o.rig_file, "calibration").value("FILE");
-    verb.option("--imu", o.imu_file, "as for run").value("FILE");
-    verb.option("--rate", o.rate_hz, "frame rate of a source without stamps").in(0.01, 1000.0);
-    verb.option("--max-frames", o.max_frames, "stop after this many frames").positive();
+    verb.option("--rig",
+                o.rig_file,
+                "calibration file, or name of a built-in rig; replaces that of the source")
+        .value("FILE");
+    verb.option("--imu", o.imu_file, "see 'surefoot run --help'").value("FILE");
+    verb.option("--rate", o.rate_hz, "frame rate of a source without time stamps, in Hz")
+        .in(0.01, 1000.0);
+    verb.option("--max-frames", o.max_frames, "stop after this number of frames").positive();
 }
 
 }  // namespace surefoot::app

@@ -131,7 +131,7 @@ int replay(const ReplayOptions& options) {
     if (options.common.json) {
         print_answer(replay_json(seen, options.speed, late, (*source)->info()));
     } else {
-        fmt::print("{} frames at {:g} times real time, {} late (odometry only)\n{}",
+        fmt::print("{} frames at {:g} times real time; {} were late and got odometry only\n{}",
                    seen.size(),
                    options.speed,
                    late,
@@ -145,16 +145,24 @@ int replay(const ReplayOptions& options) {
 void add_replay(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<ReplayOptions>("replay",
-                                 "plays a recording at its own speed and prints what is seen",
+                                 "play a recording in real time and print the result of each frame",
                                  "surefoot replay out/floor_recording --speed 20",
                                  replay);
-    verb.option("source", o.source, "as for run").required().value("SOURCE");
+    verb.option("source", o.source, "the source; see 'surefoot run --help'")
+        .required()
+        .value("SOURCE");
     add_reading(verb, o.reading);
     add_skip_broken(verb, o.reading);
-    verb.option("--rig", o.rig_file, "calibration").value("FILE");
-    verb.option("--machine", o.machine, "machine file or built-in name; sets the camera mount")
+    verb.option("--rig",
+                o.rig_file,
+                "calibration file, or name of a built-in rig; replaces that of the source")
+        .value("FILE");
+    verb.option("--machine",
+                o.machine,
+                "machine file, or name of a built-in machine; sets the camera mount")
         .value("FILE|NAME");
-    verb.option("--speed", o.speed, "times real time").in(0.01, 1000.0);
+    verb.option("--speed", o.speed, "playback speed as a factor of real time (default 1)")
+        .in(0.01, 1000.0);
 }
 
 }  // namespace surefoot::app

@@ -93,7 +93,7 @@ bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
 /// the plain name.
 int rex_link_verb(const RexLinkOptions& options) {
     if (options.keys == !options.script_file.empty())
-        return report(usage_error("rex-link: either --script FILE or --keys is needed"));
+        return report(usage_error("rex-link: give either --script FILE or --keys"));
     const auto gate = rex_link::parse_gate_url(options.url);
     if (!gate) return report(usage_error("--url: " + gate.error().message));
     auto tones = TonePlayer::open(options.tones_dir);
@@ -104,7 +104,9 @@ int rex_link_verb(const RexLinkOptions& options) {
         const auto access = gate_process::read_tokens(options.token_file);
         if (!access) return report(access.error());
         if (access->rider.empty())
-            return report(usage_error(options.token_file + ": no line with a rider's token"));
+            return report(usage_error(options.token_file +
+                                      ": the file has no line with a rider's token; "
+                                      "give the token file of surefoot serve"));
         config.gate.show_token(access->rider);
     }
     config.link.step_duration_ns = ns_from_seconds(options.step_s);
@@ -130,7 +132,10 @@ int rex_link_verb(const RexLinkOptions& options) {
     });
     if (options.common.json) print_answer(rex_link_json(options.url, rows));
     if (nobody_to_ask(rows)) {
-        log_error(fmt::format("no gate answered at {}: every movement was inhibited", options.url));
+        log_error(
+            fmt::format("no gate answered at {}, so every movement was inhibited; start surefoot "
+                        "serve or surefoot-gate, or correct --url",
+                        options.url));
         return kExitFailed;
     }
     return kExitOk;
@@ -141,29 +146,39 @@ int rex_link_verb(const RexLinkOptions& options) {
 void add_rex_link(VerbGroup verbs) {
     auto [verb, o] = verbs.add<RexLinkOptions>(
         "rex-link",
-        "plays the REX beside the machine: asks the gate about each movement of the "
-        "joystick, twice, and moves on the second OK; exit 1 where no gate listens",
+        "act as the controller of a REX: ask the gate twice about each movement of the joystick "
+        "and move after the second OK; exit code 1 = no gate listens",
         "surefoot rex-link --url ws://127.0.0.1:9090 --script "
         "service/rex_link/example_joystick.txt --tones service/rex_link/tones",
         rex_link_verb,
         Reads::no_settings);
-    verb.option("--url", o.url, "of the gate's service: address in numbers or localhost")
+    verb.option("--url",
+                o.url,
+                "address of the gate: numbers or localhost (default ws://127.0.0.1:9090)")
         .value("ws://ADDRESS[:PORT][/PATH]");
     verb.option("--token-file",
                 o.token_file,
-                "shows the rider's token of this file (of surefoot serve), which keeps a slot")
+                "token file of surefoot serve; the rider's token in it keeps a connection slot at "
+                "the gate")
         .value("FILE");
     const Option script = verb.option(
-        "--script", o.script_file, "lines 'time_s code', or joystick.csv of a simulated walk");
+        "--script",
+        o.script_file,
+        "file of joystick codes: lines 'time_s code', or joystick.csv of a simulated walk");
     script.value("FILE");
-    verb.flag(
-            "--keys", o.keys, "keyboard: arrows or w a s d step, q and e turn, space rests, x ends")
+    verb.flag("--keys",
+              o.keys,
+              "steer with the keyboard: arrows or w a s d = step, q and e = turn, space = rest, x "
+              "= end")
         .excludes(script);
     verb.option("--tones",
                 o.tones_dir,
-                "folder of the tones (tools/tones), which are played where there is an aplay")
+                "folder of the tone files (made by tools/tones); they are played with the program "
+                "aplay, if it is installed")
         .value("DIR");
-    verb.option("--step-time", o.step_s, "how long a movement takes").value("S").in(0.01, 60.0);
+    verb.option("--step-time", o.step_s, "duration of a movement, in s (default 10)")
+        .value("S")
+        .in(0.01, 60.0);
 }
 
 }  // namespace surefoot::app

@@ -35,9 +35,7 @@ Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
                              sides.size() == 2 ? side(sides[1]) : 0};
     if (size.width > 0 && size.height > 0) return std::optional(size);
     return usage_error(
-        fmt::format("--resolution '{}': expected WIDTHxHEIGHT in pixels, each 2 .. "
-                    "16384",
-                    text));
+        fmt::format("--resolution '{}': expected WIDTHxHEIGHT in px, each from 2 to 16384", text));
 }
 
 /// Reads the rig of a file, at the requested image size.
@@ -52,8 +50,8 @@ Result<io::RigFile> load(const RigOptions& options) {
     }
     if (file->rig.left.width != (*size)->width) {
         file->notes.push_back(
-            fmt::format("scaled from {} x {} px; right only if the images show "
-                        "the whole picture",
+            fmt::format("scaled from {} x {} px; this is correct only if the images show the whole "
+                        "field of view",
                         file->rig.left.width,
                         file->rig.left.height));
     }
@@ -99,7 +97,7 @@ void print_summary(const RigOptions& options, const io::RigFile& file) {
     print_camera("left", rig.left);
     if (!rig.right) return;
     print_camera("right", *rig.right);
-    fmt::print("baseline {:.3f} mm, cameras turned {:.3f} deg against each other, images {}\n",
+    fmt::print("baseline {:.3f} mm, rotation between the cameras {:.3f} deg, images {}\n",
                1e3 * rig.T_left_right.translation_m.norm(),
                log_so3(rig.T_left_right.rotation).norm() * 180.0 / std::numbers::pi,
                rig.rectified ? "rectified" : "not rectified");
@@ -124,7 +122,7 @@ int rig(const RigOptions& options) {
         written = std::move(files).value();
         const std::vector<std::string> lost = io::lost_in(format, file->rig);
         if (!lost.empty()) {
-            log_warning(fmt::format("{} files have no place for {}: left out",
+            log_warning(fmt::format("{} files cannot store {}; it is left out",
                                     io::name_of(format),
                                     fmt::join(lost, ", ")));
         }
@@ -141,13 +139,13 @@ int rig(const RigOptions& options) {
 }  // namespace
 
 void add_rig(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<RigOptions>("rig",
-                              "checks a calibration file, shows it, writes it in any format",
-                              "surefoot rig out/floor_recording --as kalibr --out "
-                              "out/camchain.yaml",
-                              rig,
-                              Reads::no_settings);
+    auto [verb, o] = verbs.add<RigOptions>(
+        "rig",
+        "check a calibration file, print it, and convert it to another format",
+        "surefoot rig out/floor_recording --as kalibr --out "
+        "out/camchain.yaml",
+        rig,
+        Reads::no_settings);
     verb.option(
             "file",
             o.file,
@@ -156,18 +154,17 @@ void add_rig(VerbGroup verbs) {
             "calib.txt, EuRoC folder")
         .required()
         .value("FILE");
-    const Option out = verb.option("--out",
-                                   o.out,
-                                   "what to write; for ros a folder, or the "
-                                   "left file")
-                           .value("FILE");
-    verb.option("--as", o.format, "format to write")
+    const Option out =
+        verb.option(
+                "--out", o.out, "file to write; for ros a folder, or the file of the left camera")
+            .value("FILE");
+    verb.option("--as", o.format, "format of the written file (default surefoot)")
         .one_of({"surefoot", "opencv", "kalibr", "ros", "zed"})
         .needs(out);
     verb.option("--resolution",
                 o.resolution,
-                "size of the images: picks it from a ZED file, scales others if the shape is the "
-                "same")
+                "size of the images, in px: selects the entry of a ZED file, and scales other "
+                "files if the aspect ratio is the same")
         .value("WxH");
 }
 

@@ -83,14 +83,15 @@ int run(const RunOptions& options) {
         print_answer(run_json(record, *pipeline, written));
     } else {
         fmt::print("{}", run_summary(record, *pipeline));
-        if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);
+        if (written) fmt::print("results in {0}/; open {0}/report.html first\n", options.out_dir);
     }
     // The run and the writing may both have failed. Each error is reported once; the error of the
     // run decides the exit code.
     if (!written) {
-        log_error(fmt::format("{}; {} holds only a part of the results: make room and run again",
-                              written.error().message,
-                              options.out_dir));
+        log_error(
+            fmt::format("{}; {} contains only a part of the results: free disk space and run again",
+                        written.error().message,
+                        options.out_dir));
     }
     if (!record.complete()) return report(*record.error);
     return written ? kExitOk : kExitFailed;
@@ -101,7 +102,7 @@ int run(const RunOptions& options) {
 void add_run(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<RunOptions>("run",
-                              "the whole chain over a recording, video or simulated scene",
+                              "run the whole chain on a recording, a video or a simulated scene",
                               "surefoot run sim:floor --max-frames 8 --out out/floor\n"
                               "  surefoot run sim:floor --max-frames 8 --set "
                               "sim.sensor=analytic --out out/modelled --save-map "
@@ -109,38 +110,45 @@ void add_run(VerbGroup verbs) {
                               run);
     verb.option("source",
                 o.source,
-                "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE, "
-                "v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
+                "EuRoC or KITTI folder, folder or video of side-by-side images, TUM RGB-D folder, "
+                "sim:SCENE, or v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
         .required()
         .value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the results").required().value("DIR");
-    verb.option("--rig", o.rig_file, "calibration that replaces the recording's own").value("FILE");
+    verb.option("--rig",
+                o.rig_file,
+                "calibration file, or name of a built-in rig; replaces that of the recording")
+        .value("FILE");
     verb.option("--imu",
                 o.imu_file,
-                "EuRoC imu csv, or a FIFO of such rows; stamps as those of the frames "
-                "(CLOCK_MONOTONIC of a live camera)")
+                "EuRoC IMU csv, or a FIFO of such rows; its time stamps use the clock of the "
+                "frames (CLOCK_MONOTONIC for a live camera)")
         .value("FILE");
-    verb.option("--machine", o.machine, "machine file or built-in name; sets the camera mount")
+    verb.option("--machine",
+                o.machine,
+                "machine file, or name of a built-in machine; sets the camera mount")
         .value("FILE|NAME");
-    verb.option("--rate", o.rate_hz, "frame rate of a source without stamps")
+    verb.option("--rate", o.rate_hz, "frame rate of a source without time stamps, in Hz")
         .value("HZ")
         .in(0.01, 1000.0);
-    verb.option("--max-frames", o.max_frames, "stop after this many frames").positive();
+    verb.option("--max-frames", o.max_frames, "stop after this number of frames").positive();
     add_reading(verb, o.reading);
     add_skip_broken(verb, o.reading);
-    verb.option("--depth-every",
-                o.depth_every,
-                "depth and map on every n-th frame; odometry runs on all")
+    verb.option(
+            "--depth-every",
+            o.depth_every,
+            "compute depth and map on every n-th frame only (default 1); odometry uses all frames")
         .in(1, 1000);
     verb.flag("--layers", o.all_layers, "write every layer of the map");
     verb.option("--save-map",
                 o.save_map,
-                "file for the map as it is at the end, to merge and export with 'map'")
+                "file for the map at the end of the run, for 'surefoot map merge' and 'surefoot "
+                "map export'")
         .value("F.region");
     verb.option("--place",
                 o.place,
-                "file that remembers a place: recognised, extended and written again; begun "
-                "where there is none")
+                "place database: the run recognises the place, extends the database and writes it "
+                "again; a missing file is created")
         .value("F.place");
 }
 

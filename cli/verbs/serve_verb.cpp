@@ -102,7 +102,8 @@ class Channel {
         next_ns_ = now_ns + kMendEvery_ns;
         const auto mended = writer.mend();
         if (mended && *mended)
-            log_warning(fmt::format("the snapshot channel was made anew: {}", **mended));
+            log_warning(
+                fmt::format("the snapshot channel was damaged and is repaired: {}", **mended));
         if (!mended && mended.error().message != told_) log_error(mended.error().message);
         told_ = mended ? "" : mended.error().message;
     }
@@ -130,8 +131,7 @@ Status be_nice(int niceness) {
     }
     if (refusal == 0) return {};
     return usage_error(
-        fmt::format("service.niceness: {} is refused by the system: {}; end serve and start it "
-                    "with --nice {}",
+        fmt::format("service.niceness: the system refuses {}: {}; restart serve with --nice {}",
                     niceness,
                     std::strerror(refusal),
                     niceness));
@@ -233,7 +233,8 @@ class PageService {
         if (!server) return server.error();
         service->server_ = std::move(server).value();
         if (options.page_port != 0 && service->server_->port() != options.page_port)
-            log_warning(fmt::format("port {} is taken", options.page_port));
+            log_warning(fmt::format("port {} is in use; the page uses the next free one",
+                                    options.page_port));
         return service;
     }
     PageService(const PageService&) = delete;
@@ -358,10 +359,10 @@ void Service::look_after(GateChild& gate, Channel& channel) {
     const auto started = gate.watch(steady_now_ns());
     if (!started) log_error(started.error().message);
     if (!started || !*started) return;
-    log_warning(fmt::format(
-        "the gate process ended and was started again ({} times now); nothing is allowed until it "
-        "is ready",
-        gate.restarts()));
+    log_warning(
+        fmt::format("the gate process ended and was restarted ({} restarts so far); no movement is "
+                    "allowed until it is ready",
+                    gate.restarts()));
     tell_where(gate);
 }
 
@@ -472,7 +473,7 @@ Status Service::perceive(std::unique_ptr<camera::FrameSource> source,
         const auto end = perceive_anew(*source, writer);
         if (!end) return end.error();
         if (*end == LiveSession::End::restart_wanted) {
-            log_warning("the gate was re-armed: map and odom begin anew");
+            log_warning("the gate was re-armed: the map and the odom frame start again");
         } else {
             const auto frame = next_jump(*end);
             if (!frame) return {};
@@ -562,9 +563,9 @@ Status Service::apply(const ServiceConfig& wanted) {
 Result<std::string> Service::change(const page::SettingWish& wish) {
     auto changed = service_settings_->change(wish);
     if (changed) {
-        log_info(fmt::format("{} is {} now (a page asked)", wish.key, *changed));
+        log_info(fmt::format("{} is now {} (a page asked for it)", wish.key, *changed));
     } else {
-        log_warning(fmt::format("{} (a page asked)", changed.error().message));
+        log_warning(fmt::format("{} (a page asked for it)", changed.error().message));
     }
     return changed;
 }
@@ -575,13 +576,14 @@ Status Service::steer(camera::FrameSource& source,
                       std::uint16_t gate_port) {
     if (options_.walk.empty() && !options_.joystick) return {};
     if (!options_.walk.empty() && options_.joystick)
-        return usage_error("either --walk or --joystick steers, not both");
+        return usage_error("give either --walk or --joystick, not both");
     if (options_.joystick && options_.no_page)
-        return usage_error("--joystick: without the page there is nobody to steer");
+        return usage_error("--joystick needs the page; remove --no-page");
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
     if (scene == nullptr || !scene->commanded())
         return usage_error(
-            "--walk and --joystick steer a simulated scene (sim:SCENE), no other source");
+            "--walk and --joystick steer a simulated scene (sim:SCENE) only; no other source can "
+            "be steered");
     std::unique_ptr<Walker> walker;
     if (options_.joystick) {
         walker = page_walker(page_->controls().steering);
@@ -661,7 +663,7 @@ int serve(const ServeOptions& options) {
     if (!model) return report(model.error());
     if (options.no_page && !options.record_dir.empty()) {
         return report(
-            usage_error("--record-dir: without the page there is nobody to begin a recording"));
+            usage_error("--record-dir needs the page, which starts a recording; remove --no-page"));
     }
     if (!options.out_dir.empty()) {
         if (auto made = io::make_folder(options.out_dir); !made) return report(made.error());
@@ -678,64 +680,77 @@ int serve(const ServeOptions& options) {
 void add_serve(VerbGroup verbs) {
     auto [verb, o] = verbs.add<ServeOptions>(
         "serve",
-        "the whole chain, live, with the gate process beside it that answers over a "
-        "WebSocket (docs/reference/rosbridge.md)",
+        "run the whole chain live, with the gate process beside it, which answers over a WebSocket "
+        "(docs/reference/rosbridge.md)",
         "surefoot serve sim:walk_floor --vouch 1 --walk 9,9 --port 0 --once "
         "--set sim.sensor=analytic",
         serve);
-    verb.option("source", o.source, "as for run").required();
-    verb.option("--rig", o.rig_file, "calibration, where the source has none").value("FILE");
-    verb.option("--machine", o.machine, "machine file, or a built-in name").show_default();
+    verb.option("source", o.source, "the source; see 'surefoot run --help'").required();
+    verb.option("--rig",
+                o.rig_file,
+                "calibration file, or name of a built-in rig, if the source has none")
+        .value("FILE");
+    verb.option("--machine", o.machine, "machine file, or name of a built-in machine")
+        .show_default();
     verb.option("--model",
                 o.model,
-                "what the machine looks like on the page: a model file or a built-in name; "
-                "unless given the built-in one of the machine's name")
+                "model of the machine for the page: a model file or a built-in name (default: the "
+                "built-in model with the name of the machine)")
         .value("FILE|NAME");
     add_reading(verb, o.reading);
     add_skip_broken(verb, o.reading);
-    verb.option("--rate", o.rate_hz, "frames per second of a source without stamps").value("HZ");
-    verb.option("--max-frames", o.max_frames, "ends after so many").value("N");
+    verb.option("--rate", o.rate_hz, "frame rate of a source without time stamps, in Hz")
+        .value("HZ");
+    verb.option("--max-frames", o.max_frames, "stop after this number of frames").value("N");
     verb.option("--speed",
                 o.speed,
-                "times real time; 0 = as it comes; unless given 1 for recordings and with "
-                "--joystick, and 0 for simulated scenes")
+                "playback speed as a factor of real time; 0 = as fast as possible (default: 1 for "
+                "recordings and with --joystick, 0 for simulated scenes)")
         .not_negative()
         .value("X");
-    verb.option("--port", o.port, "of the gate; 0 = any free one").in(0, 65535).show_default();
+    verb.option("--port", o.port, "TCP port of the gate; 0 = any free port")
+        .in(0, 65535)
+        .show_default();
     verb.option("--bind",
                 o.bind_address,
-                "of the gate and the page; beyond loopback everybody needs a token, and the "
-                "service needs --certificate and --key")
+                "network address of the gate and the page; beyond loopback every client needs a "
+                "token, and the service needs --certificate and --key")
         .show_default();
     verb.option("--token-file",
                 o.token_file,
-                "tokens of observer, rider and operator; made at the first start; unless "
-                "given ~/.local/state/surefoot/tokens")
+                "file with the tokens of observer, rider and operator; the first start creates it "
+                "(default ~/.local/state/surefoot/tokens)")
         .value("FILE");
     verb.option("--guests",
                 o.guests,
-                "what a client without a token is: none, observer, rider; unless given rider "
-                "on loopback, none beyond")
+                "role of a client without a token: none, observer or rider (default: rider on "
+                "loopback, none beyond)")
         .one_of({"none", "observer", "rider"})
         .value("ROLE");
-    verb.option("--certificate", o.certificate_file, "for TLS: certificate chain (PEM)")
-        .value("FILE");
-    verb.option("--key", o.key_file, "for TLS: private key (PEM), rights 0600").value("FILE");
+    verb.option("--certificate", o.certificate_file, "TLS: certificate chain (PEM)").value("FILE");
+    verb.option("--key", o.key_file, "TLS: private key (PEM), file mode 0600").value("FILE");
     verb.option("--insecure",
                 o.insecure,
-                "beyond loopback without TLS: a sentence, which the error says")
+                "allow networks beyond loopback without TLS; TEXT is a confirmation sentence that "
+                "the error message quotes")
         .value("TEXT");
     verb.option("--origin",
                 o.origins,
-                "web pages of this origin may ask the gate, as http://192.0.2.7:8000, null or "
-                "file://; the page may be reached there, too")
+                "web pages of this origin may ask the gate, for example http://192.0.2.7:8000, "
+                "null or file://; the page is served under this origin too")
         .value("URL");
-    verb.option("--audit", o.audit_dir, "folder of the gate's audit log").value("DIR");
-    verb.flag("--assured", o.assured, "no OK while the audit log cannot be written");
-    verb.option("--audit-mb", o.audit_mb, "of that folder; then the oldest logs go")
+    verb.option("--audit", o.audit_dir, "folder for the audit log of the gate").value("DIR");
+    verb.flag(
+        "--assured", o.assured, "the gate never answers OK while it cannot write the audit log");
+    verb.option(
+            "--audit-mb",
+            o.audit_mb,
+            "largest size of the audit folder, in MB; beyond it the gate deletes the oldest logs")
         .positive()
         .value("MB");
-    verb.option("--max-rate", o.max_rate_hz, "messages of a client of the gate in a second")
+    verb.option("--max-rate",
+                o.max_rate_hz,
+                "largest number of messages per second of one client of the gate")
         .positive()
         .value("HZ");
     verb.option("--vouch",
@@ -747,43 +762,46 @@ void add_serve(VerbGroup verbs) {
         .value("M");
     verb.option("--walk",
                 o.walk,
-                "steers a simulated REX: joystick codes like 9,9,17,25*6, each asked for "
-                "through the gate by a REX link")
+                "steer a simulated REX with joystick codes such as 9,9,17,25*6; a REX link asks "
+                "the gate about each code")
         .value("CODES");
     verb.flag("--joystick",
               o.joystick,
-              "whoever looks at the page steers a simulated REX, through the gate by a REX "
-              "link");
-    verb.option("--out", o.out_dir, "a picture of every movement that was asked for").value("DIR");
-    verb.option("--channel", o.channel, "file in shared memory for the maps").value("FILE");
-    verb.option("--channel-key",
-                o.channel_key,
-                "file with the key of the maps, for a surefoot-gate that you start yourself: "
-                "32 hexadecimal digits, rights 600; else a new key at every start")
+              "steer a simulated REX from the page; a REX link asks the gate about each movement");
+    verb.option("--out", o.out_dir, "folder for a picture of each requested movement").value("DIR");
+    verb.option("--channel",
+                o.channel,
+                "file in shared memory that passes the maps to the gate (default: a new file)")
+        .value("FILE");
+    verb.option(
+            "--channel-key",
+            o.channel_key,
+            "file with the key of the map channel, for a surefoot-gate that you start yourself: 32 "
+            "hexadecimal digits, file mode 600 (default: a new key at every start)")
         .value("FILE");
     verb.option("--nice",
                 o.niceness,
-                "how far perception stands back so that the gate answers in time "
-                "(setpriority)")
+                "niceness of perception (see setpriority), so that the gate answers in time")
         .in(0, 19)
         .show_default()
         .value("N");
     verb.option("--page-port",
                 o.page_port,
-                "of the live page; where it is taken the next free one; 0 = any")
+                "TCP port of the live page; if it is in use, the next free one; 0 = any free port")
         .in(0, 65535)
         .show_default();
     verb.option("--foxglove-origin",
                 o.foxglove_origins,
-                "Foxglove may look from there, too, as https://app.foxglove.dev or file://; "
-                "nobody steers from there")
+                "origin from which Foxglove may read, for example https://app.foxglove.dev or "
+                "file://; steering is not allowed from there")
         .value("URL");
-    verb.flag("--no-page", o.no_page, "the gate alone, nothing for browsers");
+    verb.flag("--no-page", o.no_page, "run the gate only, without the page for browsers");
     verb.option("--record-dir",
                 o.record_dir,
-                "pages may record what the source delivers, each time into a new folder of it")
+                "allow pages to record the source; each recording is a new folder in DIR")
         .value("DIR");
-    verb.flag("--once", o.once, "ends with the source or the walk; pages cannot go back");
+    verb.flag(
+        "--once", o.once, "stop at the end of the source or of the walk; pages cannot go back");
 }
 
 }  // namespace surefoot::app

@@ -193,16 +193,17 @@ Copied record_frames(const SimOptions& options, sim::SceneSource& source, io::Re
 int simulate(const SimOptions& options) {
     if (options.list) return list(options);
     if (options.scene.empty() || (options.out_dir.empty() && options.scan_file.empty())) {
-        return report(
-            usage_error("sim: a scene and --out (or --scan) are needed; 'surefoot sim --list' "
-                        "shows the scenes"));
+        return report(usage_error(
+            "sim: give a scene and --out (or --scan); 'surefoot sim --list' shows the scenes"));
     }
     if (!options.scan_file.empty()) return scan(options);
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
-    if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
+    if (!*machine)
+        return report(
+            usage_error("--machine: give a machine file, or the name of a built-in machine"));
     const auto executor = make_executor(options.common);
     auto source = open_simulation({options.scene,
                                    options.rig,
@@ -224,7 +225,8 @@ int simulate(const SimOptions& options) {
         if (!truth && !copied.error) copied.error = truth.error();
     }
     if (const int known = (*source)->known_frames(); known > 0)
-        log_info(fmt::format("{} of {} frames were there already", known, copied.frames));
+        log_info(
+            fmt::format("{} of {} frames already existed and were kept", known, copied.frames));
     if (options.common.json) {
         print_answer(copied_json(copied, options.out_dir));
     } else {
@@ -240,53 +242,63 @@ int simulate(const SimOptions& options) {
 }  // namespace
 
 void add_sim(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<SimOptions>("sim",
-                              "writes a simulated recording with its ground truth, or laser "
-                              "scans of a scene",
-                              "surefoot sim floor --frames 4 --out out/floor_recording\n"
-                              "  surefoot sim floor --frames 2 --set "
-                              "sim.sensor=depth_camera --out out/floor_rgbd\n"
-                              "  surefoot sim demo_stairs --scan out/stairs.ply --set "
-                              "sim.laser.step_deg=1",
-                              simulate);
-    verb.option("scene", o.scene, "which scene; see --list; or a scene file: my/scene.yaml[#NAME]")
+    auto [verb, o] = verbs.add<SimOptions>(
+        "sim",
+        "write a simulated recording with its ground truth, or laser scans of a scene",
+        "surefoot sim floor --frames 4 --out out/floor_recording\n"
+        "  surefoot sim floor --frames 2 --set "
+        "sim.sensor=depth_camera --out out/floor_rgbd\n"
+        "  surefoot sim demo_stairs --scan out/stairs.ply --set "
+        "sim.laser.step_deg=1",
+        simulate);
+    verb.option(
+            "scene", o.scene, "name of a scene (see --list), or a scene file: my/scene.yaml[#NAME]")
         .value("SCENE");
     const Option out =
         verb.option("--out",
                     o.out_dir,
-                    "folder for the recording; the same call goes on with one that was "
-                    "interrupted")
+                    "folder for the recording; a repeated call continues an interrupted recording")
             .value("DIR");
-    verb.option("--frames", o.frames, "stop after this many frames").positive();
-    verb.option("--rate", o.rate_hz, "frame rate").value("HZ").in(0.1, 1000.0);
-    verb.option("--rig", o.rig, "calibration file, or name of a built-in rig; doctor lists them")
+    verb.option("--frames", o.frames, "stop after this number of frames").positive();
+    verb.option("--rate", o.rate_hz, "frame rate, in Hz").value("HZ").in(0.1, 1000.0);
+    verb.option("--rig",
+                o.rig,
+                "calibration file, or name of a built-in rig ('surefoot doctor' lists them)")
         .value("FILE|NAME");
-    verb.option("--machine", o.machine, "whose steps are judged for safety.csv").value("FILE|NAME");
-    verb.flag("--depth", o.depth, "write the exact depth of every frame too (PFM, 1 MB each)");
-    verb.flag("--list", o.list, "print the scenes; with --out also pictures of each, index.html");
+    verb.option(
+            "--machine", o.machine, "machine whose steps are judged for safety.csv (default rex)")
+        .value("FILE|NAME");
+    verb.flag(
+        "--depth", o.depth, "also write the exact depth of every frame (PFM, about 1 MB each)");
+    verb.flag("--list",
+              o.list,
+              "print the names of the scenes; with --out also write pictures of each scene and "
+              "index.html");
     const Option scan =
         verb.option("--scan",
                     o.scan_file,
-                    "no recording but terrestrial laser scans, all points in the world frame; "
-                    "up to 850 MB a station unless sim.laser.step_deg is larger")
+                    "write terrestrial laser scans instead of a recording, all points in the world "
+                    "frame; up to 850 MB per station unless sim.laser.step_deg is larger")
             .value("F.ply|DIR")
             .excludes(out);
     verb.option("--station",
                 o.stations,
-                "where the scanner stands; may be repeated (default: as the scene says, or "
-                "1.6 m above the start of the path)")
+                "position of the scanner, in m; repeat the option for more stations (default: as "
+                "in the scene, or 1.6 m above the start of the path)")
         .value("X,Y,Z")
         .one_value_each()
         .needs(scan);
     const Option tile =
-        verb.option("--tile",
-                    o.tile_m,
-                    "the scan becomes a folder of square tiles with this side, and index.json")
+        verb.option(
+                "--tile",
+                o.tile_m,
+                "write the scan as a folder of square tiles with this side, in m, and index.json")
             .value("M")
             .in(0.5, 1000.0)
             .needs(scan);
-    verb.option("--tile-format", o.tile_format, "of the tiles").one_of({"ply", "pcd"}).needs(tile);
+    verb.option("--tile-format", o.tile_format, "format of the tiles (default ply)")
+        .one_of({"ply", "pcd"})
+        .needs(tile);
 }
 
 }  // namespace surefoot::app

@@ -81,10 +81,10 @@ Result<Written> write_kept(const SorOptions& options,
 int sor(const SorOptions& options) {
     const int others = options.counting == "others" ? options.neighbours : options.neighbours - 1;
     if (others < 1) {
-        return report(usage_error(
-            fmt::format("--neighbours {}: the point itself is one of them, so that 2 are the "
-                        "fewest; or add --counting others",
-                        options.neighbours)));
+        return report(
+            usage_error(fmt::format("--neighbours {}: give at least 2, because the point itself is "
+                                    "one of them; or add --counting others",
+                                    options.neighbours)));
     }
     const auto executor = make_executor(options.common);
     auto cloud = io::read_shifted(options.cloud);
@@ -105,8 +105,8 @@ int sor(const SorOptions& options) {
         return kExitOk;
     }
     fmt::print(
-        "{} points of {} kept{}: {} neighbours beside the point itself lie {:.2f} mm away on "
-        "average (standard deviation {:.2f} mm), at most {:.2f} mm of what is kept; in {}\n",
+        "{} points of {} kept{}. Mean distance to the {} nearest neighbours: {:.2f} mm on average "
+        "(standard deviation {:.2f} mm), limit {:.2f} mm. Written to {}\n",
         written->points,
         points + cloud->skipped,
         cloud->skipped == 0 ? "" : fmt::format(" ({} are not finite)", cloud->skipped),
@@ -122,15 +122,18 @@ int sor(const SorOptions& options) {
 }  // namespace
 
 void add_sor(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<SorOptions>("sor",
-                              "statistical outlier removal: what lies farther from its "
-                              "neighbours than is usual in the cloud",
-                              "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
-                              sor,
-                              Reads::no_settings);
-    verb.option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ").required().value("CLOUD");
-    verb.option("--neighbours", o.neighbours, "that are averaged (default 7)")
+    auto [verb, o] = verbs.add<SorOptions>("sor",
+                                           "statistical outlier removal: remove points whose mean "
+                                           "distance to their neighbours is unusually large",
+                                           "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
+                                           sor,
+                                           Reads::no_settings);
+    verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ")
+        .required()
+        .value("CLOUD");
+    verb.option("--neighbours",
+                o.neighbours,
+                "number of neighbours K whose distances are averaged (default 7)")
         .value("K")
         .in(1, 1000);
     verb.option("--counting",
@@ -139,11 +142,14 @@ void add_sor(VerbGroup verbs) {
                 "others: it is not, as in PCL")
         .value("self|others")
         .one_of({"self", "others"});
-    verb.option(
-            "--sigmas", o.sigmas, "standard deviations above the mean that are kept (default 4)")
+    verb.option("--sigmas",
+                o.sigmas,
+                "limit: number of standard deviations above the mean distance (default 4)")
         .value("S")
         .in(0.0, 1e6);
-    verb.option("--out", o.out_file, "PLY, PCD or XYZ; colours and values are kept")
+    verb.option("--out",
+                o.out_file,
+                "file for the remaining points: PLY, PCD or XYZ; colours and values are kept")
         .required()
         .value("F.ply");
 }

@@ -35,7 +35,7 @@ struct Found {
 eval::Overlays stance_of(const TerrainMap& map) {
     eval::Overlays drawn;
     drawn.T_odom_body = map.T_odom_body;
-    if (!map.T_odom_body) drawn.marks = {{map.stance_m, "seen from here"}};
+    if (!map.T_odom_body) drawn.marks = {{map.stance_m, "position of the machine"}};
     return drawn;
 }
 
@@ -48,12 +48,8 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
                                                found.features,
                                                drawn,
                                                {"Edges and stairs", options.terrain.map}));
-    const auto classes_png =
-        eval::encode_png(eval::render_classes(map.geometry,
-                                              map.height_m,
-                                              found.classes,
-                                              drawn,
-                                              {"What the ground is", options.terrain.map}));
+    const auto classes_png = eval::encode_png(eval::render_classes(
+        map.geometry, map.height_m, found.classes, drawn, {"Ground classes", options.terrain.map}));
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: stairs of {}", options.terrain.map);
     content.summary.push_back(features_count_text(found.features));
@@ -61,11 +57,11 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
         content.summary.push_back(note);
     for (const std::string& sentence : map.assumed)
         content.summary.push_back("assumed: " + sentence);
-    content.sections.push_back({"What the ground is",
+    content.sections.push_back({"Ground classes",
                                 {{"Edges, flights, drops, kerbs and doors", stairs_png},
                                  {"The class of each cell", classes_png}},
                                 {features_table(found.features)}});
-    content.footer = "The same for programs: stairs.json; the settings: config.yaml.";
+    content.footer = "Machine-readable results: stairs.json. Settings: config.yaml.";
     Writes writes;
     writes += io::write_file(options.out_dir + "/stairs.png", stairs_png);
     writes += io::write_file(options.out_dir + "/classes.png", classes_png);
@@ -135,37 +131,40 @@ int stairs(const StairsOptions& options) {
 }  // namespace
 
 void add_stairs(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<StairsOptions>("stairs",
-                                 "flights, drops, kerbs, sills, doors and edges of a height map",
-                                 "surefoot stairs out/floor --out out/floor_edges\n"
-                                 "  surefoot stairs out/stairs.ply --from 0,0 --json",
-                                 stairs);
+    auto [verb, o] = verbs.add<StairsOptions>(
+        "stairs",
+        "find flights, drops, kerbs, sills, doors and edges in a height map",
+        "surefoot stairs out/floor --out out/floor_edges\n"
+        "  surefoot stairs out/stairs.ply --from 0,0 --json",
+        stairs);
     verb.option("map",
                 o.terrain.map,
-                "folder of a run (better with --layers), ESRI ASCII grid, PNG with --scale and "
-                "--height, or a cloud with z up (.ply, .pcd, .xyz)")
+                "output folder of 'surefoot run' (best with --layers), ESRI ASCII grid, PNG with "
+                "--scale and --height, or point cloud with z up (.ply, .pcd, .xyz)")
         .required()
         .value("DEM|CLOUD|FOLDER");
     verb.option("--out", o.out_dir, "folder for stairs.json, treads.asc and the pictures")
         .value("DIR");
-    verb.option("--from",
-                o.terrain.from,
-                "where one stands [m]: what goes down from there is a drop; by default "
-                "base_link of a run, else the origin, else the border with the smallest x")
+    verb.option(
+            "--from",
+            o.terrain.from,
+            "position of the machine, in m; an edge that goes down from there is a drop (default: "
+            "base_link of a run, else the origin, else the border with the smallest x)")
         .value("X,Y");
-    verb.option("--scale", o.terrain.scale_m_per_px, "PNG: metres per pixel").value("M").positive();
-    verb.option("--height", o.terrain.height_m, "PNG: height of the brightest value")
+    verb.option("--scale", o.terrain.scale_m_per_px, "PNG: size of a pixel, in m")
         .value("M")
         .positive();
-    verb.option("--resolution", o.terrain.resolution_m, "cloud: side of a cell")
+    verb.option("--height", o.terrain.height_m, "PNG: height of the brightest value, in m")
+        .value("M")
+        .positive();
+    verb.option("--resolution", o.terrain.resolution_m, "cloud: side of a cell, in m")
         .value("M")
         .positive();
     verb.option(
-            "--min-height", o.terrain.lowest_z_m, "cloud: points lower than this z are left out")
+            "--min-height", o.terrain.lowest_z_m, "cloud: leave out the points below this z, in m")
         .value("M");
     verb.option(
-            "--max-height", o.terrain.highest_z_m, "cloud: points higher than this z are left out")
+            "--max-height", o.terrain.highest_z_m, "cloud: leave out the points above this z, in m")
         .value("M");
 }
 

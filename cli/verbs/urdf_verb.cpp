@@ -38,16 +38,17 @@ int urdf(const UrdfOptions& options) {
 }  // namespace
 
 void add_urdf(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<UrdfOptions>("urdf",
-                               "what a machine looks like, as a URDF, from its model file",
-                               "surefoot urdf rex --out out/rex.urdf",
-                               urdf,
-                               Reads::no_settings);
-    verb.option("model", o.model, "model file (docs/reference/model_file.md), or a built-in name")
+    auto [verb, o] = verbs.add<UrdfOptions>("urdf",
+                                            "write the model of a machine as a URDF file",
+                                            "surefoot urdf rex --out out/rex.urdf",
+                                            urdf,
+                                            Reads::no_settings);
+    verb.option("model",
+                o.model,
+                "model file (docs/reference/model_file.md), or name of a built-in model")
         .required()
         .value("FILE|NAME");
-    verb.option("--out", o.out_file, "the URDF; without it stdout has it").value("FILE");
+    verb.option("--out", o.out_file, "file for the URDF (default: stdout)").value("FILE");
 }
 
 }  // namespace surefoot::app

@@ -20,12 +20,11 @@ void add_all_verbs(VerbGroup program) {
     add_gate(program);
     add_rex_link(program);
     add_serve(program);
-    add_audit(program.group("audit",
-                            "logs of verdicts: are they whole, and right?",
-                            "surefoot audit verify out/audit"));
+    add_audit(program.group(
+        "audit", "check and replay audit logs of verdicts", "surefoot audit verify out/audit"));
 
     const VerbGroup eval = program.group("eval",
-                                         "measure results against ground truth",
+                                         "compare results with the ground truth",
                                          "surefoot eval trajectory out/floor/trajectory.tum "
                                          "out/floor_recording/groundtruth.tum --json");
     add_eval_trajectory(eval);
@@ -40,7 +39,7 @@ void add_all_verbs(VerbGroup program) {
 
     const VerbGroup calibrate =
         program.group("calibrate",
-                      "lenses and rigs from images of a board",
+                      "calibrate cameras and rigs from images of a board",
                       "surefoot calibrate render --board charuco:8x5:0.03:0.022 "
                       "--rig zed_vga --views 12 --out out/boards");
     add_calibrate_render(calibrate);
@@ -48,7 +47,7 @@ void add_all_verbs(VerbGroup program) {
     add_calibrate_stereo(calibrate);
 
     const VerbGroup map = program.group("map",
-                                        "saved elevation maps: look, merge, export",
+                                        "show, merge and export saved elevation maps",
                                         "surefoot map info out/modelled/floor.region");
     add_map_info(map);
     add_map_merge(map);

@@ -26,7 +26,7 @@ int voxel(const VoxelOptions& options) {
         print_answer(voxel_json(*thinned, options.size_m, options.out_file));
         return kExitOk;
     }
-    fmt::print("{} points of {} left, one for each voxel of {:g} m, in {}\n",
+    fmt::print("{} points of {} remain, one for each voxel of {:g} m; written to {}\n",
                thinned->voxels,
                thinned->points,
                options.size_m,
@@ -38,18 +38,24 @@ int voxel(const VoxelOptions& options) {
 }  // namespace
 
 void add_voxel(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<VoxelOptions>("voxel",
-                                "one point for each voxel of a cloud of any size: their mean",
-                                "surefoot voxel out/stairs.ply --size 0.01 --out "
-                                "out/stairs_10mm.ply",
-                                voxel,
-                                Reads::no_settings);
-    verb.option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ").required().value("CLOUD");
-    verb.option("--size", o.size_m, "side of a voxel; borders lie on its multiples (default 0.001)")
+    auto [verb, o] = verbs.add<VoxelOptions>(
+        "voxel",
+        "reduce a point cloud of any size to one point for each voxel, the mean of its points",
+        "surefoot voxel out/stairs.ply --size 0.01 --out "
+        "out/stairs_10mm.ply",
+        voxel,
+        Reads::no_settings);
+    verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ")
+        .required()
+        .value("CLOUD");
+    verb.option("--size",
+                o.size_m,
+                "side of a voxel, in m (default 0.001); the voxel borders lie on its multiples")
         .value("M")
         .in(1e-5, 1e3);
-    verb.option("--out", o.out_file, "PLY, PCD or XYZ; places alone, ordered by x, y, z")
+    verb.option("--out",
+                o.out_file,
+                "file for the points: PLY, PCD or XYZ; positions only, ordered by x, y, z")
         .required()
         .value("F.ply");
 }

@@ -24,8 +24,8 @@ Result<std::array<double, N>> parse_numbers(const std::string& option,
                                ? std::nullopt
                                : io::parse_double(text.substr(begin, end - begin));
         if (!value || !std::isfinite(*value)) {
-            return usage_error(fmt::format(
-                "{} '{}': {} finite numbers {} are needed", option, text, count, meaning));
+            return usage_error(
+                fmt::format("{} '{}': give {} finite numbers {}", option, text, count, meaning));
         }
         values[i] = *value;
         begin = end + 1;

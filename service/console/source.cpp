@@ -65,14 +65,14 @@ Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& requ
     if (!address) return address.error();
     if (request.rate_hz > 0.0) {
         return usage_error(
-            fmt::format("--rate: a live camera has its own; write {}{}@WIDTHxHEIGHT@{:g}",
+            fmt::format("--rate: a live camera has its own rate; write {}{}@WIDTHxHEIGHT@{:g}",
                         kLivePrefix,
                         address->device,
                         request.rate_hz));
     }
     if (request.rig_file.empty()) {
         return usage_error(request.source +
-                           ": a live camera needs its calibration: --rig rig.yaml");
+                           ": a live camera needs its calibration; give --rig rig.yaml");
     }
     const auto rig = read_noted_rig(request.rig_file);
     if (!rig) return rig.error();

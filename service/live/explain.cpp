@@ -56,7 +56,7 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
 /// camera saw from a distance.
 eval::Dots hanging(const View& view, const grid::MapSnapshot& map) {
     eval::Dots dots;
-    dots.label = "something hangs";
+    dots.label = "overhang";
     dots.color = {255, 255, 255};
     const double resolution_m = view.geometry.resolution_m;
     for (int iy = 0; iy < map.ny; ++iy) {
@@ -121,16 +121,18 @@ Status write_explanation(const std::string& file,
                                                         m.cos_turn,
                                                         m.sin_turn);
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
-            overlays.outlines.push_back(outline(*foot, T_odom_target, kLanding, "feet landing"));
+            overlays.outlines.push_back(
+                outline(*foot, T_odom_target, kLanding, "feet after the step"));
         }
         for (const BodyPart& part : machine.body.all())
-            overlays.outlines.push_back(outline(part.box, T_odom_target, kBody, "body landing"));
+            overlays.outlines.push_back(
+                outline(part.box, T_odom_target, kBody, "body after the step"));
     }
     if (verdict.evidence.has_worst_cell) {
         overlays.marks.push_back(
             {{kTenthMm_m * static_cast<double>(verdict.evidence.worst_x_tenth_mm),
               kTenthMm_m * static_cast<double>(verdict.evidence.worst_y_tenth_mm)},
-             "this decided"});
+             "deciding cell"});
     }
     eval::LayerStyle style = eval::elevation_style();
     style.text = {fmt::format("Command {}: {}", query.command, to_string(verdict.decision)), text};

@@ -56,14 +56,14 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
                 fmt::format("{}: cannot make this folder: {}", folder, error.message()));
         }
     }
-    return output_error(fmt::format("{}: is there already, and so are others like it", name));
+    return output_error(fmt::format(
+        "{}: this folder and others of this name already exist; try again in a second", name));
 }
 
 /// Why a source cannot be recorded; empty if it can.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
-    if (config.record_dir.empty()) return "serve was started without --record-dir DIR";
-    if (source.modelled_depth)
-        return "sim.sensor = analytic makes no images that could be recorded";
+    if (config.record_dir.empty()) return "restart serve with --record-dir DIR";
+    if (source.modelled_depth) return "sim.sensor = analytic makes no images to record";
     return {};
 }
 
@@ -160,10 +160,11 @@ Result<io::Recorder> FrameRecorder::open(std::string& folder) const {
     if (auto made = io::make_folder(config_.record_dir); !made) return made.error();
     const auto free = io::free_bytes(config_.record_dir);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(fmt::format("{}: the disk has {} left, and {} stay free",
-                                        config_.record_dir,
-                                        megabytes(*free),
-                                        megabytes(config_.reserve_bytes)));
+        return output_error(
+            fmt::format("{}: the disk has {} free, and {} must stay free; free disk space",
+                        config_.record_dir,
+                        megabytes(*free),
+                        megabytes(config_.reserve_bytes)));
     }
     auto made = new_folder(config_.record_dir, config_.utc_now());
     if (!made) return made.error();
@@ -185,7 +186,7 @@ void FrameRecorder::record() {
         last_taken_ns_.reset();
         taking_ = end_ == End::none;
     }
-    log_info(fmt::format("recording to {} (a page asked)", state_.folder));
+    log_info(fmt::format("recording to {} (a page asked for it)", state_.folder));
     tell(page::RecordingStage::recording);
     Status written;
     while (const auto frame = next_frame()) {
@@ -209,8 +210,8 @@ std::optional<StereoFrame> FrameRecorder::next_frame() {
 Status FrameRecorder::write(const StereoFrame& frame, io::Recorder& recorder) {
     const auto free = io::free_bytes(state_.folder);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(fmt::format("the disk is full but for the {} that stay free",
-                                        megabytes(config_.reserve_bytes)));
+        return output_error(
+            fmt::format("the disk is full: {} must stay free", megabytes(config_.reserve_bytes)));
     }
     if (auto added = recorder.add(frame); !added) return added;
     if (state_.frames == 0) first_stamp_ns_ = frame.time_ns;
@@ -237,7 +238,7 @@ void FrameRecorder::tell(page::RecordingStage stage, std::string text) {
 std::string FrameRecorder::reason_in_words() {
     const std::lock_guard lock(mutex_);
     switch (end_) {
-        case End::went_back: return "; the source went back in time, and a recording cannot";
+        case End::went_back: return "; the source went back in time, so the recording ended";
         case End::source_ended: return "; the source has ended";
         case End::service_ended: return "; the service has ended";
         case End::none:
@@ -263,11 +264,12 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
                                    state_.folder,
                                    outcome ? reason_in_words() : "; " + outcome.error().message);
     if (state_.left_out > 0)
-        text += fmt::format("; {} were left out, because the disk was too slow", state_.left_out);
+        text += fmt::format("; {} frames were left out, because the disk was too slow",
+                            state_.left_out);
     if (state_.frames == 0) {  // we created the folder, and it holds no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);
-        text = outcome ? "no frame came, so nothing was kept" : outcome.error().message;
+        text = outcome ? "no frame arrived, so there is no recording" : outcome.error().message;
     }
     if (outcome) {
         log_info("recorded " + text);

@@ -212,7 +212,7 @@ TEST_F(FrameRecorderTest, WithoutAFrameNothingIsLeft) {
     begin();
     EXPECT_TRUE(fs::exists(recorded()));
     ASSERT_TRUE(desk_.ask({false}));
-    EXPECT_NE(wait_for(RecordingStage::ready).text.find("no frame came"), std::string::npos);
+    EXPECT_NE(wait_for(RecordingStage::ready).text.find("no frame arrived"), std::string::npos);
     EXPECT_FALSE(fs::exists(recorded()));
 }
 

@@ -29,7 +29,7 @@ Result<std::string> find_program() {
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
     const auto gate = self.parent_path() / "surefoot-gate";
     if (::access(gate.c_str(), X_OK) == 0) return gate.string();
-    return input_error("the program surefoot-gate is not beside " + self.string());
+    return input_error("the program surefoot-gate is missing in the folder of " + self.string());
 }
 
 /// Longest time until the gate has written its first line. After it the start has failed.
@@ -122,11 +122,11 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     // key.
     int line[2];
     if (::pipe2(output, O_CLOEXEC) != 0)
-        return input_error("the gate process cannot be started: no pipe");
+        return input_error("the gate process cannot be started: the system gives no pipe");
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
         ::close(output[0]);
         ::close(output[1]);
-        return input_error("the gate process cannot be started: no socket pair");
+        return input_error("the gate process cannot be started: the system gives no socket pair");
     }
     arguments.insert(arguments.end(), {"--parent-fd", std::to_string(line[1])});
     std::vector<char*> words{program_.data()};
@@ -150,7 +150,7 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     }
     process_ = -1;
     hang_up();
-    return input_error("the gate process did not start (its reason is above): " + program_);
+    return input_error("the gate process did not start (see its message above): " + program_);
 }
 
 Result<bool> GateChild::watch(std::int64_t now_ns) {

@@ -38,8 +38,8 @@ Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                           add(script, words[1], "0");
         if (!understood) {
             return input_error(
-                fmt::format("{}:{}: {}: a time in seconds, not before that of the line before, and "
-                            "a code from 0 to 255 are needed, or time_s,end_s,command",
+                fmt::format("{}:{}: {}: give a time in s, not before that of the previous line, "
+                            "and a code from 0 to 255; or time_s,end_s,command",
                             name,
                             lines.number(),
                             io::quoted(line)));

@@ -29,7 +29,7 @@ std::string size_text(const GreyImage& image) {
 Status check_sizes(const StereoFrame& frame, const std::optional<camera::StereoRig>& rig) {
     if (frame.left.width() != frame.right.width() || frame.left.height() != frame.right.height()) {
         return input_error(fmt::format(
-            "the images differ in size: left {}, right {} px; one stereo pair has one size",
+            "the images differ in size: left {}, right {} px; give two images of one size",
             size_text(frame.left),
             size_text(frame.right)));
     }
@@ -61,9 +61,8 @@ stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities)
 Status refuse_swapped(const stereo::PairCheck& check) {
     if (!check.swapped()) return {};
     return input_error(
-        fmt::format("left and right seem to be exchanged: {} of {} corners lie farther right in "
-                    "the right image "
-                    "than in the left one; give the images the other way round",
+        fmt::format("left and right camera seem to be swapped: {} of {} corners lie farther right "
+                    "in the right image than in the left one; swap the two images",
                     check.backward,
                     check.matched));
 }
@@ -71,16 +70,16 @@ Status refuse_swapped(const stereo::PairCheck& check) {
 std::string row_problem(const stereo::PairCheck& check, bool has_rig) {
     if (!check.enough()) {
         return fmt::format(
-            "only {} of {} corners were found again within {} rows; whether the pair is "
-            "rectified cannot be told",
+            "only {} of {} corners were found again within {} rows, so the rectification of the "
+            "pair cannot be checked",
             check.matched,
             check.corners,
             kFarRows_px);
     }
     if (check.row_error_px <= kMaxRowError_px) return {};
     return fmt::format(
-        "rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; "
-        "limit {}): {}, or what they show is nearer than stereo.disparities reaches (raise it)",
+        "rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; limit {}): {}, or the "
+        "objects are nearer than stereo.disparities allows (raise it)",
         check.row_error_px,
         check.matched,
         check.row_offset_px,
@@ -107,8 +106,7 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
     const GreyImage& right = measured.pair.right;
     if (left.width() <= config.stereo.disparities) {
         return input_error(fmt::format(
-            "images of {} px are too narrow for stereo.disparities = {}: nothing in them "
-            "could be matched; set fewer",
+            "images of {} px are too narrow for stereo.disparities = {}; set a smaller value",
             size_text(left),
             config.stereo.disparities));
     }

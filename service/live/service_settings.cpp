@@ -45,29 +45,31 @@ void ServiceConfig::describe(ConfigVisitor& visitor) {
                    map_hz,
                    kLeast_hz,
                    page::PageWish::kMaxMap_hz,
-                   "maps that a page is sent in a second at most");
+                   "largest number of maps per second for one page");
     visitor.number("image_hz",
                    image_hz,
                    kLeast_hz,
                    page::PageWish::kMaxImage_hz,
-                   "pairs of pictures that a page is sent in a second at most");
+                   "largest number of image pairs per second for one page");
     visitor.number("layer_hz",
                    layer_hz,
                    kLeast_hz,
                    page::PageWish::kMaxMap_hz,
-                   "layers that the engineer's view is sent in a second at most");
+                   "largest number of layers per second for the engineer's view");
     visitor.end_group();
     visitor.begin_group("service");
-    visitor.number("speed",
-                   speed,
-                   0.0,
-                   page::PlaybackWish::kFastest,
-                   "of the simulated scene, times real time; 0 = as it comes");
+    visitor.number(
+        "speed",
+        speed,
+        0.0,
+        page::PlaybackWish::kFastest,
+        "speed of the simulated scene as a factor of real time; 0 = as fast as possible");
     visitor.integer("niceness",
                     niceness,
                     0,
                     19,
-                    "how far perception stands back behind the gate; never less than at the start");
+                    "niceness of perception, so that the gate answers in time; never below the "
+                    "value at the start");
     visitor.end_group();
 }
 
@@ -100,11 +102,11 @@ std::vector<page::PageSetting> ServiceSettings::for_pages(const Settings& run) c
 /// that the gate answers in time.
 Status ServiceSettings::check(const ServiceConfig& wanted) const {
     if (wanted.niceness < first_niceness_) {
-        return usage_error(fmt::format(
-            "service.niceness: {} is refused: serve was started with {} (--nice), and perception "
-            "only ever stands further back, so that the gate answers in time",
-            wanted.niceness,
-            first_niceness_));
+        return usage_error(
+            fmt::format("service.niceness: {} is refused: serve was started with {} (--nice), and "
+                        "the niceness may only increase, so that the gate answers in time",
+                        wanted.niceness,
+                        first_niceness_));
     }
     return {};
 }

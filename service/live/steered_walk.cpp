@@ -85,7 +85,9 @@ Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
     const char* const end = at + text.size();
     const auto wrong = [&] {
         return usage_error(
-            fmt::format("--walk {}: wanted are joystick codes like 9,9,17,25*12 (n times)", text));
+            fmt::format("--walk {}: give joystick codes such as 9,9,17,25*12 (25*12 repeats code "
+                        "25 twelve times)",
+                        text));
     };
     while (at != end) {
         unsigned code = 0;

@@ -18,7 +18,8 @@ Result<TonePlayer> TonePlayer::open(const std::string& folder) {
         const std::string file = player.file_of(static_cast<rex_link::Tone>(i));
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(file, ignored))
-            return usage_error(fmt::format("--tones: there is no {}; tools/tones makes it", file));
+            return usage_error(
+                fmt::format("--tones: the file {} is missing; tools/tones creates it", file));
     }
     return player;
 }

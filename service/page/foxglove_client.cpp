@@ -43,16 +43,17 @@ void FoxgloveClient::say(FoxgloveLevel level, const std::string& sentence) {
 }
 
 Status FoxgloveClient::take(bool is_text, std::string_view bytes, std::int64_t now_ns) {
-    if (replies_.size() >= kMostReplies) return input_error("asks, and does not read");
+    if (replies_.size() >= kMostReplies)
+        return input_error("the client sends requests but does not read the replies");
     if (!is_text) {
-        say(FoxgloveLevel::warning, "binary messages of clients are not served");
+        say(FoxgloveLevel::warning, "binary messages of clients are not supported");
         return {};
     }
     const auto request = parse_foxglove_request(bytes);
     if (!request) {
         say(FoxgloveLevel::error, request.error().message);
         if (unreadable_.take(now_ns)) return {};
-        return input_error("too much that cannot be read: " + request.error().message);
+        return input_error("too many unreadable messages: " + request.error().message);
     }
     std::visit([this](const auto& what) { take(what); }, *request);
     return {};
@@ -69,11 +70,11 @@ std::optional<std::string> FoxgloveClient::subscribe(FoxgloveSubscribe::Wish wis
     if (wish.channel == 0 || wish.channel > kFoxgloveChannelCount)
         return fmt::format("subscribe: there is no channel {}", wish.channel);
     if (find(wish.subscription) != nullptr)
-        return fmt::format("subscribe: subscription {} is there already", wish.subscription);
+        return fmt::format("subscribe: subscription {} already exists", wish.subscription);
     Slot& slot = subscriptions_[wish.channel - 1];
     if (slot)
         return fmt::format(
-            "subscribe: channel {} is subscribed to already, as {}", wish.channel, slot->id);
+            "subscribe: channel {} already has subscription {}", wish.channel, slot->id);
     slot = Subscription{wish.subscription, {}, {}};
     return std::nullopt;
 }
@@ -102,7 +103,7 @@ void FoxgloveClient::take(const FoxgloveUnsubscribe& request) {
 
 void FoxgloveClient::take(const FoxgloveUnserved& request) {
     say(FoxgloveLevel::warning,
-        fmt::format("{}: subscribe and unsubscribe are served, nothing else", request.operation));
+        fmt::format("{}: only subscribe and unsubscribe are supported", request.operation));
 }
 
 void FoxgloveClient::send_time(FoxgloveShow& show, std::vector<SocketMessage>& out) {

@@ -184,7 +184,12 @@ stairs::TerrainFeatures features() {
 
 const std::vector<PageSetting> kSettings{
     {"elevation.length_m", "6", "m", "0.1 .. 100", "side of the map", false},
-    {"page.map_hz", "10", "Hz", "0.5 .. 10", "maps that a page is sent in a second at most", true}};
+    {"page.map_hz",
+     "10",
+     "Hz",
+     "0.5 .. 10",
+     "largest number of maps per second for one page",
+     true}};
 const SettingAnswer kRefused{"page.map_hz", false, "10", "page.map_hz: '50' is outside 0.5 .. 10"};
 const RecordingState kRecording{
     RecordingStage::recording, "rec/20261124T134838Z", 150, 2, 61'000'000, 10.0, "a sentence"};

@@ -92,9 +92,9 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
 }
 
 Status read_layers(const Json& names, std::span<const std::string> layers, PageWish& wish) {
-    if (!names.is_array()) return input_error("layers: a list of names is wanted");
+    if (!names.is_array()) return input_error("layers: expected a list of names");
     for (const Json& name : names) {
-        if (!name.is_string()) return input_error("layers: a list of names is wanted");
+        if (!name.is_string()) return input_error("layers: expected a list of names");
         const auto found = std::find(layers.begin(), layers.end(), name.get<std::string>());
         if (found == layers.end())
             return input_error("layers: there is no '" + name.get<std::string>() + "'");
@@ -106,13 +106,13 @@ Status read_layers(const Json& names, std::span<const std::string> layers, PageW
 }
 
 Status read_images(const Json& names, PageWish& wish) {
-    if (!names.is_array()) return input_error("images: a list of names is wanted");
+    if (!names.is_array()) return input_error("images: expected a list of names");
     for (const Json& name : names) {
         const auto found = std::find_if(kImageNames.begin(), kImageNames.end(), [&](const char* n) {
             return name.is_string() && name.get<std::string>() == n;
         });
         if (found == kImageNames.end())
-            return input_error("images: left and disparity are known, not " +
+            return input_error("images: expected left or disparity, not " +
                                gate_process::dump(name));
         wish.images[static_cast<std::size_t>(found - kImageNames.begin())] = true;
     }
@@ -121,13 +121,13 @@ Status read_images(const Json& names, PageWish& wish) {
 
 Status read_rate(const Json& value, const std::string& key, double highest_hz, double& rate_hz) {
     if (!value.is_number() || !(value.get<double>() > 0.0))
-        return input_error(key + ": a number above 0 is wanted");
+        return input_error(key + ": expected a number above 0");
     rate_hz = std::clamp(value.get<double>(), PageWish::kSlowest_hz, highest_hz);
     return {};
 }
 
 Status read_flag(const Json& value, const std::string& key, bool& flag) {
-    if (!value.is_boolean()) return input_error(key + ": true or false is wanted");
+    if (!value.is_boolean()) return input_error(key + ": expected true or false");
     flag = value.get<bool>();
     return {};
 }
@@ -155,14 +155,14 @@ Result<PageRequest> read_setting(const Json& json) {
         return json.contains(key) && json[key].is_string();
     };
     if (json.size() != 3 || !is_text("key") || !is_text("value"))
-        return input_error("set: {\"key\": name, \"value\": text} is wanted");
+        return input_error("set: expected {\"key\": name, \"value\": text}");
     return PageRequest(
         SettingWish{json.at("key").get<std::string>(), json.at("value").get<std::string>()});
 }
 
 Result<PageRequest> read_record(const Json& json) {
     if (json.size() != 2 || !json.contains("on") || !json.at("on").is_boolean())
-        return input_error("record: {\"on\": true or false} is wanted");
+        return input_error("record: expected {\"on\": true or false}");
     return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
@@ -176,7 +176,7 @@ Result<PageRequest> read_joystick(const Json& json) {
     constexpr int kMost = 255;
     const bool fits = json.size() == 2 && json.contains("command");
     const auto command = fits ? read_count(json.at("command"), kMost) : std::nullopt;
-    if (!command) return input_error("joystick: {\"command\": 0 to 255} is wanted, 0 = let go");
+    if (!command) return input_error("joystick: expected {\"command\": 0 to 255}; 0 = release");
     return PageRequest(JoystickWord{static_cast<std::uint8_t>(*command)});
 }
 
@@ -184,16 +184,16 @@ Result<PageRequest> read_playback(const Json& json) {
     PlaybackWish wish;
     const auto read = [&](const std::string& key, const Json& value) -> Status {
         if (key == "paused") {
-            if (!value.is_boolean()) return input_error("paused: true or false is wanted");
+            if (!value.is_boolean()) return input_error("paused: expected true or false");
             wish.paused = value.get<bool>();
         } else if (key == "speed") {
             if (!value.is_number() || !(value.get<double>() > 0.0))
-                return input_error("speed: a number above 0 is wanted");
+                return input_error("speed: expected a number above 0");
             wish.speed =
                 std::clamp(value.get<double>(), PlaybackWish::kSlowest, PlaybackWish::kFastest);
         } else if (key == "frame") {
             wish.frame = read_count(value, std::numeric_limits<int>::max());
-            if (!wish.frame) return input_error("frame: a whole number from 0 on is wanted");
+            if (!wish.frame) return input_error("frame: expected a whole number from 0 on");
         } else {
             return input_error("playback has no key '" + key + "'");
         }
@@ -318,14 +318,14 @@ Result<PageRequest> parse_request(std::string_view text, std::span<const std::st
     const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
-        return input_error("an object with an \"op\" is wanted");
+        return input_error("expected an object with an \"op\"");
     const auto op = json->at("op").get<std::string>();
     if (op == "want") return read_wish(*json, layers);
     if (op == "joystick") return read_joystick(*json);
     if (op == "playback") return read_playback(*json);
     if (op == "set") return read_setting(*json);
     if (op == "record") return read_record(*json);
-    return input_error(fmt::format("no operation '{}'", op));
+    return input_error(fmt::format("there is no operation '{}'", op));
 }
 
 }  // namespace surefoot::page

@@ -283,7 +283,7 @@ void Viewer::start() {
 void Viewer::on_request(error_code error) {
     if (ended_) return;
     if (is_malformed(error))
-        return answer(http::status::bad_request, "text/plain", "this is no request of HTTP\n");
+        return answer(http::status::bad_request, "text/plain", "this is not an HTTP request\n");
     if (error) return end();
     const auto& request = parser_->get();
     const std::string_view target = view(request.target());
@@ -291,8 +291,9 @@ void Viewer::on_request(error_code error) {
     if (!websocket::is_upgrade(request)) {
         const bool head = request.method() == http::verb::head;
         if (!head && request.method() != http::verb::get)
-            return answer(
-                http::status::method_not_allowed, "text/plain", "GET and HEAD are served\n");
+            return answer(http::status::method_not_allowed,
+                          "text/plain",
+                          "only GET and HEAD are supported\n");
         if (gate_process::path_of(target) == kModelPath) return send_model(head);
         return send_file(gate_process::path_of(target), head);
     }
@@ -302,13 +303,15 @@ void Viewer::on_request(error_code error) {
                               ? std::nullopt
                               : foxglove_protocol_of(view(offered->value()));
     if (!is_page && !foxglove)
-        return answer(http::status::not_found,
-                      "text/plain",
-                      "the page's WebSocket is at /page, Foxglove's wants its subprotocol\n");
+        return answer(
+            http::status::not_found,
+            "text/plain",
+            "the WebSocket of the page is at /page; Foxglove must offer its subprotocol\n");
     if (const auto refusal = refuse_socket(foxglove.has_value())) return answer(*refusal);
     if (!sockets_.enter(name_))
-        return answer(
-            http::status::service_unavailable, "text/plain", "too many pages look already\n");
+        return answer(http::status::service_unavailable,
+                      "text/plain",
+                      "too many pages are open; close one and reload\n");
     upgrade(foxglove);
 }
 
@@ -318,7 +321,7 @@ std::optional<Viewer::Refusal> Viewer::refuse_host() {
     const auto [first, last] = request.equal_range(http::field::host);
     if (std::distance(first, last) != 1 || !view(request.target()).starts_with('/'))
         return Refusal{http::status::bad_request,
-                       "a request needs one Host and a path that begins with /\n"};
+                       "a request needs exactly one Host header and a path that begins with /\n"};
     const PageAddress address = sockets_.address();
     if (!is_own_host(address, view(first->value())))
         return Refusal{http::status::misdirected_request, wrong_host_text(address)};
@@ -385,7 +388,7 @@ void Viewer::send_response() {
 void Viewer::send_model(bool head) {
     const auto& machine = sockets_.show.hello.machine;
     if (!machine || machine->urdf.empty())
-        return answer(http::status::not_found, "text/plain", "nobody knows the machine's model\n");
+        return answer(http::status::not_found, "text/plain", "there is no model of this machine\n");
     answer(http::status::ok, "application/xml", head ? std::string() : machine->urdf);
 }
 
@@ -455,7 +458,7 @@ Demand Viewer::demand() const {
 }
 
 void Viewer::take(const PageWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
+    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
     wish_ = wish;
     // Everything wanted is sent again.
     map_.reset();
@@ -465,26 +468,26 @@ void Viewer::take(const PageWish& wish) {
 
 void Viewer::take(const JoystickWord& word) {
     if (!sockets_.show.hello.can_steer)
-        return say_goodbye("joystick: nobody steers this source from a page");
+        return say_goodbye("joystick: pages cannot steer this source");
     // A page that may not hold the joystick learns it from the next "steer" message.
     sockets_.controls.steering.hold(name_, word.command, steady_ns());
 }
 
 void Viewer::take(const PlaybackWish& wish) {
     if (!sockets_.controls.playback.state())
-        return say_goodbye("playback: this source is no recording");
+        return say_goodbye("playback: this source is not a recording");
     sockets_.controls.playback.ask(wish);
     sockets_.tell_status();
 }
 
 void Viewer::take(const SettingWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
+    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
     say(setting_text(sockets_.controls.settings.ask(wish)));
     write();
 }
 
 void Viewer::take(const RecordWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
+    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
     if (!sockets_.controls.recording.ask(wish))
         say_goodbye("record: " + sockets_.controls.recording.state().text);
 }
@@ -775,15 +778,15 @@ std::size_t PageSockets::viewers() const {
 
 const char* PageServerConfig::problem() const {
     if (!gate_process::is_loopback_address(bind_address) && token.empty())
-        return "the page is served beyond this machine with a token alone (--token-file)";
+        return "beyond this machine the page needs a token (--token-file)";
     if (tls.certificate_file.empty() != tls.key_file.empty())
         return "TLS needs both files: --certificate FILE and --key FILE";
     if (!gate_process::is_loopback_address(bind_address) && tls.empty() &&
         insecure != gate_process::kInsecureSentence)
-        return "the page is served beyond this machine with TLS alone (--certificate FILE --key "
-               "FILE), or without it in words (--insecure)";
+        return "beyond this machine the page needs TLS (--certificate FILE --key FILE), or the "
+               "sentence that allows it without TLS (--insecure)";
     if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)
-        return "header_ms, answer_ms, write_ms: above 0";
+        return "header_ms, answer_ms and write_ms must be above 0";
     return slots.problem();
 }
 

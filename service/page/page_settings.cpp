@@ -31,11 +31,11 @@ SettingAnswer PageSettings::ask(const SettingWish& wish) {
         return {wish.key,
                 false,
                 found->value,
-                fmt::format("{} cannot change while the service runs: end it, and start it with "
-                            "--set {}={}",
-                            wish.key,
-                            wish.key,
-                            wish.value)};
+                fmt::format(
+                    "{} cannot change while the service runs; restart the service with --set {}={}",
+                    wish.key,
+                    wish.key,
+                    wish.value)};
     }
     const auto changed = change_(wish);
     if (!changed) return {wish.key, false, found->value, changed.error().message};
@@ -44,7 +44,7 @@ SettingAnswer PageSettings::ask(const SettingWish& wish) {
     return {wish.key,
             true,
             *changed,
-            fmt::format("{} is {} now, {} before", wish.key, *changed, before)};
+            fmt::format("{} is now {} (before: {})", wish.key, *changed, before)};
 }
 
 std::vector<PageSetting> PageSettings::all() const {

@@ -40,7 +40,7 @@ TEST(Playback, AJumpIsTakenOnceAndShownAtOnce) {
     playback.ask(to_frame(500));
     EXPECT_TRUE(playback.jump_wanted());
     EXPECT_EQ(playback.state()->frame, 500);
-    playback.at(42);  // was on its way
+    playback.at(42);  // shown before the player saw the jump
     EXPECT_EQ(playback.state()->frame, 500);
     EXPECT_EQ(playback.take_jump(), 500);
     EXPECT_FALSE(playback.take_jump());

@@ -84,11 +84,11 @@ PageStatus Show::status(std::int64_t now_ns,
         status.text = "paused";
     } else if (serial() == 0) {
         status.state = SourceState::waiting;
-        status.text = "no frame has come yet";
+        status.text = "no frame has arrived yet";
     } else if (status.state == SourceState::running && now_ns - fetched_ns_ > kLate_ns) {
         status.state = SourceState::waiting;
         status.text =
-            fmt::format("no frame has come for {:.0f} s", seconds_from_ns(now_ns - fetched_ns_));
+            fmt::format("no frame has arrived for {:.0f} s", seconds_from_ns(now_ns - fetched_ns_));
     }
     return status;
 }

@@ -46,7 +46,7 @@ TEST(Show, SaysWhenNoFrameComes) {
     EXPECT_EQ(show.status(900'000'000, 3, std::nullopt).state, SourceState::running);
     const PageStatus late = show.status(2'100'000'000, 3, std::nullopt);
     EXPECT_EQ(late.state, SourceState::waiting);
-    EXPECT_EQ(late.text, "no frame has come for 2 s");
+    EXPECT_EQ(late.text, "no frame has arrived for 2 s");
     EXPECT_EQ(late.viewers, 3);
     EXPECT_EQ(show.status(0, 3, PlaybackState{0, 9, true, 1.0}).state, SourceState::paused);
 }

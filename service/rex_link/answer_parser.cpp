@@ -106,7 +106,7 @@ Status read_verdict(const Json& values, Answer& answer) {
     if (known == kVerdicts.end()) return missing("verdict", "OK, NOT_TRAVERSABLE or ERROR");
     const Json* code = find(values, "result_code");
     if (code == nullptr || !code->is_number_integer() || *code != result_code_of(*known))
-        return missing("result_code", "that of the verdict");
+        return missing("result_code", "the code of the verdict");
     const Json* reasons = find(values, "reasons");
     const bool is_list = reasons != nullptr && reasons->is_array();
     if (!is_list || !std::all_of(reasons->begin(), reasons->end(), [](const Json& reason) {
@@ -115,7 +115,7 @@ Status read_verdict(const Json& values, Answer& answer) {
         return missing("reasons", "a list of words");
     }
     if (reasons->empty() != (*known == AnswerVerdict::ok))
-        return missing("reasons", "empty for an OK alone");
+        return missing("reasons", "empty for an OK and filled for all other verdicts");
     answer.verdict = *known;
     return {};
 }
@@ -124,10 +124,10 @@ Status read_verdict(const Json& values, Answer& answer) {
 Status read_question(const Json& values, Answer& answer) {
     const Json* sequence = find(values, "sequence");
     if (sequence == nullptr || !sequence->is_number_unsigned() || *sequence != answer.sequence)
-        return missing("sequence", "that of the id");
+        return missing("sequence", "the one of the id");
     const Json* command = find(values, "command");
     if (command == nullptr || !command->is_number_unsigned() || *command != answer.command)
-        return missing("command", "that of the id");
+        return missing("command", "the one of the id");
     const Json* connection = find(values, "connection");
     if (connection == nullptr || !connection->is_number_unsigned() || *connection == 0)
         return missing("connection", "a whole number from 1 on");
@@ -149,7 +149,7 @@ Result<ParsedAnswer> read_response(const Json& message) {
     const Json* id = find(message, "id");
     if (id == nullptr || !id->is_string() ||
         !read_id(id->get_ref<const std::string&>(), parsed.answer)) {
-        return missing("id", "one of ours");
+        return missing("id", "an id of this link");
     }
     const Json* values = find(message, "values");
     if (values == nullptr || !values->is_object()) return missing("values", "an object");
@@ -177,8 +177,8 @@ std::string format_question(std::uint64_t nonce, const Question& question) {
 
 Result<ParsedAnswer> parse_answer(std::string_view bytes) {
     if (bytes.size() > kLongestAnswer_bytes)
-        return input_error(
-            fmt::format("answer: {} bytes are more than {}", bytes.size(), kLongestAnswer_bytes));
+        return input_error(fmt::format(
+            "answer: {} bytes exceed the limit of {} bytes", bytes.size(), kLongestAnswer_bytes));
     Shape shape;
     const Json message = Json::parse(
         bytes,
@@ -187,8 +187,10 @@ Result<ParsedAnswer> parse_answer(std::string_view bytes) {
         },
         false);
     if (message.is_discarded() || !message.is_object())
-        return input_error(fmt::format("answer: {} bytes that are no JSON object", bytes.size()));
-    if (!shape.sound()) return input_error("answer: a name comes twice, or it is too deep");
+        return input_error(
+            fmt::format("answer: {} bytes that are not a JSON object", bytes.size()));
+    if (!shape.sound())
+        return input_error("answer: a name occurs twice, or the JSON is nested too deeply");
     return read_response(message);
 }
 

@@ -142,11 +142,12 @@ TEST(AnswerParser, ANameThatComesTwiceIsRefused) {
 TEST(AnswerParser, WhatIsNoObjectOrTooLargeIsRefused) {
     for (const char* text : {"", "null", "[]", "17", "\"OK\"", "{}", "{\"values\":{}}", "\xff\xfe"})
         EXPECT_NE(refusal(text), "") << text;
-    EXPECT_NE(refusal("[]").find("no JSON object"), std::string::npos);
+    EXPECT_NE(refusal("[]").find("not a JSON object"), std::string::npos);
     EXPECT_NE(refusal(replaced(kOk, "[0.1,-0.2]", "[[[[[[[[[[1]]]]]]]]]]")), "");
     EXPECT_NE(refusal(replaced(kOk, "the step", "\xc3\x28")), "") << "no UTF-8";
     const std::string long_text(kLongestAnswer_bytes, 'a');
-    EXPECT_NE(refusal(replaced(kOk, "the step", long_text)).find("more than"), std::string::npos);
+    EXPECT_NE(refusal(replaced(kOk, "the step", long_text)).find("exceed the limit"),
+              std::string::npos);
     const std::string fits(kLongestAnswer_bytes - kOk.size(), ' ');
     EXPECT_EQ(refusal(kOk + fits), "");
 }

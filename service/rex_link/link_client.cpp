@@ -175,7 +175,8 @@ class Client {
     void on_bytes(const std::string& bytes, bool is_text) {
         const std::int64_t now_ns = steady_ns();
         const auto parsed =
-            is_text ? parse_answer(bytes) : Result<ParsedAnswer>(input_error("answer: no text"));
+            is_text ? parse_answer(bytes)
+                    : Result<ParsedAnswer>(input_error("answer: a binary message instead of text"));
         LinkEvent event = event_of(parsed ? LinkEventKind::answer : LinkEventKind::damaged);
         event.text = parsed ? parsed.value().text : parsed.error().message;
         if (parsed) {
@@ -244,7 +245,7 @@ class Client {
 
 Error bad_url(std::string_view url) {
     return usage_error("'" + std::string(url) +
-                       "': an address like ws://127.0.0.1:9090 is needed (numbers or localhost)");
+                       "': give an address such as ws://127.0.0.1:9090 (numbers or localhost)");
 }
 
 }  // namespace

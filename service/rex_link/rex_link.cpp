@@ -18,15 +18,15 @@ std::optional<std::string> RexLinkConfig::problem() const {
         return value_ns >= least_ns && value_ns <= most_ns;
     };
     if (!within(answer_timeout_ns, 1, kLongestSilence_ns))
-        return "answer_timeout_ns: silence inhibits after more than 0 and at most 100 ms";
+        return "answer_timeout_ns: must be above 0 and at most 100 ms";
     if (!within(max_valid_for_ns, 1, kLongestLife_ns))
-        return "max_valid_for_ns: a verdict lives more than 0 and at most 300 ms";
+        return "max_valid_for_ns: must be above 0 and at most 300 ms";
     if (!within(second_question_delay_ns, 1, max_valid_for_ns))
-        return "second_question_delay_ns: the second question follows after more than 0 ms, and "
-               "within the life of the first OK (max_valid_for_ns)";
+        return "second_question_delay_ns: must be above 0 ms and at most max_valid_for_ns, the "
+               "validity of the first OK";
     if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be 0 to 60 s";
     if (!within(step_duration_ns, 1, kLongest_ns))
-        return "step_duration_ns: a step takes more than 0 and at most 60 s";
+        return "step_duration_ns: must be above 0 and at most 60 s";
     return std::nullopt;
 }
 

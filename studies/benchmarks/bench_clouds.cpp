@@ -109,7 +109,8 @@ Result<std::vector<BenchResult>> bench_clouds(const CommonOptions& common, Execu
         builder.add(wide_m, executor);
         kept += static_cast<std::size_t>(grid->geometry.nx) + builder.heights_m().size();
     });
-    if (kept == 0) return input_error("bench clouds: nothing was computed");
+    if (kept == 0)
+        return input_error("bench clouds: no point was kept, so the timing means nothing");
     return results;
 }
 

@@ -39,7 +39,7 @@ Result<BenchResult> bench_audit_push(const Machine& machine,
     const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
     log.stop();
     if (log.report().lost > 0)
-        return input_error("bench gate: verdicts were lost; the timing would mean nothing");
+        return input_error("bench gate: verdicts were lost, so the timing means nothing");
     return result;
 }
 
@@ -146,7 +146,7 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
                            kCold, [&] { asking.ask_next(); }, [&] { other.write(); })});
     if (const auto refused = asking.refused() + drifting.refused(); refused > 0) {
         return input_error(fmt::format(
-            "bench gate: {} verdicts on level ground were not OK; the timing would mean nothing",
+            "bench gate: {} verdicts on level ground were not OK, so the timing means nothing",
             refused));
     }
     auto audit_push = bench_audit_push(machine, asking.last());

@@ -69,7 +69,8 @@ Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common, Exe
             const std::int64_t start_cpu_ns = cpu_now_ns();
             const MotionEstimate motion = odometry.update(frame, executor);
             if (frame.index >= kSkipped && motion.health == Health::lost)
-                return input_error("bench odometry: lost; the timing would mean nothing");
+                return input_error(
+                    "bench odometry: odometry was lost, so the timing means nothing");
             if (frame.index < kSkipped) continue;
             wall_ms.push_back(1e-6 * static_cast<double>(steady_now_ns() - start_ns));
             cpu_ms.push_back(1e-6 * static_cast<double>(cpu_now_ns() - start_cpu_ns));

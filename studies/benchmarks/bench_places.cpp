@@ -62,7 +62,7 @@ class Corridors {
         for (int i = 0; i <= count; ++i) {
             auto frame = (*source)->next();
             if (!frame) return frame.error();
-            if (!*frame) return input_error("bench places: the way is too short");
+            if (!*frame) return input_error("bench places: the path is too short");
             if (i == 0) continue;
             Look& look = looks.emplace_back();
             rectifier->rectify(**frame, look.images);
@@ -143,7 +143,7 @@ Result<std::vector<BenchResult>> bench_places(const CommonOptions& common, Execu
             for (const Look& look : *looks) ask(*memory, look, corridors.rig(), queries);
         }
         if (known && queries.recognised == 0)
-            return input_error("bench places: nothing is recognised; the timing would mean little");
+            return input_error("bench places: no place is recognised, so the timing means little");
         const Percentiles wall = percentiles(std::move(queries.wall_ms));
         const double least_ms = *std::min_element(queries.cpu_ms.begin(), queries.cpu_ms.end());
         results.push_back(

@@ -223,7 +223,7 @@ Workload asking(std::string name,
             return count;
         };
         if (refused() > 0)
-            return input_error("the flat floor was refused; the timing would mean nothing");
+            return input_error("the flat floor was refused, so the timing means nothing");
         return Workload::Job([refused] {
             volatile std::int64_t count = refused();
             static_cast<void>(count);

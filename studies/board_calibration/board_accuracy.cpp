@@ -168,7 +168,7 @@ Result<std::vector<PairLine>> read_pairs(const std::string& path) {
         pair.right = io::join_path(folder, pair.right);
         pairs.push_back(std::move(pair));
     }
-    if (pairs.empty()) return input_error(path + ": no line LEFT RIGHT DISTANCE_M");
+    if (pairs.empty()) return input_error(path + ": the file has no line LEFT RIGHT DISTANCE_M");
     return pairs;
 }
 

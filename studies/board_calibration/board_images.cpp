@@ -44,7 +44,8 @@ std::vector<Entry> paired(const std::string& left_folder,
     for (const std::string& name : left) {
         const std::string partner = right_word + name.substr(left_word.size());
         if (std::find(right.begin(), right.end(), partner) == right.end()) {
-            about.notes.push_back(fmt::format("{} has no partner {}, left out.", name, partner));
+            about.notes.push_back(
+                fmt::format("{} has no partner {} and is left out.", name, partner));
             continue;
         }
         entries.push_back(
@@ -52,7 +53,8 @@ std::vector<Entry> paired(const std::string& left_folder,
     }
     const auto alone = std::ssize(right) - std::ssize(entries);
     if (alone > 0)
-        about.notes.push_back(fmt::format("{} right images have no partner, left out.", alone));
+        about.notes.push_back(
+            fmt::format("{} right images have no partner and are left out.", alone));
     return entries;
 }
 
@@ -102,10 +104,10 @@ Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::st
     };
     const bool two_cameras = any("left") && any("right");
     if (two_cameras && camera.empty()) {
-        return usage_error(fmt::format(
-            "{}: images of two cameras (left*, right*); calibrate stereo takes both, --eye left or "
-            "--eye right one of them",
-            folder));
+        return usage_error(
+            fmt::format("{}: the folder has images of two cameras (left*, right*); use calibrate "
+                        "stereo for both, or --eye left or --eye right for one of them",
+                        folder));
     }
     std::vector<Entry> entries;
     for (const std::string& name : *names) {
@@ -120,7 +122,8 @@ Status split(BoardImages& images) {
     const GreyImage both = std::move(images.left);
     if (both.width() < 2 || both.width() % 2 != 0) {
         return input_error(
-            fmt::format("{}: {} px wide; side-by-side images of two equal eyes have an even width",
+            fmt::format("{}: the image is {} px wide; side-by-side images of two equal cameras "
+                        "need an even width",
                         images.name,
                         both.width()));
     }
@@ -181,7 +184,7 @@ Result<BoardSource> for_board_images(const std::string& source,
     if (!entries) return entries.error();
     if (entries->empty()) {
         return input_error(fmt::format(
-            "{}: no images of a board here; looked for {} (.png .jpg .pgm .ppm) or a video",
+            "{}: no images of a board; expected {} (.png .jpg .pgm .ppm) or a video",
             source,
             stereo ? "left* with right*, folders left and right, side-by-side images" : "images"));
     }

@@ -29,8 +29,8 @@ inline constexpr int kMostVideoViews = 60;
 
 /// Opens `source` and passes its images to `use`, in natural order of the file names.
 ///
-/// One camera: a folder of images, or a video. If file names begin with "left" and "right", `eye`
-/// ("left" or "right") selects the camera.
+/// One camera: a folder of images, or a video. If file names begin with "left" and "right",
+/// `camera` ("left" or "right") selects the camera.
 /// Two cameras: a folder with pairs left* and right* whose names are otherwise equal; or folders
 /// left and right (or cam0 and cam1, image_0 and image_1) with equal file names; or a folder of
 /// side-by-side images; or a side-by-side video.

@@ -77,11 +77,12 @@ GreyImage side_by_side(const GreyImage& left, const GreyImage& right) {
 
 eval::Picture coverage_picture(const CalibrationRun& run, int camera) {
     const auto& coverage = run.coverage[static_cast<std::size_t>(camera)];
-    Plane plane = plane_of(run.size,
-                           {fmt::format("Where the board was seen, {}", camera_name(run, camera)),
-                            fmt::format("{:.0f} % of the image; blue: used, orange: left out, "
-                                        "stripes: never seen",
-                                        100.0 * coverage.seen_share)});
+    Plane plane = plane_of(
+        run.size,
+        {fmt::format("Positions of the board, {}", camera_name(run, camera)),
+         fmt::format(
+             "{:.0f} % of the image covered; blue: used, orange: left out, stripes: no board",
+             100.0 * coverage.seen_share)});
     stripe(coverage, plane.figure);
     const std::vector<bool> used = used_views(run);
     for (std::size_t i = 0; i < run.views.size(); ++i) {
@@ -100,13 +101,13 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
     constexpr double kSteepest_deg = 45.0;
     constexpr double kRadiusPerDegree_px = 0.5 * kSide_px / kOuter_deg;
     const auto& coverage = run.coverage[static_cast<std::size_t>(camera)];
-    eval::Figure figure =
-        eval::make_figure(kSide_px,
-                          kSide_px,
-                          false,
-                          {},
-                          {fmt::format("How the board was tilted, {}", camera_name(run, camera)),
-                           "degrees; each dot a view, towards its nearer side; stripes: missing"});
+    eval::Figure figure = eval::make_figure(
+        kSide_px,
+        kSide_px,
+        false,
+        {},
+        {fmt::format("Tilt of the board, {}", camera_name(run, camera)),
+         "degrees; each dot is a view, drawn towards its nearer side; stripes: missing tilts"});
     const PointPx center{figure.plot.left + 0.5 * kSide_px, figure.plot.top + 0.5 * kSide_px};
     bool seen[std::size(calibration::kNearSideNames)] = {};
     for (const calibration::ViewShape& view : coverage.views)
@@ -170,7 +171,7 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera
         run.size,
         {fmt::format("Measured minus predicted, {}", this_camera.name),
          fmt::format(
-             "{} points; 95 % within {:.2f} px; drawn {:.0f} times enlarged; orange: left out",
+             "{} points; 95 % within {:.2f} px; arrows enlarged {:.0f} times; orange: left out",
              lengths_px.size(),
              usual_px,
              enlarged / plane_of(run.size, {}).scale)});

@@ -17,14 +17,14 @@ constexpr double kMillimetres = 1e3;
 void add_pictures(const CalibrationRun& run, eval::ReportContent& content) {
     if (run.stereo) {
         content.pictures.push_back(
-            {fmt::format("{}, rectified by this calibration: what lies on a line in the left half "
-                         "must lie on the same line in the right half.",
+            {fmt::format("{}, rectified with this calibration. A point must lie on the same line "
+                         "in the left and in the right half.",
                          run.sample.name),
              eval::encode_png(epipolar_picture(run)),
              true});
     }
     for (int camera = 0; camera < run.cameras(); ++camera) {
-        content.pictures.push_back({"Points of all views on the image plane.",
+        content.pictures.push_back({"Board points of all views in the image.",
                                     eval::encode_png(coverage_picture(run, camera))});
     }
     for (int camera = 0; camera < run.cameras(); ++camera) {
@@ -33,8 +33,9 @@ void add_pictures(const CalibrationRun& run, eval::ReportContent& content) {
     }
     for (const CalibratedCamera& this_camera : calibrated_cameras(run)) {
         content.pictures.push_back(
-            {"Residual of every point. Good ones point everywhere; a pattern over the image means "
-             "that the lens model does not fit the lens, or that the board is not flat.",
+            {"Residual of every point. The residuals of a good calibration point in random "
+             "directions. A pattern over the image means that the lens model does not fit the "
+             "lens, or that the board is not flat.",
              eval::encode_png(residual_picture(run, this_camera))});
     }
 }
@@ -59,31 +60,31 @@ void add_figures(const CalibrationRun& run, eval::ReportContent& content) {
         {"Row error",
          fmt::format("{:.3f}", stereo.row_rms_px),
          "px",
-         fmt::format("rms after rectification, in pixels of the lenses' focal "
-                     "length of {:.0f} px; rectified images have {:.0f} px",
+         fmt::format("rms after rectification, in px at the focal length of the lenses ({:.0f} "
+                     "px); rectified images have {:.0f} px",
                      stereo.row_focal_px,
                      stereo.rectified_focal_px)});
     content.figures.push_back(
         {"Baseline",
          fmt::format("{:.2f}", kMillimetres * stereo.rig.T_left_right.translation_m.norm()),
          "mm",
-         fmt::format("eyes turned by {:.2f} deg against each other",
+         fmt::format("rotation between the cameras {:.2f} deg",
                      kDegPerRad * log_so3(stereo.rig.T_left_right.rotation).norm())});
 }
 
 eval::ReportTable depth_table(const calibration::StereoCalibration& stereo) {
     eval::ReportTable table;
-    table.title = "What the uncertainty means for depth";
+    table.title = "Depth error of this calibration";
     table.header = {"distance [m]", "one sigma [mm]"};
     for (const calibration::DepthError& error : stereo.depth_errors) {
         table.rows.push_back({fmt::format("{:g}", error.distance_m),
                               std::isnan(error.sigma_m)
-                                  ? "not seen"
+                                  ? "outside the view"
                                   : fmt::format("{:.2f}", kMillimetres * error.sigma_m)});
     }
     table.hint =
         "Straight ahead of the rectified left camera, from the covariance of this calibration "
-        "alone: a bias that stays the same in every image. Noise of the matching comes on top.";
+        "only. This error is the same in every image. The noise of the matching is added to it.";
     return table;
 }
 
@@ -101,13 +102,14 @@ eval::ReportTable lens_table(const CalibratedCamera& this_camera, calibration::L
                               fmt::format("{:.2g}", this_camera.sigmas[k])});
     }
     table.hint = fmt::format(
-        "Together they put a direction into the image to {:.3f} px (one sigma, median), and to "
-        "{:.2f} px where it is known worst: in a corner that no board came near.{}",
+        "With these parameters, the image position of a direction is known to {:.3f} px (one "
+        "sigma, median), and to {:.2f} px at the worst point, an image corner without board "
+        "positions.{}",
         this_camera.mapping.median_px,
         this_camera.mapping.largest_px,
         kind == calibration::LensKind::rational
-            ? " The coefficients of this lens can stand in for each other: look at the image, not "
-              "at them."
+            ? " The coefficients of this lens model can compensate each other, so their single "
+              "sigmas say little."
             : "");
     return table;
 }
@@ -128,7 +130,7 @@ eval::ReportTable view_table(const CalibrationRun& run) {
     table.header = {"view"};
     const auto cameras = calibrated_cameras(run);
     for (const CalibratedCamera& this_camera : cameras) {
-        for (const char* what : {"points", "rms [px]", "tilt [deg]", "points apart [px]"})
+        for (const char* what : {"points", "rms [px]", "tilt [deg]", "point spacing [px]"})
             table.header.push_back(fmt::format("{}: {}", this_camera.name, what));
     }
     for (std::size_t i = 0; i < cameras.front().views.size(); ++i) {

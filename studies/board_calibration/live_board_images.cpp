@@ -35,14 +35,16 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
     const auto address = io::parse_live_address(session.address);
     if (!address) return address.error();
     if (!address->width || *address->width % 2 != 0) {
-        return usage_error(fmt::format(
-            "{}: to calibrate a live camera say its size, both eyes side by side: "
-            "v4l2:DEVICE@WIDTHxHEIGHT with an even width; surefoot info v4l2:DEVICE lists them",
-            session.address));
+        return usage_error(
+            fmt::format("{}: give the size of the live camera, both images side by side: "
+                        "v4l2:DEVICE@WIDTHxHEIGHT with an even width; 'surefoot info v4l2:DEVICE' "
+                        "lists the sizes",
+                        session.address));
     }
     if (!session.stereo && session.camera.empty()) {
-        return usage_error(fmt::format(
-            "{}: a camera with two eyes; --eye left or --eye right takes one", session.address));
+        return usage_error(
+            fmt::format("{}: the device has two cameras; choose one with --eye left or --eye right",
+                        session.address));
     }
     auto live = io::LiveCamera::open(std::move(device),
                                      *address,

@@ -79,8 +79,8 @@ Status write_from_above(const std::string& path,
     style.value_scale = kMillimetres;
     if (placed.is_signed) {
         style.centre = 0.0;
-        style.low_word = "compared lies lower";
-        style.high_word = "compared lies higher";
+        style.low_word = "compared is lower";
+        style.high_word = "compared is higher";
     }
     const auto png =
         eval::encode_png(eval::render_layer(grid->geometry, builder.heights_m(), style, {}));
@@ -102,7 +102,8 @@ Status write_histogram(const std::string& path,
     }
     eval::LinePlot plot;
     plot.title = placed.title;
-    plot.x_label = placed.is_signed ? "distance less the smallest shown [mm]" : "distance [mm]";
+    plot.x_label =
+        placed.is_signed ? "distance minus the smallest shown one [mm]" : "distance [mm]";
     plot.y_label = "share of the points in each bin [%]";
     eval::LinePlot::Line line;
     const double bin_mm = kMillimetres * (range.high - range.low) / kBins;

@@ -292,11 +292,8 @@ Result<SurfaceRules> surface_rules(std::optional<double> lowest_z_m,
     if (lowest_z_m) rules.lowest_z_m = *lowest_z_m;
     if (highest_z_m) rules.highest_z_m = *highest_z_m;
     if (rules.lowest_z_m < rules.highest_z_m) return rules;
-    return usage_error(
-        fmt::format("--min-height {:g} is not below --max-height {:g}: no point "
-                    "would be left",
-                    rules.lowest_z_m,
-                    rules.highest_z_m));
+    return usage_error(fmt::format(
+        "--min-height {:g} must be below --max-height {:g}", rules.lowest_z_m, rules.highest_z_m));
 }
 
 std::string left_out_text(const SurfaceDem& dem) {
@@ -305,8 +302,8 @@ std::string left_out_text(const SurfaceDem& dem) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, what);
     };
     add(dem.cut_points, "points outside --min-height and --max-height are left out");
-    add(dem.unsupported_cells, "cells hold points but no surface, and are unknown");
-    add(dem.overhung_cells, "cells have something hanging over their ground");
+    add(dem.unsupported_cells, "cells contain points but no supported surface, and are unknown");
+    add(dem.overhung_cells, "cells have an object that hangs over their ground");
     return text;
 }
 

@@ -57,7 +57,7 @@ Points depth_camera(std::uint64_t seed) {
         for (std::size_t row = 1; row < rays.size(); ++row) {
             double r_m = ranges_m[row];
             if (!std::isfinite(r_m) || !std::isfinite(ranges_m[row - 1])) continue;
-            // One of the two pixels behind a jump is on its way to what lies before.
+            // Half of the pixels just behind a jump are in flight: between the two surfaces.
             const std::size_t first = row - std::min<std::size_t>(row, 2);
             for (std::size_t before = first; before < row; ++before) {
                 const double jump_m = ranges_m[before] - ranges_m[before + 1];
@@ -197,7 +197,7 @@ TEST(SurfaceDem, SameBytesForAnyOrderAndNumberOfThreads) {
 TEST(SurfaceDem, CrossedHeightsAreAUsageError) {
     const auto crossed = surface_rules(1.0, 0.5);
     ASSERT_FALSE(crossed);
-    EXPECT_NE(crossed.error().message.find("--min-height 1 is not below --max-height 0.5"),
+    EXPECT_NE(crossed.error().message.find("--min-height 1 must be below --max-height 0.5"),
               std::string::npos);
 }
 

@@ -67,7 +67,7 @@ class Source {
         };
         for (const io::CloudScalar& scalar : block.scalars) add(scalar.name);
         if (block.T_cloud_sensor) add("viewpoint");
-        if (!lost.empty()) notes_.push_back("only places are kept, not: " + lost);
+        if (!lost.empty()) notes_.push_back("only positions are kept, not: " + lost);
     }
     Source(std::string path, io::CloudStream stream)
         : path_(std::move(path)), stream_(std::move(stream)) {}
@@ -209,8 +209,8 @@ Status check_voxels(const geometry::PointBox& box, double size_m, const std::str
     if (eval::fits_voxels(box, size_m)) return {};
     const Eigen::Vector3d side_m = (box.high_m - box.low_m).cast<double>();
     return usage_error(
-        fmt::format("{}: {:g} x {:g} x {:g} m cannot be numbered in voxels of {:g} m: choose "
-                    "larger ones, or remove stray points",
+        fmt::format("{}: {:g} x {:g} x {:g} m is too large for voxels of {:g} m and cannot be "
+                    "numbered; choose larger voxels, or remove stray points",
                     cloud,
                     side_m.x(),
                     side_m.y(),

@@ -46,10 +46,11 @@ Result<std::vector<ThesisRun>> chosen_runs(const EvalSuiteOptions& options) {
     for (const std::string& name : options.runs) {
         const auto at = std::find(names.begin(), names.end(), name);
         if (at == names.end()) {
-            return usage_error(fmt::format("--runs {}: there is no such run{} There are: {}",
-                                           name,
-                                           did_you_mean(name, names),
-                                           fmt::join(names, ", ")));
+            return usage_error(
+                fmt::format("--runs {}: there is no such experiment{} (choose from: {})",
+                            name,
+                            did_you_mean(name, names),
+                            fmt::join(names, ", ")));
         }
         runs.push_back(all[static_cast<std::size_t>(at - names.begin())]);
     }
@@ -65,7 +66,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
         static_cast<sim::CameraProfile>(profile - std::begin(sim::kCameraProfileNames));
     const auto machine = load_machine(options.machine);
     if (!machine) return machine.error();
-    if (!*machine) return usage_error("--machine: a machine file or name is needed");
+    if (!*machine)
+        return usage_error("--machine: give a machine file, or the name of a built-in machine");
     // Use every second beam. This still gives a point every 5 mm within 4 m of a station, in a
     // quarter of the time. `sim --scan` uses all beams.
     settings->laser.step_deg *= 2.0;
@@ -123,9 +125,8 @@ class Parts {
     void fail(const std::string& name, const Error& error) {
         const bool stopped = error.code == ErrorCode::interrupted;
         const Error named{error.code,
-                          stopped
-                              ? "interrupted by the user; the same call goes on where it stopped"
-                              : fmt::format("{}: {}", name, error.message)};
+                          stopped ? "interrupted by the user; repeat the same call to continue"
+                                  : fmt::format("{}: {}", name, error.message)};
         if (!stopped) {
             log_error(named.message);
             results_.failures.push_back(named.message);
@@ -307,7 +308,9 @@ int eval_thesis(const EvalSuiteOptions& options) {
     } else {
         print_thesis(results, *conditions);
         if (writes.first())
-            fmt::print("{} recordings in {}/thesis.html\n", results.runs.size(), options.out_dir);
+            fmt::print("{} recordings evaluated; open {}/thesis.html\n",
+                       results.runs.size(),
+                       options.out_dir);
     }
     if (!writes.first()) log_error(writes.first().error().message);
     if (!done) return report(done.error());

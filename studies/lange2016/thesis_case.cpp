@@ -110,12 +110,12 @@ Status write_pictures(const std::string& folder,
     writes += write("m3c2",
                     eval::render_error_map(part.geometry,
                                            cut(compared.m3c2_m),
-                                           {"Live map against the scan (M3C2, vertical)", ""},
+                                           {"Live map compared with the scan (M3C2, vertical)", ""},
                                            overlays));
     writes += write("confusion",
                     eval::render_confusion(part.geometry,
                                            part.of(compared.calls, eval::Call::no_truth),
-                                           {"Traversability against the scan", ""},
+                                           {"Traversability compared with the scan", ""},
                                            overlays));
     return writes.first();
 }

@@ -63,8 +63,8 @@ Result<std::optional<ThesisFigures>> read_figures(const std::string& folder,
     const std::string_view head = next_line(rest);
     const auto broken = [&](std::string_view line) {
         return input_error(
-            fmt::format("{}: '{}' is no line of such a file; remove the file and "
-                        "the part is done again",
+            fmt::format("{}: '{}' is not a line of a figures file; remove the file and run again "
+                        "to compute this part",
                         file_of(folder),
                         line));
     };

@@ -78,17 +78,17 @@ std::vector<eval::ReportPicture> pictures_of(const ThesisRun& run,
     const std::string ours = conditions.run_folder(run, ThesisColumn::ours);
     const std::string thesis = conditions.run_folder(run, ThesisColumn::thesis);
     const std::pair<std::string, std::string> files[] = {
-        {ours + "/camera.png", "what the camera saw last"},
-        {ours + "/scan_elevation.png", "laser scan through the same cells"},
+        {ours + "/camera.png", "last camera image"},
+        {ours + "/scan_elevation.png", "laser scan, in the same cells"},
         {ours + "/elevation.png", "ours"},
-        {thesis + "/elevation.png", "settings of the thesis"},
-        {ours + "/scan_traversability.png", "laser scan through the same filters"},
+        {thesis + "/elevation.png", "settings of the reference thesis"},
+        {ours + "/scan_traversability.png", "laser scan, rated by the same filters"},
         {ours + "/traversability.png", "ours"},
-        {thesis + "/traversability.png", "settings of the thesis"},
+        {thesis + "/traversability.png", "settings of the reference thesis"},
         {ours + "/m3c2.png", "ours: red = the truth lies higher, blue = lower"},
-        {thesis + "/m3c2.png", "settings of the thesis"},
+        {thesis + "/m3c2.png", "settings of the reference thesis"},
         {ours + "/confusion.png", "ours"},
-        {thesis + "/confusion.png", "settings of the thesis"},
+        {thesis + "/confusion.png", "settings of the reference thesis"},
     };
     std::vector<eval::ReportPicture> pictures;
     for (const auto& [file, caption] : files) {
@@ -101,7 +101,7 @@ std::vector<eval::ReportPicture> pictures_of(const ThesisRun& run,
 eval::ReportTable rows_table(const std::vector<FilledRow>& rows, const std::string& group) {
     eval::ReportTable table;
     table.title = group;
-    table.header = {"", "thesis", "its settings here", "ours", "laser scan", "exact"};
+    table.header = {"", "reference thesis", "thesis settings", "ours", "laser scan", "exact"};
     table.wide = true;
     for (const FilledRow& filled : rows) {
         if (filled.row.group != group) continue;
@@ -118,9 +118,9 @@ eval::ReportTable rows_table(const std::vector<FilledRow>& rows, const std::stri
 
 eval::ReportTable dataset_table(const std::vector<DatasetFigures>& datasets) {
     eval::ReportTable table;
-    table.title = "The 13 places (Table 8.2), rebuilt";
+    table.title = "The 13 sites of the reference thesis (Table 8.2), rebuilt as scenes";
     table.header = {"",
-                    "thesis",
+                    "reference thesis",
                     "size [m]",
                     "million points",
                     "scene",
@@ -128,7 +128,8 @@ eval::ReportTable dataset_table(const std::vector<DatasetFigures>& datasets) {
                     "objects",
                     "stations",
                     "million points"};
-    table.hint = "Points: expected at the scanner's full resolution, from a coarse fan of beams.";
+    table.hint =
+        "The number of points is that of a scan at full resolution, estimated from a coarse scan.";
     table.wide = true;
     for (const DatasetFigures& d : datasets) {
         table.rows.push_back({d.of.label,
@@ -192,16 +193,16 @@ std::vector<FilledRow> filled_rows(const ThesisResults& results, std::uint64_t s
 std::string thesis_html(const ThesisResults& results, const ThesisConditions& conditions) {
     const std::vector<FilledRow> rows = filled_rows(results, conditions.seed);
     eval::ReportContent page;
-    page.title = "The experiments of the thesis, made again";
+    page.title = "The experiments of the reference thesis (Lange 2016), repeated";
     page.summary = {
-        "Places of M. Lange's thesis of 2016 rebuilt at their size, scanned by a simulated laser "
-        "scanner, and crossed with a simulated ZED (its noise) on a trolley, on a walking REX, in "
-        "a hand.",
-        "Live maps are laid onto the scan by their surfaces and compared by C2C and M3C2; the scan "
-        "goes through the same filters as the map.",
-        "Its settings here: this program with the error model, fusion and filters of the thesis. "
-        "Its camera driver, its tracker and its code are not rebuilt: both columns see the same "
-        "depth and the same motion."};
+        "We rebuilt the sites of M. Lange's thesis of 2016 at their size. A simulated laser "
+        "scanner scans them. A simulated ZED with realistic noise crosses them on a trolley, on a "
+        "walking REX, or in a hand.",
+        "Live maps are aligned to the surfaces of the scan and compared by C2C and M3C2. The scan "
+        "passes through the same filters as the map.",
+        "'Thesis settings' is this program with the error model, fusion and filters of the thesis. "
+        "The camera driver, the tracker and the code of the thesis are not rebuilt: both columns "
+        "use the same depth and the same motion."};
     for (const ThesisRun& run : thesis_runs()) {
         if (!results.runs.contains(run.name)) continue;
         eval::ReportSection section;
@@ -210,7 +211,7 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
         page.sections.push_back(std::move(section));
     }
     eval::ReportSection courtyard;
-    courtyard.title = "Ground truth of the courtyard, rated (Fig. 9.14)";
+    courtyard.title = "Rated ground truth of the courtyard (Fig. 9.14)";
     for (const char* name : {"elevation", "traversability"}) {
         const auto bytes =
             io::read_file(fmt::format("{}/{}.png", conditions.scan_folder(kThesisCourtyard), name));
@@ -223,9 +224,10 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
             const auto svg = io::read_file(conditions.run_folder(run, column) + "/heights.svg");
             if (!svg || svg->empty()) continue;
             page.plots.push_back(
-                {fmt::format("{}, {}",
-                             run.title,
-                             column == ThesisColumn::ours ? "ours" : "settings of the thesis"),
+                {fmt::format(
+                     "{}, {}",
+                     run.title,
+                     column == ThesisColumn::ours ? "ours" : "settings of the reference thesis"),
                  *svg});
         }
         const auto svg = io::read_file(conditions.scan_folder(run.scene) + "/heights.svg");
@@ -233,7 +235,7 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
             page.plots.push_back({fmt::format("{}: laser scan", run.title), *svg});
     }
     page.plots_title = "Heights of the stairs";
-    page.details_title = "Thesis, its settings here, ours, truth";
+    page.details_title = "Reference thesis, thesis settings, ours, truth";
     for (const std::string& group : groups_of(rows)) page.tables.push_back(rows_table(rows, group));
     page.tables.push_back(dataset_table(results.datasets));
     page.reasons = results.failures;
@@ -313,8 +315,8 @@ void print_thesis(const ThesisResults& results, const ThesisConditions& conditio
         fmt::print("{}\n  {:<56}{:>32}{:>18}{:>10}{:>12}{:>10}\n",
                    group,
                    "",
-                   "thesis",
-                   "its settings here",
+                   "reference thesis",
+                   "thesis settings",
                    "ours",
                    "laser scan",
                    "exact");

@@ -168,7 +168,7 @@ Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
     }
     if (points_m.empty()) {
         return input_error(
-            fmt::format("{}: no point of its laser scan lies around its way", script.info.name));
+            fmt::format("{}: the laser scan has no point near the path", script.info.name));
     }
     place.scanned = static_cast<std::int64_t>(points_m.size());
     points_m = eval::voxel_means_m(points_m, kVoxel_m, executor);

@@ -19,16 +19,16 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     const std::string height_file = folder + "/elevation.asc";
     const std::string variance_file = folder + "/variance.asc";
     if (!io::is_file(height_file) || !io::is_file(variance_file)) {
-        return input_error(fmt::format(
-            "{}: holds neither map.snapshot nor elevation.asc with variance.asc; give the "
-            "output folder of 'surefoot run'",
-            folder));
+        return input_error(
+            fmt::format("{}: the folder has no map.snapshot and no elevation.asc with "
+                        "variance.asc; give the output folder of 'surefoot run'",
+                        folder));
     }
     if (io::is_file(folder + "/report.json")) {
-        return input_error(fmt::format(
-            "{}: a run without map.snapshot: its health and gravity are not known, so there "
-            "is no verdict; its report.json says what failed",
-            folder));
+        return input_error(
+            fmt::format("{}: this run has no map.snapshot, so its health and gravity are unknown "
+                        "and there is no verdict; its report.json says what failed",
+                        folder));
     }
     const auto height = io::read_height_grid(height_file);
     if (!height) return height.error();
@@ -39,7 +39,9 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     if (a.nx != b.nx || a.ny != b.ny || a.resolution_m != b.resolution_m ||
         a.origin_m != b.origin_m) {
         return input_error(
-            fmt::format("{}: its cells differ from those of {}", variance_file, height_file));
+            fmt::format("{}: the cells differ from those of {}; give the files of one run",
+                        variance_file,
+                        height_file));
     }
     const grid::Layer no_drift(a.nx, a.ny, 0.0F);
     grid::SnapshotInput input;
@@ -55,7 +57,7 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     OfflineMap map{std::make_unique<grid::MapSnapshot>(), {}};
     if (auto status = grid::build_snapshot(input, *map.snapshot); !status) return status.error();
     map.assumed = height->notes;
-    for (const char* assumed : {"no drift since the cells were seen",
+    for (const char* assumed : {"no drift since the last observation of the cells",
                                 "gravity is the z axis of the grid",
                                 "odometry and camera were healthy"})
         map.assumed.emplace_back(assumed);
@@ -130,12 +132,12 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty())
         area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);
-    assumed.push_back(fmt::format(
-        "start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link where nothing "
-        "was measured",
-        kTenthMm_m * area.height_tenth_mm,
-        heights.empty() ? "the ground plane of odom" : "from the cells around it",
-        kTenthMm_m * area.radius_tenth_mm));
+    assumed.push_back(
+        fmt::format("start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link "
+                    "wherever no ground was measured",
+                    kTenthMm_m * area.height_tenth_mm,
+                    heights.empty() ? "the ground plane of odom" : "from the cells around it",
+                    kTenthMm_m * area.radius_tenth_mm));
     return area;
 }
 

@@ -14,9 +14,9 @@ Result<PlaceSession> PlaceSession::open(const std::string& file) {
     const std::string folder = io::folder_of(file);
     if (!io::is_folder(folder))
         return usage_error(
-            fmt::format("--place {}: there is no folder {}; make it first", file, folder));
+            fmt::format("--place {}: there is no folder {}; create it first", file, folder));
     if (io::is_folder(file))
-        return usage_error(fmt::format("--place {}: is a folder; name a file in it", file));
+        return usage_error(fmt::format("--place {}: this is a folder; give a file in it", file));
     if (!io::is_file(file)) return PlaceSession(file, {});
     auto read = io::read_place(file);
     if (!read) return read.error();

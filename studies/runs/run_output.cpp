@@ -128,8 +128,8 @@ std::optional<std::string> beyond_the_map(const RunRecord& record,
     // The map is centred on the machine (to a cell), so half of its length lies ahead.
     if (!nearest_m || *nearest_m < 0.5 * length_m) return std::nullopt;
     return fmt::format(
-        "what is seen begins {:.1f} m from base_link, the map ends at {:.1f} m: no pixel falls "
-        "into it; raise elevation.length_m ({:g}) above {:.0f}",
+        "the nearest visible point is {:.1f} m from base_link, but the map ends at {:.1f} m, so no "
+        "pixel falls into it; raise elevation.length_m ({:g}) above {:.0f}",
         *nearest_m,
         0.5 * length_m,
         length_m,
@@ -238,30 +238,31 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
             return frame.motion.health == Health::lost;
         });
     if (f.points == 0 && lost > 0) {
-        return fmt::format("odometry was lost in {} of {} frames, and such frames are not mapped",
-                           lost,
-                           record.frames.size());
+        return fmt::format(
+            "odometry was lost in {} of {} frames, and the map leaves out such frames",
+            lost,
+            record.frames.size());
     }
-    if (f.points == 0) return "no frame had any depth: see the counts of each frame";
+    if (f.points == 0) return "no frame had any depth; see the counts of each frame";
     if (const auto reason = beyond_the_map(record, pipeline)) return *reason;
     const std::pair<std::int64_t, std::string> causes[] = {
         {f.outside,
-         fmt::format("lie beyond the map (elevation.length_m = {:g}, centred on base_link)",
+         fmt::format("are outside the map (elevation.length_m = {:g}, centred on base_link)",
                      config.length_m)},
         {f.gated_range, "are nearer or farther than elevation.prefilter allows"},
         {f.gated_height, "are above or below the height cut of elevation.prefilter"},
         {f.gated_confidence,
-         "are at depth edges, seen too flat, or likely outliers (elevation.pixels)"},
+         "are at depth edges, at too flat an angle, or likely outliers (elevation.pixels)"},
         {f.gated_density, "have too few neighbours (elevation.prefilter)"},
-        {f.gated_border, "lie in cells that reach beyond the image (elevation.reduction)"},
+        {f.gated_border, "are in cells that reach beyond the image (elevation.reduction)"},
     };
     const auto& worst =
         *std::max_element(std::begin(causes), std::end(causes), [](const auto& a, const auto& b) {
             return a.first < b.first;
         });
     if (worst.first == 0) {
-        return fmt::format("none of {} depth points was gated, yet no cell got enough of them",
-                           f.points);
+        return fmt::format(
+            "none of the {} depth points was rejected, but no cell got enough of them", f.points);
     }
     return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
 }
@@ -308,12 +309,13 @@ std::string modelled_note(const camera::SourceInfo& source) {
         return "Odometry and depth were modelled from the truth; no image was rendered, matched or "
                "tracked.";
     }
-    return source.modelled_motion ? "Motion was not measured: the source told it." : "";
+    return source.modelled_motion ? "The motion was not measured: the source provides a known pose."
+                                  : "";
 }
 
 std::string broken_text(const camera::BrokenFrames& broken) {
     if (broken.count == 0) return "";
-    return fmt::format("{} broken frame{} passed over (--skip-broken); the first: {}\n",
+    return fmt::format("{} broken frame{} skipped (--skip-broken); the first: {}\n",
                        broken.count,
                        broken.count == 1 ? " was" : "s were",
                        broken.first);
@@ -322,22 +324,23 @@ std::string broken_text(const camera::BrokenFrames& broken) {
 std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const Percentiles frame = frame_percentiles(record);
     std::string text =
-        fmt::format("{} frames, {:.1f} ms a full frame (median), {} cells known\n{}\n",
+        fmt::format("{} frames, {:.1f} ms per full frame (median), {} cells known\n{}\n",
                     record.frames.size(),
                     frame.median,
                     pipeline.map().known_cells(),
                     pipeline.alignment().reason);
     if (record.waited_frames > 0) {
         text += fmt::format(
-            "odom begins {} frames after the source: they were too bright, too dark or without "
-            "ground (mount.wait_for_exposure_s, mount.wait_for_ground_s, mount.wait_for_search_s)\n",
+            "the odom frame starts {} frames after the source, because these frames were too "
+            "bright, too dark or without ground (mount.wait_for_light_s, mount.wait_for_ground_s, "
+            "mount.wait_for_search_s)\n",
             record.waited_frames);
     }
     if (const auto& self_calibration = pipeline.self_calibration()) {
         text += fmt::format(
-            "the right eye is corrected by {:+.3f} deg about the line of sight, {:+.3f} deg up and "
-            "down and {:+.3f} % of the focal length: rows differed by {:.2f} px, now {:.2f} "
-            "(median); trim.enabled=false leaves the calibration alone\n",
+            "self-calibration corrects the right camera by {:+.3f} deg about the line of sight, "
+            "{:+.3f} deg up and down and {:+.3f} % of the focal length: corresponding rows "
+            "differed by {:.2f} px, now by {:.2f} px (median); trim.enabled=false turns it off\n",
             self_calibration->camera.roll_rad * 180.0 / std::numbers::pi,
             self_calibration->camera.pitch_rad * 180.0 / std::numbers::pi,
             100.0 * self_calibration->camera.focal_share,
@@ -357,11 +360,9 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (record.truth) {
         const TruthFigures& t = *record.truth;
         text += fmt::format(
-            "against the truth, nothing aligned: elevation median |error| {:.1f} mm, 90 % within "
-            "{:.1f} mm; away from "
-            "edges {:.2f} % above 50 mm; {:.1f} % of the cells visible within 2.5 m known; "
-            "trajectory {:.1f} mm rmse; "
-            "{:.1f} % of depths within 3 sigma\n",
+            "compared with the truth, without alignment: elevation median |error| {:.1f} mm, 90 % "
+            "within {:.1f} mm; away from edges {:.2f} % above 50 mm; {:.1f} % of the cells visible "
+            "within 2.5 m known; trajectory {:.1f} mm rmse; {:.1f} % of depths within 3 sigma\n",
             1e3 * t.maps.elevation.median_abs_m,
             1e3 * t.maps.elevation.p90_abs_m,
             100.0 * t.maps.elevation_away_from_edges.share_over_50mm,

@@ -36,12 +36,12 @@ void add_camera_pictures(const pipeline::Pipeline& pipeline, eval::ReportContent
     const double fb = pipeline.rig().depth_to_disparity_px_m();
     if (!pipeline.pair().left.empty()) {
         content.pictures.push_back(
-            {"What the left eye saw last, rectified",
+            {"Last image of the left camera, rectified",
              eval::encode_png(eval::render_camera_image(pipeline.pair().left,
                                                         {"Left camera", "last full frame"}))});
     }
     content.pictures.push_back(
-        {"Disparity and the depth it stands for; grey has no match",
+        {"Disparity and the depth that follows from it; grey: no match",
          eval::encode_png(eval::render_disparity(
              pipeline.depth().disparity_px, fb, {"Disparity", "last full frame"}))});
 }
@@ -50,7 +50,7 @@ void add_sigma_pictures(const pipeline::Pipeline& pipeline,
                         const eval::Overlays& drawn,
                         eval::ReportContent& content) {
     const auto& layers = pipeline.map().layers();
-    content.pictures.push_back({"How sure the map is of each height",
+    content.pictures.push_back({"Standard deviation of each height of the map",
                                 eval::encode_png(eval::render_layer(
                                     pipeline.map().geometry(),
                                     sigma_of(layers.height_var_m2.copy(), layers.height_m.copy()),
@@ -58,14 +58,14 @@ void add_sigma_pictures(const pipeline::Pipeline& pipeline,
                                     drawn))});
     if (pipeline.depth().sigma_px.empty()) return;
     content.pictures.push_back(
-        {"One sigma of the disparity, pixel by pixel, as the map believes it",
+        {"Standard deviation of the disparity of each pixel, as the map uses it",
          eval::encode_png(eval::render_sigma(
              pipeline.depth().sigma_px, "px", {"Disparity sigma", "last full frame"}))});
 }
 
 void add_trajectory_picture(const RunRecord& record, eval::ReportContent& content) {
     const Trajectory truth = record.truth ? record.truth->truth_trajectory : Trajectory{};
-    content.pictures.push_back({"Where base_link went",
+    content.pictures.push_back({"Path of base_link",
                                 eval::encode_png(eval::render_trajectory(
                                     trajectory_of(record.frames),
                                     truth,
@@ -81,30 +81,30 @@ void add_truth(const RunRecord& record,
     const TruthFigures& t = *record.truth;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     content.pictures.push_back(
-        {"Live height minus true height; nothing was aligned before",
+        {"Live height minus true height, without alignment",
          eval::encode_png(eval::render_error_map(
              geometry, t.maps.error_m, {"Height error", "live - truth"}, drawn))});
     content.pictures.push_back(
-        {"What the map calls safe against the same rating of the true heights",
-         eval::encode_png(eval::render_confusion(
-             geometry,
-             t.maps.calls,
-             {"Safe or not, against the truth", fmt::format("threshold {:.2f}", safe_threshold)},
-             drawn))});
+        {"Rating of the map compared with the rating of the true heights",
+         eval::encode_png(eval::render_confusion(geometry,
+                                                 t.maps.calls,
+                                                 {"Safe or unsafe, compared with the truth",
+                                                  fmt::format("threshold {:.2f}", safe_threshold)},
+                                                 drawn))});
     content.figures.push_back({"Elevation, median |error|",
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
                                "mm",
-                               "against the highest true surface of the cell"});
+                               "compared with the highest true surface of the cell"});
     content.figures.push_back({"Elevation, 90 % within",
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.p90_abs_m),
                                "mm",
                                ""});
     content.figures.push_back(
-        {"Above 50 mm away from edges",
+        {"Height errors above 50 mm, away from edges",
          fmt::format("{:.2f}", 100.0 * t.maps.elevation_away_from_edges.share_over_50mm),
          "%",
          ""});
-    content.figures.push_back({"Known of what was visible within 2.5 m",
+    content.figures.push_back({"Known share of the ground visible within 2.5 m",
                                fmt::format("{:.1f}", 100.0 * t.coverage_within_2_5_m),
                                "%",
                                ""});
@@ -123,9 +123,11 @@ eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
     eval::ReportSection section;
     section.title = "Edges and stairs";
     section.pictures.push_back(
-        {"Ticks point to the lower ground; steps are numbered as they are walked", png, true});
+        {"Ticks point to the lower ground; the steps are numbered in walking direction",
+         png,
+         true});
     section.pictures.push_back(
-        {"What the ground is, cell by cell; hatched is unknown or unsure", classes_png, true});
+        {"Ground class of each cell; hatched: unknown or uncertain", classes_png, true});
     const RunFeatures features = split_by_confirmation(pipeline.features());
     section.tables.push_back(features_table(features.confirmed));
     section.note = features_count_text(features) + ".";
@@ -168,10 +170,10 @@ std::vector<std::string> summary_lines(const RunRecord& record,
     for (const specular::SuspectedPane& pane : pipeline.panes())
         lines.push_back(
             pane_text(pane, pipeline.config().specular.mirror_correlation, pipeline.T_odom_body()) +
-            ": the gate takes the ground at and behind it for unknown.");
+            ": the gate treats the ground at it and behind it as unknown.");
     if (std::string note = modelled_note(record.source); !note.empty()) lines.push_back(note);
     for (const std::string& note : record.source.notes)
-        lines.push_back(fmt::format("About the source: {}.", note));
+        lines.push_back(fmt::format("Note about the source: {}.", note));
     if (record.source.broken.count > 0) lines.push_back(broken_text(record.source.broken));
     lines.push_back(record.complete()
                         ? "The run is complete."
@@ -217,18 +219,14 @@ Status write_pictures_and_report(const RunOptions& options,
     const auto stairs_png = eval::encode_png(eval::render_features(
         geometry, height_m, pipeline.features(), drawn, {"Edges and stairs", "over the heights"}));
 
-    const auto classes_png =
-        eval::encode_png(eval::render_classes(geometry,
-                                              height_m,
-                                              pipeline.ground_classes(),
-                                              drawn,
-                                              {"What the ground is", "cell by cell"}));
+    const auto classes_png = eval::encode_png(eval::render_classes(
+        geometry, height_m, pipeline.ground_classes(), drawn, {"Ground classes", "cell by cell"}));
 
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: {}", record.source.path);
     content.summary = summary_lines(record, pipeline);
-    content.pictures.push_back({"The ground, seen from above", elevation_png});
-    content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
+    content.pictures.push_back({"Height of the ground, from above", elevation_png});
+    content.pictures.push_back({"Safe to step or not; hatched: never observed", rating_png});
     content.sections.push_back(stairs_section(pipeline, stairs_png, classes_png));
     add_camera_pictures(pipeline, content);
     add_sigma_pictures(pipeline, drawn, content);

@@ -52,9 +52,9 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
     if (record_.frames.empty() && !record_.error) {
         const camera::BrokenFrames& broken = record_.source.broken;
         record_.error = input_error(fmt::format(
-            "{}: the source holds no {}frame{}",
+            "{}: the source has no {}frame{}",
             record_.source.path,
-            broken.count > 0 ? "whole " : "",
+            broken.count > 0 ? "intact " : "",
             broken.count > 0
                 ? fmt::format(" ({} are broken; the first: {})", broken.count, broken.first)
                 : ""));

@@ -40,10 +40,10 @@ class ListReader {
     template <typename Read>
     bool each(const Json& all, const std::string& list, const Read& read) {
         if (!all.contains(list)) return false;
-        if (!all[list].is_array()) fail(list, "is no list");
+        if (!all[list].is_array()) fail(list, "is not a list");
         for (std::size_t i = 0; i < all[list].size() && !error_; ++i) {
             at_ = fmt::format("{}[{}]", list, i);
-            if (!all[list][i].is_object()) fail("", "is no object");
+            if (!all[list][i].is_object()) fail("", "is not an object");
             if (!error_) read(all[list][i]);
         }
         return true;
@@ -53,25 +53,25 @@ class ListReader {
     double number(const Json& object, const char* name) {
         if (!object.contains(name) || object[name].is_null())
             return std::numeric_limits<double>::quiet_NaN();
-        if (!object[name].is_number()) fail(name, "is no number");
+        if (!object[name].is_number()) fail(name, "is not a number");
         return error_ ? 0.0 : object[name].get<double>();
     }
     bool flag(const Json& object, const char* name, bool otherwise) {
         if (!object.contains(name)) return otherwise;
-        if (!object[name].is_boolean()) fail(name, "is neither true nor false");
+        if (!object[name].is_boolean()) fail(name, "is not true or false");
         return error_ ? otherwise : object[name].get<bool>();
     }
     int count(const Json& object, const char* name) {
         constexpr int kMost = 10000;
         const bool whole = object.contains(name) && object[name].is_number_integer();
         if (!whole || object[name].get<double>() < 0 || object[name].get<double>() > kMost)
-            fail(name, fmt::format("is no whole number from 0 to {}", kMost));
+            fail(name, fmt::format("is not a whole number from 0 to {}", kMost));
         return error_ ? 0 : object[name].get<int>();
     }
     bool leads_down(const Json& object) {
         const bool text = object.contains("kind") && object["kind"].is_string();
         const std::string kind = text ? object["kind"].get<std::string>() : "";
-        if (kind != "up" && kind != "down") fail("kind", "is neither \"up\" nor \"down\"");
+        if (kind != "up" && kind != "down") fail("kind", "is not \"up\" or \"down\"");
         return kind == "down";
     }
     template <int kSize>
@@ -79,10 +79,10 @@ class ListReader {
         Eigen::Matrix<double, kSize, 1> values = Eigen::Matrix<double, kSize, 1>::Zero();
         const bool list = object.contains(name) && object[name].is_array() &&
                           object[name].size() == static_cast<std::size_t>(kSize);
-        if (!list) fail(name, fmt::format("is no list of {} numbers", kSize));
+        if (!list) fail(name, fmt::format("is not a list of {} numbers", kSize));
         for (int i = 0; i < kSize && !error_; ++i) {
             const Json& value = object[name][static_cast<std::size_t>(i)];
-            if (!value.is_number()) fail(name, fmt::format("is no list of {} numbers", kSize));
+            if (!value.is_number()) fail(name, fmt::format("is not a list of {} numbers", kSize));
             if (!error_) values[i] = value.get<double>();
         }
         return values;
@@ -97,7 +97,7 @@ class ListReader {
         if (error_) return;
         const std::string where = at_.empty() || name.empty() ? at_ + name : at_ + "." + name;
         error_ = input_error(
-            fmt::format("{}: {} {}; the names are those of stairs.json (docs/reference/json.md)",
+            fmt::format("{}: {} {}; docs/reference/json.md describes the keys of stairs.json",
                         file_,
                         where,
                         what));
@@ -180,7 +180,8 @@ Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& fi
     const auto all = gate_process::parse_json(text, kFileLimits);
     if (!all) return input_error(fmt::format("{}: {}", file, all.error().message));
     if (!all->is_object())
-        return input_error(fmt::format("{}: holds no JSON object, as stairs.json does", file));
+        return input_error(
+            fmt::format("{}: the file is not a JSON object; give a stairs.json", file));
     ListedFeatures out;
     stairs::TerrainFeatures& features = out.features;
     ListReader reader(file);
@@ -200,9 +201,10 @@ Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& fi
     read("edges", [&](const Json& object) { features.edges.push_back(edge_of(reader, object)); });
     if (reader.error()) return *reader.error();
     if (out.lists.empty()) {
-        return input_error(fmt::format(
-            "{}: has none of flights, drops, kerbs, sills, doors and edges, as stairs.json does",
-            file));
+        return input_error(
+            fmt::format("{}: the file has no list of flights, drops, kerbs, sills, doors or edges; "
+                        "give a stairs.json",
+                        file));
     }
     return out;
 }
@@ -291,8 +293,8 @@ const char* gravity_name(grid::GravitySource source) {
 
 std::string gravity_note(grid::GravitySource source) {
     if (source != grid::GravitySource::assumed) return "";
-    return "gravity was assumed: all heights, slopes, steps and drops lean by the unknown tilt of "
-           "the camera (run with an IMU, or set mount.pitch_deg)";
+    return "gravity was assumed: all heights, slopes, steps and drops are tilted by the unknown "
+           "tilt of the camera (run with an IMU, or set mount.pitch_deg)";
 }
 
 std::string stairs_json(const stairs::TerrainFeatures& features,

@@ -46,7 +46,7 @@ std::string side_remark(const char* name, const stairs::FlightSide& side) {
 std::string flight_remarks(const stairs::Flight& flight) {
     std::string text = fmt::format("landing {:.2f} m", flight.landing_m);
     if (flight.steps > 2) {
-        text += fmt::format("; single ones scatter by {:.0f} mm and {:.0f} mm",
+        text += fmt::format("; single risers scatter by {:.0f} mm, goings by {:.0f} mm",
                             1e3 * flight.riser_spread_m,
                             1e3 * flight.going_spread_m);
     }
@@ -55,7 +55,7 @@ std::string flight_remarks(const stairs::Flight& flight) {
         text += fmt::format("; turns by {:.0f} deg", flight.turn_rad * 180.0 / std::numbers::pi);
     if (flight.open) text += "; boards without risers";
     text += side_remark("left", flight.left) + side_remark("right", flight.right);
-    if (flight.cut) text += "; may go on beyond what is known";
+    if (flight.cut) text += "; may continue in unknown ground";
     return text;
 }
 
@@ -79,7 +79,7 @@ Row line_row(const char* what, const stairs::LineFeature& line) {
         "",
         fmt::format("{:.2f} m", line.length_m),
         place_text(line.pose),
-        line.bottom_seen ? "" : "its bottom was not seen"};
+        line.bottom_seen ? "" : "the camera did not see its bottom"};
 }
 
 Row door_row(const stairs::Door& door) {
@@ -92,7 +92,7 @@ Row door_row(const stairs::Door& door) {
         fmt::format("sill {}, {}",
                     length_text(door.sill_m, door.sill_sigma_m),
                     std::isfinite(door.clearance_m) ? fmt::format("{:.2f} m high", door.clearance_m)
-                                                    : "nothing seen above it")};
+                                                    : "no ceiling above it seen")};
 }
 
 std::vector<Row> rows_of(const stairs::TerrainFeatures& features) {
@@ -140,14 +140,15 @@ std::string features_text(const stairs::TerrainFeatures& features) {
 
 eval::ReportTable features_table(const stairs::TerrainFeatures& features) {
     eval::ReportTable table;
-    table.title = "Flights, drops, kerbs, sills and doors, as seen from where the machine stands";
-    table.header = {"what", "riser, height or depth", "going", "width", "place, way over it", ""};
+    table.title = "Flights, drops, kerbs, sills and doors, seen from the position of the machine";
+    table.header = {
+        "what", "riser, height or depth", "going", "width", "position, walking direction", ""};
     table.wide = true;
     for (const Row& row : rows_of(features))
         table.rows.push_back({row.what, row.height, row.going, row.width, row.place, row.remarks});
     table.hint =
-        "x and y in m in odom, the way as an angle from x; one sigma behind +-. stairs.json has "
-        "all of it, and every edge.";
+        "Positions are x and y in m in odom; the walking direction is an angle from the x axis. "
+        "Values after +- are one sigma. stairs.json has all values, and every edge.";
     return table;
 }
 

@@ -37,7 +37,7 @@ Result<TerrainMap> from_grid(const std::string& file) {
     auto dem = io::read_height_grid(file);
     if (!dem) return dem.error();
     TerrainMap map = map_of(std::move(dem).value());
-    map.assumed.emplace_back("heights are exact: the grid has no variances");
+    map.assumed.emplace_back("heights are exact, because the grid has no variances");
     return map;
 }
 
@@ -45,7 +45,7 @@ Result<TerrainMap> from_image(const TerrainRequest& request) {
     auto dem = read_height_image(request.map, request.scale_m_per_px, request.height_m);
     if (!dem) return dem.error();
     TerrainMap map = map_of(std::move(dem).value());
-    map.assumed.emplace_back("heights are exact: an image has no variances");
+    map.assumed.emplace_back("heights are exact, because an image has no variances");
     return map;
 }
 
@@ -67,10 +67,11 @@ Result<TerrainMap> from_cloud(const TerrainRequest& request) {
     map.geometry = grid->geometry;
     map.height_m = std::move(dem->height_m);
     map.clearance_m = std::move(dem->clearance_m);
-    map.assumed = {"z of the cloud points up",
-                   fmt::format("the highest surface that enough points of a cell of {:g} m share, "
-                               "and that does not hang, is its ground, and exact",
-                               request.resolution_m)};
+    map.assumed = {
+        "z of the cloud points up",
+        fmt::format("the ground of a cell of {:g} m is the highest surface that enough points "
+                    "share and that does not hang in the air; its height is exact",
+                    request.resolution_m)};
     if (const std::string text = left_out_text(*dem); !text.empty()) map.assumed.push_back(text);
     return map;
 }
@@ -83,8 +84,8 @@ Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry
     if (g.nx != geometry.nx || g.ny != geometry.ny || g.resolution_m != geometry.resolution_m ||
         g.origin_m != geometry.origin_m) {
         return input_error(fmt::format(
-            "{}: {} x {} cells of {:g} m from ({:g}, {:g}), but elevation.asc beside it has {} x "
-            "{} of {:g} m from ({:g}, {:g}); the files of one run belong together",
+            "{}: {} x {} cells of {:g} m from ({:g}, {:g}), but elevation.asc in the same folder "
+            "has {} x {} of {:g} m from ({:g}, {:g}); give the files of one run",
             file,
             g.nx,
             g.ny,
@@ -118,22 +119,23 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
     const auto read = [&](const char* name, const char* without) -> Result<grid::Layer> {
         const std::string file = io::join_path(folder, name);
         if (io::is_file(file)) return same_cells(file, map.geometry);
-        map.assumed.push_back(fmt::format("{} (no {}; run --layers writes it)", without, name));
+        map.assumed.push_back(
+            fmt::format("{} (there is no {}; 'surefoot run --layers' writes it)", without, name));
         return grid::Layer();
     };
     auto free_above =
-        read("free_above.asc", "no line of sight shows ground lower than what is known");
+        read("free_above.asc", "no line of sight shows that ground is lower than the map");
     if (!free_above) return free_above.error();
     map.free_above_m = std::move(free_above).value();
-    auto clearance = read("clearance.asc", "nothing hangs over the ground");
+    auto clearance = read("clearance.asc", "no object hangs over the ground");
     if (!clearance) return clearance.error();
     map.clearance_m = std::move(clearance).value();
     auto density = read("density_ratio.asc", "no cell shows the points of a vertical face");
     if (!density) return density.error();
     map.density_ratio = std::move(density).value();
     map.assumed.emplace_back(
-        "where the camera looked is not kept: ground that only ends is no drop");
-    const auto count = read("count.asc", "every cell was seen more than once");
+        "the viewing directions are not saved, so ground that only ends is not a drop");
+    const auto count = read("count.asc", "every cell was observed more than once");
     if (!count) return count.error();
     if (!count->empty()) map.observations = observations_of(*count);
     return {};
@@ -145,10 +147,10 @@ Result<TerrainMap> from_folder(const std::string& folder) {
     const std::string height_file =
         io::is_file(ground_file) ? ground_file : io::join_path(folder, "elevation.asc");
     if (!io::is_file(height_file)) {
-        return input_error(fmt::format(
-            "{}: holds no elevation.asc; give the output folder of 'surefoot run', or a height "
-            "map: .asc, .png, .ply, .pcd or .xyz",
-            folder));
+        return input_error(
+            fmt::format("{}: the folder has no elevation.asc; give the output folder of 'surefoot "
+                        "run', or a height map: .asc, .png, .ply, .pcd or .xyz",
+                        folder));
     }
     auto height = io::read_height_grid(height_file);
     if (!height) return height.error();
@@ -159,7 +161,7 @@ Result<TerrainMap> from_folder(const std::string& folder) {
         if (!variance) return variance.error();
         map.height_var_m2 = std::move(variance).value();
     } else {
-        map.assumed.push_back("heights are exact: there is no variance.asc");
+        map.assumed.push_back("heights are exact, because there is no variance.asc");
     }
     if (auto status = read_optional_layers(folder, map); !status) return status.error();
     const std::string snapshot_file = io::join_path(folder, "map.snapshot");
@@ -194,19 +196,20 @@ Result<TerrainMap> load_map(const TerrainRequest& request) {
 
 Status check_cells(const std::string& file, const TerrainMap& map) {
     if (map.geometry.nx < 2 || map.geometry.ny < 2) {
-        return input_error(fmt::format("{}: {} x {} cells; an edge needs at least 2 x 2",
-                                       file,
-                                       map.geometry.nx,
-                                       map.geometry.ny));
+        return input_error(
+            fmt::format("{}: the map has {} x {} cells; an edge needs at least 2 x 2",
+                        file,
+                        map.geometry.nx,
+                        map.geometry.ny));
     }
     for (std::size_t i = 0; i < map.height_m.size(); ++i)
         if (std::isfinite(map.height_m.data()[i])) return {};
-    return input_error(fmt::format(
-        "{}: none of its {} x {} cells is known, so nothing can be said of the ground; where it "
-        "is the map of a run, its report.json says why it is empty",
-        file,
-        map.geometry.nx,
-        map.geometry.ny));
+    return input_error(
+        fmt::format("{}: none of its {} x {} cells is known, so there is no result; if it is the "
+                    "map of a run, its report.json says why it is empty",
+                    file,
+                    map.geometry.nx,
+                    map.geometry.ny));
 }
 
 /// The known cell nearest to the middle of the border with the smallest x.
@@ -236,37 +239,39 @@ Status stand_as_given(const std::string& from, TerrainMap& map) {
     map.T_odom_body.reset();
     const grid::GridGeometry& g = map.geometry;
     if (g.cell_at(map.stance_m.x(), map.stance_m.y())) return {};
-    return usage_error(fmt::format(
-        "--from '{}': lies outside the map, which reaches from ({:g}, {:g}) to ({:g}, {:g}) m",
-        from,
-        g.origin_m.x(),
-        g.origin_m.y(),
-        g.origin_m.x() + g.nx * g.resolution_m,
-        g.origin_m.y() + g.ny * g.resolution_m));
+    return usage_error(
+        fmt::format("--from '{}': the position is outside the map, which extends from ({:g}, {:g}) "
+                    "to ({:g}, {:g}) m",
+                    from,
+                    g.origin_m.x(),
+                    g.origin_m.y(),
+                    g.origin_m.x() + g.nx * g.resolution_m,
+                    g.origin_m.y() + g.ny * g.resolution_m));
 }
 
 /// Default standing position: base_link of the run, else the origin, else the near border.
 void stand_somewhere(TerrainMap& map) {
     if (map.T_odom_body) {
         map.stance_m = map.T_odom_body->translation_m.head<2>();
-        map.assumed.push_back(fmt::format(
-            "one stands at ({:.3f}, {:.3f}): base_link of map.snapshot (--from x,y changes it)",
-            map.stance_m.x(),
-            map.stance_m.y()));
+        map.assumed.push_back(
+            fmt::format("the machine stands at ({:.3f}, {:.3f}): base_link of map.snapshot (--from "
+                        "x,y changes it)",
+                        map.stance_m.x(),
+                        map.stance_m.y()));
         return;
     }
     const auto origin = map.geometry.cell_at(0.0, 0.0);
     if (origin && std::isfinite(map.height_m.at(origin->ix, origin->iy))) {
         map.stance_m = Vector2d::Zero();
-        map.assumed.push_back("one stands at the origin (0, 0) (--from x,y changes it)");
+        map.assumed.push_back("the machine stands at the origin (0, 0) (--from x,y changes it)");
         return;
     }
     map.stance_m = nearest_to_border(map);
-    map.assumed.push_back(fmt::format(
-        "one stands at ({:.3f}, {:.3f}): the known cell nearest to the middle of the border with "
-        "the smallest x (--from x,y changes it)",
-        map.stance_m.x(),
-        map.stance_m.y()));
+    map.assumed.push_back(
+        fmt::format("the machine stands at ({:.3f}, {:.3f}): the known cell nearest to the middle "
+                    "of the border with the smallest x (--from x,y changes it)",
+                    map.stance_m.x(),
+                    map.stance_m.y()));
 }
 
 }  // namespace

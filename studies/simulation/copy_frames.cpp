@@ -34,8 +34,8 @@ Result<io::Recorder> start_recording(const std::string& folder,
                                      io::Recorder::Existing existing) {
     if (source.info().modelled_depth) {
         return usage_error(
-            fmt::format("{}: sim.sensor = analytic makes no images that could be recorded in {}; "
-                        "'surefoot run sim:{}' uses it directly",
+            fmt::format("{}: sim.sensor = analytic makes no images to record in {}; use 'surefoot "
+                        "run sim:{}' instead",
                         source.info().path,
                         folder,
                         source.info().path));

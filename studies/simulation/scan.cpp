@@ -36,11 +36,11 @@ Result<std::vector<Vector3d>> chosen_stations(const SimOptions& options,
         if (!xyz) return xyz.error();
         const Vector3d station_m((*xyz)[0], (*xyz)[1], (*xyz)[2]);
         if (sim::is_buried(script.scene, station_m)) {
-            return usage_error(fmt::format(
-                "--station {}: lies under the ground or inside something solid of {}; choose a "
-                "place in the open",
-                text,
-                options.scene));
+            return usage_error(
+                fmt::format("--station {}: this position is under the ground or inside an object "
+                            "of {}; choose a free position",
+                            text,
+                            options.scene));
         }
         stations_m.push_back(station_m);
     }
@@ -173,8 +173,8 @@ Result<double> expected_points(const sim::Scene& scene,
 Status check_room(const std::string& file, const ScanSize& size, double free_bytes) {
     if (size.bytes <= free_bytes) return {};
     return input_error(fmt::format(
-        "{}: the scan needs about {:.1f} GB ({:.3g} points), the disk has {:.1f} GB; "
-        "scan coarser (--set sim.laser.step_deg=...), from fewer stations, or elsewhere",
+        "{}: the scan needs about {:.1f} GB ({:.3g} points), but the disk has {:.1f} GB free; use "
+        "coarser steps (--set sim.laser.step_deg=...), fewer stations, or another disk",
         file,
         1e-9 * size.bytes,
         size.points,

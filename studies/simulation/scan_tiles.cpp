@@ -49,7 +49,7 @@ Result<ScanTiles::Tile*> ScanTiles::tile_at(const Place& place) {
     if (known != tiles_.end()) return &known->second;
     if (tiles_.size() == kMostTiles) {
         return usage_error(
-            fmt::format("--tile {:g}: the scan spreads over more than {} tiles; take larger ones",
+            fmt::format("--tile {:g}: the scan needs more than {} tiles; use larger tiles",
                         side_m_,
                         kMostTiles));
     }

@@ -83,7 +83,7 @@ Status write_heights(const std::string& path,
     const grid::GridGeometry geometry{around.resolution_m, around.nx, around.ny, around.origin_m};
     const grid::Layer heights_m = sim::dem(script.scene, around);
     eval::LayerStyle style = eval::elevation_style();
-    style.text = {info.name, "true heights and the path"};
+    style.text = {info.name, "true heights and path"};
     style.range = ground_range(heights_m, sim::labels(script.scene, around));
     eval::Overlays overlays;
     overlays.T_odom_body = script.motion->at(0.5 * script.motion->duration_s()).T_world_body;

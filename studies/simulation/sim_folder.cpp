@@ -52,10 +52,12 @@ SimFolder compare_folder(const std::string& folder, const std::string& config) {
         their_line = theirs.next();
         our_line = ours.next();
     }
-    return {io::Recorder::Existing::refuse,
-            fmt::format("it was made otherwise: its config.yaml says '{}', this call '{}'",
-                        their_line.value_or(""),
-                        our_line.value_or(""))};
+    return {
+        io::Recorder::Existing::refuse,
+        fmt::format(
+            "the folder was made by another call: its config.yaml says '{}', this call says '{}'",
+            their_line.value_or(""),
+            our_line.value_or(""))};
 }
 
 }  // namespace surefoot::app

@@ -56,11 +56,12 @@ eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
     for (const VerdictTally& tally : pool.tallies.all()) {
         if (tally.by != by) continue;
         const std::string name = by == TallyKey::proof ? words_of(tally.name) : tally.name;
-        const std::string text = by == TallyKey::danger
-                                     ? fmt::format("{} ({} alone)", tally.named, tally.alone)
-                                     : fmt::format("{}, alone {}",
-                                                   percent(tally.named, pool.safe),
-                                                   percent(tally.alone, pool.safe));
+        const std::string text =
+            by == TallyKey::danger
+                ? fmt::format("{} ({} as the only one)", tally.named, tally.alone)
+                : fmt::format("{}, as the only one {}",
+                              percent(tally.named, pool.safe),
+                              percent(tally.alone, pool.safe));
         bars.bars.push_back({name, static_cast<double>(tally.named), text});
     }
     std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const auto& a, const auto& b) {
@@ -85,8 +86,9 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
         const std::string at = fmt::format("noise {}", times(noise));
         all.push_back(
             bars_of(pool, TallyKey::reason, "Why clearly safe movements were refused, " + at));
-        all.push_back(bars_of(pool, TallyKey::proof, "What could not be proven about them, " + at));
-        all.push_back(bars_of(pool, TallyKey::danger, "Hazards that were missed, " + at));
+        all.push_back(
+            bars_of(pool, TallyKey::proof, "Missing proofs of clearly safe movements, " + at));
+        all.push_back(bars_of(pool, TallyKey::danger, "Missed hazards, " + at));
     }
     return all;
 }
@@ -106,8 +108,8 @@ eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
     eval::ReportTable table;
     table.title = "Why clearly safe movements were refused";
     table.hint =
-        "Share of the clearly safe movements at the end of the way whose answer names the reason; "
-        "an answer may name several.";
+        "Share of the clearly safe movements at the end of the path whose verdict names this "
+        "reason. A verdict can name several reasons.";
     table.wide = true;
     table.header = {"scene", "noise", "cases", "safe", "allowed"};
     for (const std::string& reason : reasons) table.header.push_back(words_of(reason));
@@ -137,18 +139,20 @@ std::string judgement(const SuiteStep& step) {
 
 std::string outcome(const SuiteStep& step) {
     if (step.allowed()) return step.safe ? "allowed" : step.clear_cut ? "MISSED" : "allowed";
-    return step.safe ? "refused: too careful" : "refused";
+    return step.safe ? "refused although safe" : "refused";
 }
 
 }  // namespace
 
 eval::ReportTable step_table(std::span<const SuiteResult> results) {
     eval::ReportTable table;
-    table.title = "Each step that a walking user asked for, and what the gate said just before it";
-    table.header = {"case", "step", "s", "command", "truth", "why not", "gate", "its reasons"};
+    table.title =
+        "Every step that a walking user requested, and the verdict of the gate just before it";
+    table.header = {
+        "case", "step", "s", "command", "truth", "dangers", "gate", "reasons of the gate"};
     table.hint =
-        "Asked with the map and the pose of that moment. An operator has answered for level ground "
-        "around the start.";
+        "The gate is asked with the map and the pose of that moment. An operator attestation "
+        "covers the level ground around the start.";
     table.wide = true;
     for (const SuiteResult& result : results) {
         for (const SuiteStep& step : result.steps) {
@@ -177,7 +181,7 @@ eval::ReportBars step_bars(std::span<const SuiteResult> results) {
         }
     }
     eval::ReportBars bars;
-    bars.title = "What the gate said to clearly safe steps (first reason)";
+    bars.title = "Verdicts of clearly safe steps (first reason)";
     for (const auto& [reason, count] : counts) {
         bars.bars.push_back({reason,
                              static_cast<double>(count),

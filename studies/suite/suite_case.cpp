@@ -96,8 +96,9 @@ class CaseRun {
         const RunRecord& record = session.record();
         if (record.error) return *record.error;
         if (!record.truth) {
-            return input_error(which.name() +
-                               ": the machine moved before odom was placed; start it standing");
+            return input_error(
+                which.name() +
+                ": the machine moved before the odom frame was set; start the run at standstill");
         }
         if (auto status = take_snapshot(); !status) return status.error();
         const Pose T_world_body = source_.truth().trajectory[record.frames.size() - 1].T_world_body;
@@ -162,7 +163,7 @@ const std::vector<SuiteFigure>& suite_figures() {
         {"frames", "Motion", count, false, "frames that were processed"},
         {"healthy", "Motion", share, false, "frames with odometry OK"},
         {"ate_rmse_m", "Motion", length_m, true, "trajectory error, not aligned"},
-        {"drift_percent", "Motion", percent, true, "drift along the way"},
+        {"drift_percent", "Motion", percent, true, "drift along the path"},
         {"height_median_m", "Heights", length_m, true, "median |height error|"},
         {"height_p90_m", "Heights", length_m, true, "90 % of |height error|"},
         {"share_over_50mm", "Heights", share, true, "off by more than 50 mm, away from edges"},
@@ -173,28 +174,44 @@ const std::vector<SuiteFigure>& suite_figures() {
          "Ground",
          length_m,
          true,
-         "99 % of the jumps between neighbours, level floor"},
+         "99 % of the height steps between neighbours, level floor"},
         {"floor_spread_m", "Ground", length_m, true, "scatter of level floor about its plane"},
-        {"coverage", "Ground", share, false, "known of what both eyes saw within 2.5 m"},
+        {"coverage",
+         "Ground",
+         share,
+         false,
+         "known share of the ground that both cameras saw within 2.5 m"},
         {"false_safe", "Ground", share, true, "truly unsafe cells called safe"},
         {"false_unsafe", "Ground", share, true, "truly safe cells called unsafe"},
         {"depth_1_sigma", "Depth", share, false, "depths within 1 sigma"},
         {"depth_3_sigma", "Depth", share, false, "depths within 3 sigma"},
         {"disparity_error_px", "Depth", pixels, true, "median |disparity error|"},
-        {"depth_auc", "Depth", number, true, "sparsification of sigma (0 = knows, 1 = chance)"},
-        {"questions", "Gate", count, false, "clear-cut questions at the end of the way"},
-        {"safe_questions", "Gate", count, false, "of these truly safe"},
-        {"missed_hazards", "Gate", count, true, "clearly dangerous, and the gate said OK"},
-        {"borderline_missed", "Gate", count, true, "dangerous by less than the margin, and OK"},
-        {"allowed", "Gate", share, false, "of the clearly safe movements allowed"},
-        {"steps", "Gate", count, false, "steps that the walking user asked for"},
-        {"steps_missed", "Gate", count, true, "clearly dangerous steps allowed"},
+        {"depth_auc",
+         "Depth",
+         number,
+         true,
+         "sparsification of sigma (0 = perfect order, 1 = chance)"},
+        {"questions", "Gate", count, false, "clear-cut questions at the end of the path"},
+        {"safe_questions", "Gate", count, false, "truly safe movements among these questions"},
+        {"missed_hazards",
+         "Gate",
+         count,
+         true,
+         "clearly dangerous movements that the gate allowed"},
+        {"borderline_missed",
+         "Gate",
+         count,
+         true,
+         "dangerous by less than the margin of the oracle, and allowed"},
+        {"allowed", "Gate", share, false, "allowed share of the clearly safe movements"},
+        {"steps", "Gate", count, false, "steps that the walking user requested"},
+        {"steps_missed", "Gate", count, true, "clearly dangerous steps that the gate allowed"},
         {"steps_borderline_missed",
          "Gate",
          count,
          true,
-         "dangerous by less than the margin, and OK"},
-        {"steps_allowed", "Gate", share, false, "of the clearly safe steps allowed"},
+         "dangerous by less than the margin of the oracle, and allowed"},
+        {"steps_allowed", "Gate", share, false, "allowed share of the clearly safe steps"},
     };
     return all;
 }

@@ -90,8 +90,10 @@ Status add_motion_models(const std::string& name,
         const auto asked = sim::motion_model_of(carried_by(word));
         const auto scene = sim::make_scene(name, options.common.seed, asked);
         if (!scene && asked && sim::make_scene(name, options.common.seed)) {
-            log_warning(
-                fmt::format("{} is left out for {}: {}", name, word, scene.error().message));
+            log_warning(fmt::format("scene {} with motion model {} is left out: {}",
+                                    name,
+                                    word,
+                                    scene.error().message));
             continue;
         }
         if (!scene) return usage_error(scene.error().message);
@@ -107,10 +109,13 @@ Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
     for (const std::string& name : chosen_names(options)) {
         if (auto status = check_name(name); !status) return status.error();
         if (!names.insert(name).second)
-            return usage_error(fmt::format("--scenes: {} is named twice", name));
+            return usage_error(fmt::format("--scenes: {} is given twice", name));
         if (auto status = add_motion_models(name, options, scenes); !status) return status.error();
     }
-    if (scenes.empty()) return usage_error("--carriers: none of them can go any of these ways");
+    if (scenes.empty())
+        return usage_error(
+            "--carriers: none of these motion models can follow the paths of these scenes; give "
+            "another motion model or scene");
     return scenes;
 }
 

@@ -75,13 +75,13 @@ double sum_of(std::span<const SuiteResult> results, std::string_view name) {
 
 void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& content) {
     const double missed = sum_of(results, "missed_hazards");
-    content.figures.push_back({"Hazards missed by the gate",
-                               fmt::format("{:.0f}", missed),
-                               "",
-                               fmt::format("of {:.0f} clear-cut questions; {:.0f} more within the "
-                                           "margin",
-                                           sum_of(results, "questions"),
-                                           sum_of(results, "borderline_missed"))});
+    content.figures.push_back(
+        {"Hazards missed by the gate",
+         fmt::format("{:.0f}", missed),
+         "",
+         fmt::format("of {:.0f} clear-cut questions; {:.0f} more within the margin of the oracle",
+                     sum_of(results, "questions"),
+                     sum_of(results, "borderline_missed"))});
     const double allowed = allowed_share(results);
     for (const NoiseBins& level : pooled_by_noise(results)) {
         std::vector<SuiteResult> of_level;
@@ -93,13 +93,13 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
             {fmt::format("Clearly safe movements allowed, noise {}", times(level.noise)),
              shown(FigureKind::share, allowed_share(of_level)),
              "",
-             fmt::format("of {:.0f}; why not the others: below",
+             fmt::format("of {:.0f}; the reasons of the refusals are listed below",
                          sum_of(of_level, "safe_questions"))});
     }
     if (allowed == 0.0) {
         content.reasons.push_back(
-            "The gate allowed no movement at all in these runs: that it missed no hazard says "
-            "nothing yet. In short runs the ground around the feet was never seen.");
+            "The gate allowed no movement in these runs, so the number of missed hazards says "
+            "nothing yet. In short runs the camera never sees the ground around the feet.");
     }
     if (const double steps = sum_of(results, "steps"); steps > 0.0) {
         content.figures.push_back(
@@ -135,10 +135,10 @@ eval::ReportTable motion_model_table(std::span<const SuiteResult> results) {
                                              "steps_missed",
                                              "steps_allowed"};
     eval::ReportTable table;
-    table.title = "Who carried the camera";
-    table.hint = "Median of all cases, in brackets the worst.";
+    table.title = "Figures by motion model";
+    table.hint = "Median of all cases; the worst case in brackets.";
     table.wide = true;
-    table.header = {"carrier", "noise", "cases"};
+    table.header = {"motion model", "noise", "cases"};
     std::vector<std::size_t> columns;
     for (const char* name : kShown) {
         const auto& all = suite_figures();
@@ -169,17 +169,17 @@ struct BinView {
 constexpr BinView kBinViews[] = {
     {BinKey::range,
      "Height error by distance",
-     "distance from the camera that saw the cell last [m]",
+     "distance of the cell from the camera at its last observation [m]",
      0.9,
      "90 % are smaller"},
     {BinKey::column,
      "Height error by image column",
-     "image column where the cell was seen last [px]",
+     "image column of the cell at its last observation [px]",
      0.9,
      "90 % are smaller"},
     {BinKey::jump_column,
-     "Jumps between neighbours on level floor",
-     "image column where the cells were seen last [px]",
+     "Height steps between neighbouring cells of level floor",
+     "image column of the cells at their last observation [px]",
      0.99,
      "99 % are smaller"},
 };
@@ -263,8 +263,8 @@ std::vector<eval::ReportTable> group_tables(std::span<const SuiteRow> rows) {
         if (tables.empty() || tables.back().title != all[i].group) {
             eval::ReportTable table;
             table.title = all[i].group;
-            table.header = {"scene", "carrier", "noise", "cases"};
-            table.hint = "Median of the seeds, in brackets the worst.";
+            table.header = {"scene", "motion model", "noise", "cases"};
+            table.hint = "Median of the seeds; the worst seed in brackets.";
             table.wide = true;
             for (const SuiteRow& row : rows) {
                 table.rows.push_back(
@@ -284,7 +284,7 @@ eval::ReportTable case_table(std::span<const SuiteResult> results) {
     table.title = "Every case";
     table.wide = true;
     table.folded = true;
-    table.header = {"case", "carrier"};
+    table.header = {"case", "motion model"};
     for (const SuiteFigure& figure : suite_figures()) table.header.push_back(heading_of(figure));
     for (const SuiteResult& result : results) {
         std::vector<std::string> row = {result.which.name(), result.which.motion_model};
@@ -318,7 +318,7 @@ void add_thumbnails(std::span<const SuiteResult> results,
         content.thumbnails.push_back(
             {fmt::format(
                  "{}, seed {}, noise {}: {} of the unsafe cells called safe, {} of the safe "
-                 "ones unsafe; {:.0f} hazards missed",
+                 "cells called unsafe; {:.0f} hazards missed",
                  result->which.scene,
                  result->which.seed,
                  times(result->which.noise),
@@ -335,21 +335,21 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
     const std::vector<SuiteRow> rows = summarise(results);
     const std::vector<NoiseBins> levels = pooled_by_noise(results);
     eval::ReportContent content;
-    content.title = "Surefoot against the truth";
+    content.title = "Surefoot compared with the truth";
     content.summary = {
-        fmt::format("{} simulated runs through the whole chain, in {} rows of scene and noise; "
-                    "nothing was aligned before the comparison.",
+        fmt::format("{} simulated runs of the whole chain, in {} rows of scene and noise. The maps "
+                    "are not aligned to the truth before the comparison.",
                     results.size(),
                     rows.size()),
-        "Seeds from 10000 on were never used while building.",
+        "Seeds from 10000 on were never used during development.",
         eval::kConfusionLegend};
     add_key_figures(results, content);
-    content.plots_title = "How far off the map is, and where";
+    content.plots_title = "Size and position of the map errors";
     for (const BinView& view : kBinViews) {
         for (const NoiseBins& level : levels)
             content.plots.push_back(bin_plot(level, view, tallest_mm(levels, view)));
     }
-    content.thumbnails_title = "Safe or not: the worst case of each scene";
+    content.thumbnails_title = "Safe or unsafe: the worst case of each scene";
     add_thumbnails(results, folder, content);
     content.details_title = "Figures";
     for (eval::ReportBars& bars : refusal_bars(results)) content.bars.push_back(std::move(bars));

@@ -182,10 +182,10 @@ struct LineFile {
             text = std::move(*found);
         }
         if (!text.empty() && !text.starts_with(head)) {
-            return usage_error(fmt::format(
-                "{}: was made with other settings or by another version; give a new --out folder, "
-                "or remove it to start over",
-                path));
+            return usage_error(
+                fmt::format("{}: made with other settings or by another version; give a new --out "
+                            "folder, or remove this one",
+                            path));
         }
         std::string kept = head;
         // A line is complete if its line end was written.

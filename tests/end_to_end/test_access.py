@@ -118,7 +118,7 @@ class Roles(AccessTest):
                                 ("operator", "authenticate", "done"), ("operator", "attest", "failed"),
                                 ("none", "authenticate", "no right")])
         self.assertIn("operator attest: failed", surefoot("audit", "acts", audit).stdout)
-        self.assertIn("whole", self.run_ok("audit", "verify", audit).stdout)
+        self.assertIn("intact", self.run_ok("audit", "verify", audit).stdout)
 
     def test_guests_can_be_kept_out(self):
         self.start("--token-file", self.tokens, "--guests", "none")

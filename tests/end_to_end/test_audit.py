@@ -35,7 +35,7 @@ class AuditLog(CliTest):
         again = self.json_of("audit", "replay", self.log)
         self.assertEqual(set(again) - set(whole), {"equal", "different", "first_difference"})
         self.assertEqual((again["equal"], again["different"]), (len(COMMANDS), 0))
-        self.assertIn("whole", self.run_ok("audit", "verify", self.log).stdout)
+        self.assertIn("intact", self.run_ok("audit", "verify", self.log).stdout)
 
     def test_damage_is_told_and_ends_with_1(self):
         files = self.fill()
@@ -68,7 +68,7 @@ class AuditLog(CliTest):
         logged = self.ask(9, "--json", "--audit", blocked)
         self.assertEqual(logged.returncode, plain.returncode)
         self.assertEqual(logged.stdout, plain.stdout)
-        self.assertIn("not in the audit log", logged.stderr)
+        self.assertIn("not written to the audit log", logged.stderr)
 
     def test_what_is_no_log_is_a_sentence(self):
         for path in (self.dir / "nowhere", self.map):

@@ -318,11 +318,11 @@ class BadImages(CliTest):
         rows = blobs(*self.SIZE)
         process = surefoot("run", self.source(moved(rows, 20), rows), "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1)
-        self.assertRegex(process.stderr, r"frame 0: left and right seem to be exchanged: \d+ of \d+ corners")
+        self.assertRegex(process.stderr, r"frame 0: left and right camera seem to be swapped: \d+ of \d+ corners")
         self.assertFalse(json.loads((self.dir / "out" / "report.json").read_text())["complete"])
         process = surefoot("serve", self.source(moved(rows, 20), rows), "--once", "--port", 0)
         self.assertEqual(process.returncode, 1)
-        self.assertRegex(process.stderr, r"frame 0: left and right seem to be exchanged: \d+ of \d+ corners")
+        self.assertRegex(process.stderr, r"frame 0: left and right camera seem to be swapped: \d+ of \d+ corners")
         process = self.run_ok("run", self.source(rows, moved(rows, 20, down=3)), "--out", self.dir / "out")
         self.assertRegex(process.stderr, r"frame 0: rows differ by (2\.9|3\.0)\d px .*calibration does not fit")
         process = self.run_ok("run", self.source(rows, moved(rows, 20)), "--out", self.dir / "out")
@@ -363,7 +363,7 @@ class BadImages(CliTest):
         self.write("small.png", [bytes(160)] * 100)
         pairs = self.dir / "pairs.txt"
         for line, words in (("l.png small.png 1", "differ in size"), ("small.png small.png 1", "160x100 px but rig"),
-                            ("r.png l.png 1", "exchanged")):
+                            ("r.png l.png 1", "swapped")):
             pairs.write_text(line + "\n")
             process = surefoot("depth-accuracy", "--pairs", pairs, "--rig", self.dir / "rig.yaml",
                                "--out", self.dir / "out")

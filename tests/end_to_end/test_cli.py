@@ -193,7 +193,7 @@ class Verbs(CliTest):
                 process = surefoot(verb, *rest, *wrong, cwd=self.dir)
                 self.assertEqual(process.returncode, 2, f"{verb} {wrong}: {process.stderr}")
         process = surefoot("info", self.dir, "--set", "elevation.length_m=8")
-        self.assertIn("change nothing here", process.stderr)
+        self.assertIn("have no effect", process.stderr)
 
     def test_live_cameras_say_what_is_missing(self):
         for source, code, words in (("v4l2:video0", 2, "expected v4l2:DEVICE"), ("v4l2:/dev/null", 1, "not a video device"),
@@ -305,7 +305,7 @@ motion:
         self.recorded("cut", "--depth")
         self.cut("cut", 3_000_000_000)
         process = self.recorded("cut", "--depth")
-        self.assertIn("4 of 10 frames were there already", process.stderr)
+        self.assertIn("4 of 10 frames already existed", process.stderr)
         self.assertEqual(self.files("cut"), whole)
         # What is kept is not rendered again: it stays what somebody has made of it.
         image = self.dir / "cut" / frames[2]
@@ -319,7 +319,7 @@ motion:
         self.recorded("cut", *rgbd)
         self.cut("cut", 2.5)
         process = self.recorded("cut", *rgbd)
-        self.assertIn("3 of 10 frames were there already", process.stderr)
+        self.assertIn("3 of 10 frames already existed", process.stderr)
         self.assertEqual(self.files("cut"), self.files("whole"))
 
     def test_what_depends_on_earlier_frames_is_rendered_again(self):
@@ -394,11 +394,11 @@ class Measures(CliTest):
         self.assertEqual(flights["going"], {"count": 0, "mean_m": None, "std_m": None, "max_abs_m": None})
         self.assertEqual((errors["kerbs"]["matched"], errors["kerbs"]["missed"], errors["kerbs"]["extra"]), (0, [[5, 0, 0, 0]], [[5, 0, 0, 0]]))
         self.assertIsNone(errors["drops"])  # the truth says nothing of them
-        self.assertIn("steps right in 1 of 1", self.run_ok("eval", "stairs", found, truth).stdout)
+        self.assertIn("number of steps correct in 1 of 1", self.run_ok("eval", "stairs", found, truth).stdout)
         narrow = json.loads(self.run_ok("eval", "stairs", found, truth, "--across", 0.01, "--json").stdout)
         self.assertEqual(narrow["flights"]["matched"], 0)
-        for text, says in (('{"flights": 3}', "flights is no list"), ('{"flights": [{"kind": "up", "steps": 2}]}', "flights[0].pose"),
-                           ('{"kerbs": [{"pose": [0, 0, 0, 0]}]}', "kerbs[0].kind"), ("{}", "none of flights"), ("[1]", "no JSON object"),
+        for text, says in (('{"flights": 3}', "flights is not a list"), ('{"flights": [{"kind": "up", "steps": 2}]}', "flights[0].pose"),
+                           ('{"kerbs": [{"pose": [0, 0, 0, 0]}]}', "kerbs[0].kind"), ("{}", "no list of flights"), ("[1]", "not a JSON object"),
                            ('{"edges": [{"from": [0, 0], "to": [0, "x"]}]}', "edges[0].to"), ('{"sills": [', "truth.json"),
                            ('{"flights": [{"kind": "up", "steps": -1, "pose": [0, 0, 0, 0]}]}', "flights[0].steps")):
             truth.write_text(text)
@@ -439,7 +439,7 @@ class Measures(CliTest):
         self.assertAlmostEqual(answer["error"]["mean_px"], 10 - 128 / 16)
         self.assertIsNone(answer["auc"])
         process = surefoot("eval", "depth", self.dir / "est.pfm", truth, "--mask", truth)
-        self.assertEqual(process.returncode, 1)  # 128 is not "seen by both eyes"
+        self.assertEqual(process.returncode, 1)  # 128 is not "visible in both cameras"
         self.assertIn("no pixel", process.stderr)
         (self.dir / "small.png").write_bytes(grey_png(3, 2))
         process = surefoot("eval", "depth", self.dir / "est.pfm", self.dir / "small.png")
@@ -509,7 +509,7 @@ class Measures(CliTest):
                      f"{i}, " + line.replace(" ", ", ") for i, line in enumerate(tum)), "columns by name", "s"),
                  "ns.tum": ("".join(row(f"{ns}.000000", i) for i, ns in enumerate(stamps)), "TUM", "ns"),
                  "euroc.csv": (euroc, "EuRoC csv", "ns"),
-                 "kitti.txt": (kitti, "KITTI poses", "row by row as the other trajectory")}
+                 "kitti.txt": (kitti, "KITTI poses", "the same rows as the other trajectory")}
         for name, (text, kind, unit) in files.items():
             (self.dir / name).write_text(text)
             for pair in ((name, "truth.tum"), ("truth.tum", name)):

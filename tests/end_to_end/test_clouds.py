@@ -158,8 +158,8 @@ class Surface(CliTest):
         for name in ("surface", "cut"):
             self.assertLess(max(heights[name]), 1.0)  # no beam
             self.assertLess(sum(z > 0.7 for z in heights[name]), 0.01 * len(heights[name]))
-        for words, why in ((["--reduce", "max", "--max-height", 1.0], "belong to --reduce surface"),
-                           (["--reduce", "surface", "--min-height", 2, "--max-height", 1], "is not below")):
+        for words, why in ((["--reduce", "max", "--max-height", 1.0], "work with --reduce surface only"),
+                           (["--reduce", "surface", "--min-height", 2, "--max-height", 1], "must be below")):
             process = surefoot("dem", cloud, "--resolution", 0.025, "--out", self.dir / "d.asc", *words)
             self.assertEqual(process.returncode, 2)
             self.assertIn(why, process.stderr)
@@ -233,7 +233,7 @@ class Formats(CliTest):
         self.assertIn(b"property double timestamp\nproperty uint id\n", written)
         self.assertEqual(body, b"".join(rows))
         answer = self.json_of("voxel", self.dir / "a.pcd", "--size", 0.1, "--out", self.dir / "v.pcd")
-        self.assertEqual(answer["notes"], ["only places are kept, not: timestamp, id, viewpoint"])
+        self.assertEqual(answer["notes"], ["only positions are kept, not: timestamp, id, viewpoint"])
 
     def test_columns_by_name_and_points_that_are_not_finite(self):
         (self.dir / "a.csv").write_text("id,Y,X,Z\n7,0,0,0.1\n8,0,1,0.2\n9,5,0,0.3\n10,,,\n")
@@ -282,7 +282,7 @@ class Measure(CliTest):
         self.assertAlmostEqual(answer["door"]["width_m"], 0.9, delta=0.001)
         beside = surefoot("measure", self.dir / "door.ply", "--door", f"{5 - c},{2 - s},30", "--json")
         self.assertIsNone(json.loads(beside.stdout)["door"]["width_m"])
-        self.assertIn("nothing stands", beside.stderr)
+        self.assertIn("has too few points within 3 m", beside.stderr)
 
     def test_nothing_to_measure(self):
         (self.dir / "noise.xyz").write_text("".join(f"{i % 7} {i % 11} {i % 13}\n" for i in range(200)))
@@ -292,7 +292,7 @@ class Measure(CliTest):
         process = surefoot("measure", self.dir / "wide.ply")
         self.assertEqual(process.returncode, 2)
         self.assertIn("cannot be numbered", process.stderr)
-        for why, words in (("four finite numbers", ["--box", "1,2"]), ("no point of the cloud lies in it", ["--box", "90,90,99,99"]),
+        for why, words in (("four finite numbers", ["--box", "1,2"]), ("contains no point of the cloud", ["--box", "90,90,99,99"]),
                            ("three finite numbers", ["--door", "1,2"]), ("no level surface", ["--door", "1,2,3"])):
             process = surefoot("measure", self.dir / "noise.xyz", *words)
             self.assertIn(process.returncode, (1, 2))
@@ -395,7 +395,7 @@ class BadInput(CliTest):
                            ("--neighbours", ["sor", good, "--neighbours", 1, "--out", self.dir / "o.ply"]),
                            ("not '.las'", ["voxel", good, "--out", self.dir / "o.las"]),
                            ("--guess", ["icp", good, good, "--guess", "1,2"]),
-                           ("m3c2 alone", ["eval", "clouds", good, good, "--core", good]),
+                           ("m3c2 only", ["eval", "clouds", good, good, "--core", good]),
                            ("cannot be numbered", ["voxel", good, "--size", "1e-5", "--out", self.dir / "o.ply"])):
             if why == "cannot be numbered":
                 (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))

@@ -83,7 +83,7 @@ class Depth(CliTest):
         left, right = self.pair(rows, shifted(rows, 20))
         process = self.run_ok("depth", left, right, "--out", self.dir / "good")
         self.assertEqual(process.stderr, "")
-        self.assertIn("no cloud without a --rig", process.stdout)
+        self.assertIn("give --rig to get a point cloud", process.stdout)
         self.assertFalse((self.dir / "good" / "cloud.ply").exists())
         _, _, disparity = read_pfm(self.dir / "good" / "disparity.pfm")
         self.assertAlmostEqual(disparity[100 * 320 + 200], 20.0, delta=0.1)
@@ -93,7 +93,7 @@ class Depth(CliTest):
         left, right = self.pair(shifted(rows, 20), rows)
         process = surefoot("depth", left, right, "--out", self.dir / "exchanged")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("left and right seem to be exchanged", process.stderr)
+        self.assertIn("left and right camera seem to be swapped", process.stderr)
         self.assertFalse((self.dir / "exchanged").exists())
 
     def test_bad_pairs(self):

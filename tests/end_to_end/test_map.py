@@ -76,7 +76,7 @@ class SavedMaps(CliTest):
         old = old.rename(self.dir / "old.region")
         young, both = self.run_floor(), self.dir / "both.region"
         free = self.run_ok("map", "merge", young, old, "--out", both)
-        self.assertIn("old.region: its variances are as seen", free.stderr)
+        self.assertIn("old.region: this map is", free.stderr)
         self.assertIn("--motion-sigma", free.stderr)
         _, unpaid = read_region(both)
         paid = self.run_ok("map", "merge", young, old, "--motion-sigma", "0.1,0.1,1", "--out", both)

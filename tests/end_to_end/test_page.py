@@ -424,7 +424,7 @@ class JoystickOnPages(PageTest):
         self.assertIn("0 to 255", page.listen(3.0).goodbye[1])
         page = self.page()
         page.send(1, b'{"op":"playback","paused":true}')
-        self.assertIn("no recording", page.listen(3.0).goodbye[1])
+        self.assertIn("not a recording", page.listen(3.0).goodbye[1])
 
 
 class Recordings(PageTest):
@@ -471,7 +471,7 @@ class Recordings(PageTest):
         # And back from the end.
         self.ask(page, lambda said: said["state"] == "running" and 5 < said["playback"]["frame"] < 60, frame=5, speed=1)
         page.send(1, b'{"op":"joystick","command":9}')
-        self.assertIn("nobody steers", page.listen(3.0).goodbye[1])
+        self.assertIn("cannot steer this source", page.listen(3.0).goodbye[1])
 
 
 class OtherMachine(PageTest):
@@ -533,12 +533,12 @@ class Ports(CliTest):
             other.listen()
             port = other.getsockname()[1]
             process = self.run_ok("serve", *SCENE, "--max-frames", 1, "--once", "--port", 0, "--page-port", port)
-        self.assertIn(f"port {port} is taken", process.stderr)
+        self.assertIn(f"port {port} is in use", process.stderr)
         self.assertRegex(process.stdout, r"the page is at http://127\.0\.0\.1:\d+/")
         self.assertNotIn(f"127.0.0.1:{port}/", process.stdout)
 
     def test_only_a_simulated_machine_is_steered_and_by_one(self):
-        for words, said in (((*SCENE, "--joystick", "--no-page"), "without the page"),
+        for words, said in (((*SCENE, "--joystick", "--no-page"), "needs the page"),
                             (("sim:walk_floor", "--joystick", "--walk", "9"), "not both")):
             process = subprocess.run([BINARY, "serve", *words, "--once", "--port", "0", "--page-port", "0"],
                                      capture_output=True, text=True, timeout=60)

@@ -110,7 +110,7 @@ class FilesThatAreNone(CliTest):
         snapshot = maps / "map.snapshot"
         gate = ["gate", "--map", maps, "--pose", "0,0,0", "--command", "1"]
         os.mkfifo(snapshot)
-        for words in ("this is a FIFO", "this is a socket", "holds neither map.snapshot"):
+        for words in ("this is a FIFO", "this is a socket", "has no map.snapshot and no elevation.asc"):
             process = surefoot(*gate, timeout=60)
             self.assertEqual(process.returncode, 4, process.stderr)
             self.assertIn(words, process.stdout + process.stderr)
@@ -199,7 +199,7 @@ class FullDisks(CliTest):
         self.assertRegex(answer["error"], r"File too large.*\(and \d+ other results could not be written\)")
         self.assertEqual(answer["output_error"], answer["error"])
         self.assertEqual(answer["frames"], FRAMES)
-        self.assertRegex(process.stderr, "holds only a part of the results")
+        self.assertRegex(process.stderr, "contains only a part of the results")
         self.assertEqual(len(read_tum(out / "trajectory.tum")), FRAMES)
         self.assertEqual(list(out.glob("*.tmp*")), [])
 
@@ -276,12 +276,12 @@ class SkipBroken(CliTest):
         process = surefoot("run", recording, "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1)
         process = self.run_ok("run", recording, "--out", self.dir / "out", "--skip-broken")
-        self.assertIn("1 broken frame was passed over (--skip-broken); the first: frame 2", process.stdout)
+        self.assertIn("1 broken frame was skipped (--skip-broken); the first: frame 2", process.stdout)
         report = json.loads((self.dir / "out" / "report.json").read_text())
         self.assertEqual((report["frames"], report["source"]["broken_frames"], report["frame_status"]["damaged_frames"]),
                          (FRAMES - 1, 1, 1))
         self.assertTrue(report["complete"])
-        self.assertIn("passed over", (self.dir / "out" / "report.html").read_text())
+        self.assertIn("was skipped", (self.dir / "out" / "report.html").read_text())
 
 
 if __name__ == "__main__":

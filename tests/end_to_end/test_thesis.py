@@ -103,7 +103,7 @@ class Tiles(CliTest):
         (folder / "index.json").write_text("{}")
         process = surefoot("sim", "thesis_d_courtyard", "--set", "sim.laser.step_deg=1", "--scan", folder, "--tile", 0.5)
         self.assertEqual(process.returncode, 2)
-        self.assertIn("more than 500 tiles; take larger ones", process.stderr)
+        self.assertIn("more than 500 tiles; use larger tiles", process.stderr)
         self.assertFalse((folder / "index.json").read_text() == "{}")
 
 

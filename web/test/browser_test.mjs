@@ -705,19 +705,19 @@ test("the record button: every state, and a mark on every page", () =>
     assert.deepEqual(service.record, [true, false]);
     await page.click("#tab-walk");
     assert.equal(await page.textContent("#recording-mark"), "Recording 10 s");
-    service.tellRecording({ state: "failed", text: "rec: the disk has 3.0 MB left, and 500.0 MB stay free" });
+    service.tellRecording({ state: "failed", text: "rec: the disk has 3.0 MB free, and 500.0 MB must stay free; free disk space" });
     await page.waitForSelector("#recording-mark", { state: "hidden" });
     await page.click("#tab-engineer");
     await page.waitForSelector(
-      "#record-state:has-text('The recording failed: rec: the disk has 3.0 MB left')",
+      "#record-state:has-text('The recording failed: rec: the disk has 3.0 MB free')",
     );
     assert.ok(await page.isEnabled("#record"));
     assert.deepEqual(await violations(page), []);
-    service.tellRecording({ state: "off", text: "serve was started without --record-dir DIR" });
+    service.tellRecording({ state: "off", text: "restart serve with --record-dir DIR" });
     await page.waitForSelector("#record:disabled");
     assert.equal(
       await page.textContent("#record-state"),
-      "Recording is off: serve was started without --record-dir DIR.",
+      "Recording is off: restart serve with --record-dir DIR.",
     );
     assert.deepEqual(await violations(page), []);
   }));

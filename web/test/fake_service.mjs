@@ -313,8 +313,8 @@ const setting = (key, value, unit, range, comment, changeable = false) => ({
   changeable,
 });
 export const kSettings = [
-  setting("page.map_hz", "10", "Hz", "0.2 .. 10", "maps that a page is sent in a second at most", true),
-  setting("service.niceness", "10", "", "0 .. 19", "how far perception stands back behind the gate", true),
+  setting("page.map_hz", "10", "Hz", "0.2 .. 10", "largest number of maps per second for one page", true),
+  setting("service.niceness", "10", "", "0 .. 19", "niceness of perception, so that the gate answers in time", true),
   setting("mount.pitch_deg", "32", "deg", "-90 .. 90", "of the camera, where nothing else says it"),
   setting("stereo.algorithm", "census", "", "census | sgbm | bm", "which matcher"),
   setting("stereo.disparities", "64", "", "16 .. 256", "range of the search"),

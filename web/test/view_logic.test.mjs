@@ -413,9 +413,9 @@ test("the recording in words, whatever its state", () => {
     [said({ state: "finishing" }).possible, said({ state: "finishing" }).mark],
     [false, "Recording 10 s"],
   );
-  const off = said({ state: "off", text: "serve was started without --record-dir DIR" });
+  const off = said({ state: "off", text: "restart serve with --record-dir DIR" });
   assert.deepEqual([off.possible, off.mark], [false, ""]);
-  assert.equal(off.state, "Recording is off: serve was started without --record-dir DIR.");
+  assert.equal(off.state, "Recording is off: restart serve with --record-dir DIR.");
   const failed = said({ state: "failed", text: "no space left" });
   assert.deepEqual(
     [failed.possible, failed.button, failed.state],
