@@ -22,7 +22,7 @@ constexpr double kNoise_m = 0.005;
 constexpr double kSensorHeight_m = 1.0;
 // The plane's one-sigma tilt is noise / (sqrt(n) extent) < 0.01 deg here. The choice per voxel and
 // the limit at three sigma add to it.
-constexpr double kTiltLimit_rad = 0.15 * kDeg;
+constexpr double kTiltLimit_rad = 0.15 * kRadPerDeg;
 constexpr double kHeightLimit_m = 0.004;
 
 /// A world with the sensor at the origin and the floor 1 m below it.
@@ -110,8 +110,8 @@ TEST(GroundObservation, FloorAloneIsFound) {
 TEST(GroundObservation, TiltIsMeasured) {
     for (const double tilt_deg : {2.0, 5.0, 10.0}) {
         // The body is tilted forward by the tilt and to its side by half of it.
-        const Eigen::Quaterniond R_world_body =
-            exp_so3({0.0, tilt_deg * kDeg, 0.0}) * exp_so3({0.5 * tilt_deg * kDeg, 0.0, 0.0});
+        const Eigen::Quaterniond R_world_body = exp_so3({0.0, tilt_deg * kRadPerDeg, 0.0}) *
+                                                exp_so3({0.5 * tilt_deg * kRadPerDeg, 0.0, 0.0});
         const Points points = Scene(3).floor(2000).wall(1000).seen_by(R_world_body);
         const GroundSighting sighting = sight(points);
         ASSERT_TRUE(sighting.observation.accepted) << tilt_deg << ' ' << to_string(sighting.reason);
@@ -268,7 +268,7 @@ TEST(GroundObservation, FloorWinsOverTheRampThatStartsAhead) {
             const GroundSighting sighting = sight(points);
             EXPECT_TRUE(sighting.observation.accepted);
             // 15 mm (three sigma) of the ramp count as floor: its first 85 mm, beside 1 m of floor.
-            EXPECT_LE(sighting.tilt_rad, 1.0 * kDeg);
+            EXPECT_LE(sighting.tilt_rad, 1.0 * kRadPerDeg);
             EXPECT_NEAR(sighting.observation.height_m, kSensorHeight_m, 0.015);
         }
     }

@@ -62,7 +62,7 @@ Status apply_overrides(const SettingsRequest& request,
                        io::Notes* notes) {
     if (!request.config_file.empty()) {
         // An unreadable settings file is a usage error, like a wrong key in the file.
-        if (auto status = io::read_config(request.config_file, describe); !status)
+        if (auto status = io::read_config(request.config_file, describe, notes); !status)
             return usage_error(status.error().message);
     }
     for (const std::string& setting : request.overrides) {

@@ -38,7 +38,9 @@ struct SettingsRequest {
 };
 
 /// Loads and checks the settings. Each problem is a usage error with file, line, key and limit.
-[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {});
+/// `notes`, if given, receives a sentence for each key that has a new name.
+[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {},
+                                             io::Notes* notes = nullptr);
 /// Applies the file and the overrides of `request` to a configuration object.
 [[nodiscard]] Status apply_overrides(const SettingsRequest& request,
                                      const io::DescribeConfig& describe,

@@ -163,8 +163,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    0.1,
                    600.0,
                    "longest total lean without an upright phase");
-    visitor.number("wait_for_light_s",
-                   wait_for_light_s,
+    visitor.number("wait_for_exposure_s",
+                   wait_for_exposure_s,
                    0.0,
                    600.0,
                    "longest wait for well-exposed frames before odom is placed");

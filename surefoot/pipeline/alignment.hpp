@@ -30,9 +30,9 @@ struct AlignmentConfig {
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_light_s = 60.0;   ///< limit; Lange 2016: warm-up in the sun 10-30 s
-    double wait_for_ground_s = 10.0;  ///< limit for the search of the vertical; see start.hpp
-    double wait_for_search_s = 3.0;   ///< limit if the mounting is unknown; see start.hpp
+    double wait_for_exposure_s = 60.0;  ///< limit; Lange 2016: warm-up in the sun 10-30 s
+    double wait_for_ground_s = 10.0;    ///< limit for the search of the vertical; see start.hpp
+    double wait_for_search_s = 3.0;     ///< limit if the mounting is unknown; see start.hpp
     void describe(ConfigVisitor& visitor);
 };
 

@@ -74,7 +74,7 @@ Alignment known_alignment(const Pose& T_odom_body) {
     alignment.tilt_sigma_rad = 0.0;
     alignment.has_ground = true;
     alignment.ground_height_m = T_odom_body.translation_m.z();
-    alignment.reason = "told by the source, not measured";
+    alignment.reason = "known from the source (not measured)";
     return alignment;
 }
 
@@ -341,7 +341,7 @@ ground::GroundSighting Pipeline::observe_ground(const DepthImage& depth,
                                                 const Pose& T_level_body,
                                                 const Eigen::Vector3d& up_level) {
     // The plane is searched in base_link, because its height is that of the machine, not of odom.
-    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
+    ground::sample_points(rectifier_->rig(), depth, kGroundStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
 }
@@ -385,14 +385,7 @@ void Pipeline::hide_mirrored_ground() {
     specular::hide_behind(panes(), config_.specular, geometry, hidden_.view());
 }
 
-void Pipeline::follow(const MotionEstimate& motion) {
-    map_.follow(motion.T_odom_body, motion.relative_covariance);
-    feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
-    if (motion.health == Health::lost) feature_tracker_.forget();
-    last_motion_ = motion;
-}
-
-FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
+FusionCounts Pipeline::fuse(const DepthImage& depth, const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // the pose is unknown
     const FusionCounts counts =
         map_.add(rectifier_->rig(), motion.T_odom_body, depth, motion.time_ns, *executor_);

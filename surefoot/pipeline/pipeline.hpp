@@ -141,10 +141,11 @@ class Pipeline {
     [[nodiscard]] ground::GroundSighting observe_ground(const DepthImage& depth,
                                                         const Pose& T_level_body,
                                                         const Eigen::Vector3d& up_level);
-    /// Searches the ground for a camera of unknown mounting.
-    [[nodiscard]] ground::GroundSighting search_ground();
-    /// Runs only if a machine carries the camera, so the height of base_link is known.
-    void watch_mount(FrameReport& report);
+    /// Finds the ground without a hint of how the camera is mounted.
+    [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
+    /// Passes the plane to the tilt drift correction and, if a machine carries the camera and the
+    /// height of base_link is known, to the mount monitor.
+    void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
     [[nodiscard]] CameraState camera_state() const noexcept;
     /// Compares the floor with its own mirror images, where a level floor is in view.
     void watch_mirrors(const camera::RectifiedPair& pair,

@@ -67,7 +67,7 @@ class OpenCvMatcher final : public Matcher {
                 float* const d = disparity_px.row(v);
                 for (int u = 0; u < disparity_px.width(); ++u) {
                     // Disparity 0 is infinitely far away; negative values mean "no match".
-                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNan;
+                    d[u] = steps[u] > 0 ? static_cast<float>(steps[u]) * kPixelPerStep : kNanF;
                 }
             }
         });

@@ -100,8 +100,8 @@ TEST(PixelFilter, RejectsJumpsAndPixelsWithoutNeighbours) {
     EXPECT_TRUE(check.accepts({d, d, d, d}, d, 0.1F, 0.0F, 0.0F));
     EXPECT_FALSE(check.accepts({d, d, d - 3.0F, d}, d, 0.1F, 0.0F, 0.0F)) << "depth edge above";
     EXPECT_TRUE(check.accepts({d, d, d - 0.9F, d}, d, 0.1F, 0.0F, 0.0F)) << "a bend, not a jump";
-    EXPECT_FALSE(check.accepts({kNan, kNan, d, d}, d, 0.1F, 0.0F, 0.0F));
-    EXPECT_TRUE(check.accepts({kNan, d, d, kNan}, d, 0.1F, 0.0F, 0.0F));
+    EXPECT_FALSE(check.accepts({kNanF, kNanF, d, d}, d, 0.1F, 0.0F, 0.0F));
+    EXPECT_TRUE(check.accepts({kNanF, d, d, kNanF}, d, 0.1F, 0.0F, 0.0F));
     // Middle of a matcher's ramp over 6 px between 27 and 21 px: linear, but grazing.
     EXPECT_FALSE(check.accepts({24.0F, 24.0F, 21.0F, 27.0F}, 24.0F, 0.1F, 0.0F, 0.0F));
 }
