@@ -27,7 +27,7 @@ struct Start {
 /// thesis (Lange 2016) took its ground plane from the first seconds, over-exposed by the sun, and
 /// lost whole recordings. So the content of the images counts, not the time since the camera
 /// started:
-/// * Frames too bright or too dark are skipped, for `mount.wait_for_light_s` at most.
+/// * Frames too bright or too dark are skipped, for `mount.wait_for_exposure_s` at most.
 /// * If neither ground nor accelerometer gives the vertical, the gate could never answer OK. If the
 ///   height of base_link over its ground is known, the search goes on, five frames later each time,
 ///   for `mount.wait_for_ground_s` at most.
