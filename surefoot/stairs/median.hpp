@@ -8,7 +8,7 @@
 
 namespace surefoot::stairs {
 
-/// The middle one of values that may be reordered, of two in the middle the greater; not empty.
+/// The median; for an even count the greater middle value. Reorders `values`, which is not empty.
 template <typename T>
 [[nodiscard]] T middle_of(std::vector<T>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -16,8 +16,8 @@ template <typename T>
     return *middle;
 }
 
-/// Standard deviation of normal values about their middle one, whatever a few of them are: 1.4826
-/// times the middle distance from it. The values become those distances; not empty.
+/// Robust standard deviation (normal errors): 1.4826 times the median distance from `middle`.
+/// Overwrites `values` with these distances. Precondition: `values` is not empty.
 template <typename T>
 [[nodiscard]] double scatter_about(T middle, std::vector<T>& values) {
     constexpr double kSigmaPerMedian = 1.4826;
