@@ -55,7 +55,7 @@ struct Evidence {
     std::int64_t cells = 0;                   ///< cells read; a cell counts once per test
     std::int64_t known_cells = 0;             ///< of these, cells that are measured or attested
     std::int64_t attested_cells = 0;          ///< of these, cells known only by an attestation
-    std::int64_t height_delta_tenth_mm = 0;   ///< of the landing foot that differs most from stance
+    std::int64_t height_delta_tenth_mm = 0;   ///< landing foot with the largest height difference
     /// Squared tangent of the steeper foot plane's tilt, with the uncertainty of the vertical
     /// added.
     double max_tilt_tan_sq = 0.0;
