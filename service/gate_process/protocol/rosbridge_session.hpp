@@ -35,7 +35,7 @@ struct SessionRights {
 /// The effects of one message.
 struct Reaction {
     std::vector<std::string> replies;     ///< to this connection, before all other texts
-    std::vector<TopicMessage> published;  ///< disconnect: the client exceeded its limits
+    std::vector<TopicMessage> published;  ///< to the subscribers of all connections
     bool drop = false;                    ///< disconnect: the client exceeded its limits
 };
 
