@@ -13,7 +13,7 @@ const Json* member(const Json& object, const char* name) {
     return found == object.end() ? nullptr : &*found;
 }
 
-/// A whole number from `least` to `most`, written as one.
+/// A JSON integer from `least` to `most`.
 std::optional<std::uint64_t> whole_number(const Json& value,
                                           std::uint64_t least,
                                           std::uint64_t most) {
@@ -23,7 +23,7 @@ std::optional<std::uint64_t> whole_number(const Json& value,
     return number;
 }
 
-/// The number of that name, or NaN.
+/// The number with that name, or NaN.
 double number_member(const Json& object, const char* name) {
     const Json* value = member(object, name);
     if (value == nullptr || !value->is_number()) return std::nan("");
@@ -78,7 +78,8 @@ Result<double> read_radius(const Json& args) {
 }
 
 Result<GoalQuestion> read_goal(const Json& message) {
-    constexpr double kUnitTolerance = 0.01;  // of |q|^2: clients send quaternions as floats
+    constexpr double kUnitTolerance =
+        0.01;  // tolerance of |q|^2: clients send quaternions as floats
     const Json* header = member(message, "header");
     const Json* pose = member(message, "pose");
     const Json* position = pose == nullptr ? nullptr : member(*pose, "position");

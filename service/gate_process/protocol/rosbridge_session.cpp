@@ -13,24 +13,24 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// `step_forward` asks for the joystick's outer ring, ahead (machines/rex.yaml: N).
+/// Command of `step_forward`: the joystick's outer ring, ahead (machines/rex.yaml: N).
 constexpr std::uint8_t kForwardCode = 9;
 
-/// An id as rosbridge clients send it. Anything else is not repeated.
+/// The id of a message in the form that rosbridge clients send; any other form is dropped.
 Json id_of(const Json& message) {
     const auto id = message.find("id");
     if (id == message.end() || !(id->is_string() || id->is_number_integer())) return nullptr;
     return *id;
 }
 
-/// Calls without arguments leave them out, or send null.
+/// The arguments of a call. Clients omit them or send null if there are none.
 const Json& args_of(const Json& message) {
     static const Json empty = Json::object();
     const auto args = message.find("args");
     return args == message.end() || args->is_null() ? empty : *args;
 }
 
-/// A whole number from 0, at most `most`; nothing where it is none. Missing or null is 0.
+/// An integer from 0 to `most`; empty if invalid. Missing or null counts as 0.
 std::optional<std::int64_t> limited_member(const Json& message, const char* name, int most) {
     const auto value = message.find(name);
     if (value == message.end() || value->is_null()) return 0;
@@ -45,7 +45,7 @@ TopicMessage topic_message(Topic topic, const Json& body) {
 
 }  // namespace
 
-/// One message while it is handled.
+/// The state while one message is handled.
 struct RosbridgeSession::Call {
     const Json& message;
     std::int64_t now_ns;
@@ -106,7 +106,7 @@ void RosbridgeSession::handle(const Call& call) {
     if (op == "advertise") return advertise(call);
     if (op == "publish") return publish(call);
     if (op == "set_level") return set_level(call);
-    if (op == "unadvertise" || op == "status") return;  // nothing of it is kept
+    if (op == "unadvertise" || op == "status") return;  // accepted and ignored
     if (op == "auth") return auth(call);
     status(call, Level::error, "op '" + op + "' is not served here");
 }
@@ -263,11 +263,11 @@ void RosbridgeSession::serve_step(const ServiceEntry& entry, const Call& call, c
     const Json verdict = verdict_object(answer.verdict, answer.text);
     switch (entry.service) {
         case Service::step_with_reasons: respond(call, verdict, readable); break;
-        // An Empty response has no member: whoever knows no other reads `result`.
+        // The type Empty has no member, so such clients read only `result`.
         case Service::step_forward: respond(call, {{"resultCode", code}}, code == 0); break;
         default: respond(call, {{"resultCode", code}}, readable);
     }
-    // Not what came too fast: a flood of one client would reach all.
+    // Verdicts on messages that came too fast are not published: a flood would reach all clients.
     if (!call.overloaded) call.out.published.push_back(topic_message(Topic::verdict, verdict));
 }
 
@@ -284,7 +284,7 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
     return ask(call, question);
 }
 
-/// The gate's answer, unless it is not about this question or already void.
+/// The gate's answer. An answer to another question or an expired answer becomes an ERROR.
 Answer RosbridgeSession::ask(const Call& call, const StepQuestion& question) {
     Answer answer = gate_.ask_step(question, call.now_ns);
     const gate::Verdict& verdict = answer.verdict;
@@ -350,7 +350,7 @@ std::string RosbridgeSession::no_right_text(Role least) const {
            "in the service's token file";
 }
 
-/// roslib has a method for the op whose first argument becomes `mac`.
+/// The method of roslib for this op calls its first argument `mac`.
 void RosbridgeSession::auth(const Call& call) {
     std::string token = text_member(call.message, "token");
     if (token.empty()) token = text_member(call.message, "mac");

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxBytes = 4096;
 
-/// Closes the file.
+/// Owns a file descriptor and closes it.
 class Descriptor {
   public:
     Descriptor(const std::string& path, int flags)
@@ -43,7 +43,7 @@ std::string system_says() {
     return std::generic_category().message(errno);
 }
 
-/// 128 random bits in hexadecimal digits; empty where the system has none to give.
+/// 128 random bits as hexadecimal digits; empty if the system has no random numbers.
 std::string new_token() {
     std::array<std::uint8_t, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
@@ -127,7 +127,7 @@ Result<TokenFile> read_or_make_tokens(const std::string& path) {
         if (auto made = make_folder_of(path); !made) return made.error();
         const Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
         if (file.number() >= 0) return make_tokens(file.number(), path);
-        if (errno != EEXIST)  // another start may have made it just now
+        if (errno != EEXIST)  // another start may have created it just now
             return input_error(path + ": the token file cannot be made: " + system_says());
     }
     auto access = read_tokens(path);

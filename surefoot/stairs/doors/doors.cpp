@@ -344,8 +344,8 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
     const double sine = std::min(std::abs(opening.across.x()), std::abs(opening.across.y()));
     const double cosine = std::max(std::abs(opening.across.x()), std::abs(opening.across.y()));
     jamb.at_m += 0.5 * sine * cell_m_;
-    // Even over one cell of a row. From row to row a jamb moves on by a part of a cell, so that
-    // some see other parts of theirs; at 45 deg it moves on by a whole one.
+    // The error is uniform over one cell for one row. From row to row the jamb moves by a part of a
+    // cell, so the rows sample different parts; at 45 deg it moves by a whole cell.
     const double moves = std::min(sine / cosine, 1.0 - sine / cosine);
     const double parts = 1.0 + moves * static_cast<double>(count - 1);
     jamb.sigma_m =
