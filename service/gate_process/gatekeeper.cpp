@@ -234,12 +234,13 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
 Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
     // The canaries take milliseconds, so run them only in a fault, not whenever a client asks.
     if (readiness_.state() == gate::GateState::fault && !canaries_->judge_all().passed)
-        return Error{ErrorCode::usage,
-                     "the gate fails its self-test: it answers a known question wrongly and must "
-                     "not be used. Restart the gate; if that does not help, reinstall it"};
+        return Error{
+            ErrorCode::usage,
+            "the gate fails its self-test: its verdict on a known map is wrong, so it must "
+            "not be used. Restart the gate; if that does not help, reinstall it"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
-                     "there is nothing to re-arm: the gate is in no fault, or in one that only a "
+                     "nothing to re-arm: the gate has no fault, or a fault that only a "
                      "restart with a valid configuration ends"};
     attestation_.revoke();
     if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
@@ -272,12 +273,13 @@ std::int64_t Gatekeeper::least_radius_tenth_mm() const {
 Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
     fetch(now_ns);
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
-        return refuse_attestation("no healthy pose is known");
+        return refuse_attestation(
+            "the pose of the machine is unknown; wait until the odometry is healthy");
     if (readiness_.state() == gate::GateState::fault)
         return refuse_attestation("the gate is in a fault");
     if (auto status = check_radius(radius_m); !status) return status;
     if (!attestation_.attest(machine_, *map_, tenth_mm(radius_m), now_ns))
-        return refuse_attestation("the map of this moment is damaged");
+        return refuse_attestation("the newest map is damaged; try again");
     return {};
 }
 

@@ -24,7 +24,7 @@ const char* ReadinessLimits::problem() const noexcept {
         return "the frames to warm up or to recover are outside 5-10000";
     if (!(warmup_timeout_ns > warmup_ns && warmup_timeout_ns <= 600 * kSecond) ||
         !(degraded_timeout_ns > recover_ns && degraded_timeout_ns <= 600 * kSecond))
-        return "a time-out is shorter than what it waits for, or longer than 600 s";
+        return "a timeout is shorter than the time it waits for, or longer than 600 s";
     if (!detail::within(fastest_m_s, 0.01, 5.0) || !detail::within(fastest_rad_s, 0.01, 10.0))
         return "the fastest motion is outside 0.01-5 m/s or 0.01-10 rad/s";
     if (!detail::within(jump_m, 0.001, 0.1) || !detail::within(jump_rad, 0.001, 0.2))

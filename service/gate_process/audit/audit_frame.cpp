@@ -133,7 +133,7 @@ std::string format_gap(const AuditGap& gap) {
 Status parse_gap(std::string_view bytes, AuditGap& gap) {
     ByteReader reader(bytes);
     for_each_gap_field(gap, reader);
-    if (!reader.ok() || !reader.rest().empty()) return input_error("no sound gap");
+    if (!reader.ok() || !reader.rest().empty()) return input_error("the gap entry is invalid");
     return {};
 }
 
@@ -156,11 +156,12 @@ Status parse_act(std::string_view bytes, Act& act) {
     std::uint8_t text = 0;
     reader("text_bytes", text);
     if (!reader.ok() || reader.rest().size() != text || text > kMaxActText_bytes)
-        return input_error("no sound act");
+        return input_error("the act entry is invalid");
     if (act.kind < ActKind::connect || act.kind > ActKind::rearm ||
         act.outcome < ActOutcome::done || act.outcome > ActOutcome::no_right ||
         act.role > Role::operator_)
-        return input_error("an act that this program does not know");
+        return input_error(
+            "the act has an unknown kind; read the log with the program version that wrote it");
     act.text = reader.rest();
     return {};
 }

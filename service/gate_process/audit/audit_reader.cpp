@@ -110,7 +110,10 @@ bool AuditReader::unpack(const FrameHeader& header, std::string_view stored, Fra
                damaged("the two lengths of a plain frame differ", header.sequence);
     }
     if (header.encoding != FrameEncoding::zstd)
-        return damaged("packed in a way that this program does not know", header.sequence);
+        return damaged(
+            "the encoding of the frame is unknown; read the log with the program version that "
+            "wrote it",
+            header.sequence);
     plain_.resize(header.plain_bytes);
     const std::size_t bytes =
         ZSTD_decompress(plain_.data(), plain_.size(), stored.data(), stored.size());
@@ -132,7 +135,9 @@ bool AuditReader::take(const Frame& frame) {
         case FrameKind::gap: return follows(frame.header, link_) && take_gap(frame);
         case FrameKind::act: return follows(frame.header, link_) && take_act(frame);
     }
-    return damaged("a kind of frame that this program does not know", frame.header.sequence);
+    return damaged(
+        "the kind of the frame is unknown; read the log with the program version that wrote it",
+        frame.header.sequence);
 }
 
 bool AuditReader::follows(const FrameHeader& header, const Link& link) {
@@ -142,7 +147,7 @@ bool AuditReader::follows(const FrameHeader& header, const Link& link) {
                                    link.sequence),
                        header.sequence);
     if (header.previous_hash != link.previous_hash)
-        return damaged("it follows another frame than the one before it", header.sequence);
+        return damaged("its stored hash of the previous frame is wrong", header.sequence);
     return true;
 }
 
@@ -172,7 +177,8 @@ bool AuditReader::take_verdict(const Frame& frame) {
     if (const Status status = parse_record(frame.payload, record_, frame.header.version); !status)
         return damaged(status.error().message, frame.header.sequence);
     if (record_.machine_hash != head_->machine_hash)
-        return damaged("a verdict about another machine than the file's", frame.header.sequence);
+        return damaged("the verdict belongs to another machine than the file",
+                       frame.header.sequence);
     ++summary_.verdicts;
     if (on_verdict_) on_verdict_({file_, offset_, frame.header.sequence, head_->machine, record_});
     return true;

@@ -153,7 +153,7 @@ TEST(AuditReader, a_frame_that_was_written_anew_breaks_the_chain) {
     std::string forged = whole.substr(0, frames[1]);
     append_frame(forged, header, other);  // sound in itself
     log.file(0) = forged + whole.substr(frames[2]);
-    EXPECT_TRUE(contains(log.damage(), "follows another frame")) << log.damage();
+    EXPECT_TRUE(contains(log.damage(), "hash of the previous frame")) << log.damage();
 }
 
 TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
@@ -217,10 +217,11 @@ TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1), "two lengths"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, FrameEncoding::zstd, record, size), "unpacked"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, static_cast<FrameEncoding>(9), record, size),
-                         "packed in a way"));
-    EXPECT_TRUE(contains(read(static_cast<FrameKind>(9), plain, record, size), "kind of frame"));
+                         "encoding of the frame is unknown"));
+    EXPECT_TRUE(contains(read(static_cast<FrameKind>(9), plain, record, size),
+                         "kind of the frame is unknown"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, "", 0), "too short"));
-    EXPECT_TRUE(contains(read(FrameKind::gap, plain, "x", 1), "no sound gap"));
+    EXPECT_TRUE(contains(read(FrameKind::gap, plain, "x", 1), "gap entry is invalid"));
     EXPECT_TRUE(
         contains(read(FrameKind::file, plain, head, static_cast<std::uint32_t>(head.size())),
                  "second head"));

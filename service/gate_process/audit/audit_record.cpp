@@ -190,7 +190,8 @@ Status parse_record(std::string_view bytes, AuditRecord& record, std::uint32_t v
     for_each_record_field(record, map, fields);
     if (version < kTiltVersion && map.layout == kLayoutWithoutTilt)
         map.layout = MapSnapshot::kLayout;
-    if (!reader.ok()) return input_error("the record is too short, or a yes/no in it is neither");
+    if (!reader.ok())
+        return input_error("the record is too short, or a yes/no value is neither 0 nor 1");
     const CellBox& zone = record.zone;
     if (zone != CellBox{} && !is_inside(zone, map))
         return input_error(fmt::format("a zone of {} x {} cells from ({}, {}) in a map of {} x {}",

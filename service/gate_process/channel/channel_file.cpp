@@ -83,7 +83,7 @@ Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t mag
         if (info.st_size > 0 &&
             (!file.read(&begin, sizeof(begin), 0) || (begin.magic != magic && begin.magic != 0)))
             return channel_error(
-                path, "it is a file of another kind; delete it, or name another file (--channel)");
+                path, "it is not a snapshot channel; delete it, or name another file (--channel)");
         if ((info.st_mode & 0777U) != 0600U && ::fchmod(file.file_, 0600) != 0)
             return channel_error(path, "its rights cannot be set: " + system_words());
         begin.owner = static_cast<std::uint64_t>(::getpid());
@@ -122,10 +122,11 @@ bool ChannelFile::write(const void* in, std::size_t bytes, std::size_t offset) c
 
 Status ChannelFile::resize(std::size_t bytes) const {
     const auto size = static_cast<off_t>(bytes);
-    if (::ftruncate(file_, size) != 0) return input_error("no size: " + system_words());
+    if (::ftruncate(file_, size) != 0)
+        return input_error("the file size cannot be set: " + system_words());
     if (const int error = ::posix_fallocate(file_, 0, size); error != 0)
         return input_error(std::to_string(bytes) +
-                           " bytes are not to be had: " + std::generic_category().message(error));
+                           " bytes cannot be allocated: " + std::generic_category().message(error));
     return {};
 }
 

@@ -218,7 +218,7 @@ Result<SnapshotReader> SnapshotReader::open(ChannelAddress address) {
     Head head;
     if (reader.file_.size() < kFileBytes || !read_head(reader.file_, head) || !is_channel(head))
         return channel_error(reader.address_.path,
-                             "it is no channel of this version; restart both programs");
+                             "it is not a channel of this program version; restart both programs");
     return reader;
 }
 

@@ -100,7 +100,8 @@ std::vector<std::string> RosbridgeSession::due(std::int64_t now_ns) {
 void RosbridgeSession::handle(const Call& call) {
     const std::string op = text_member(call.message, "op");
     if (op == "call_service") return call_service(call);
-    if (call.overloaded) return status(call, Level::error, "too many messages: not done");
+    if (call.overloaded)
+        return status(call, Level::error, "too many messages a second: request not executed");
     if (op == "subscribe") return subscribe(call);
     if (op == "unsubscribe") return unsubscribe(call);
     if (op == "advertise") return advertise(call);
@@ -238,7 +239,8 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
         case Service::step_with_reasons: return serve_step(entry, call, args);
         default: break;
     }
-    if (call.overloaded) return respond(call, "too many messages: not done", false);
+    if (call.overloaded)
+        return respond(call, "too many messages a second: request not executed", false);
     switch (entry.service) {
         case Service::authenticate: return authenticate_by_service(call, args);
         case Service::rearm: return rearm(call);
@@ -279,7 +281,8 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
         return refusal(call, question, request.problem, request.text);
     question.sequence = request.sequence.value_or(last_sequence_ + 1);
     if (question.sequence > kMaxExact)
-        return refusal(call, question, gate::Reason::seq, "no number is left: reconnect");
+        return refusal(
+            call, question, gate::Reason::seq, "all sequence numbers are used: reconnect");
     last_sequence_ = std::max(last_sequence_, question.sequence);
     return ask(call, question);
 }
@@ -376,7 +379,8 @@ Status RosbridgeSession::authenticate(const Call& call, std::string_view token) 
     gate_.note(act);
     if (!role)
         return usage_error(
-            "this token is not known here, and nothing was changed. Take a token of the service's "
+            "this token is not known here, and nothing was changed. Take a token from the "
+            "service's "
             "token file");
     role_ = *role;
     return {};

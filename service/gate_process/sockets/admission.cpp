@@ -83,7 +83,7 @@ std::string refusal_text(const Entrance& entrance, const Knock& knock) {
                "' (a page from a file has the origin 'null' or 'file://')";
     }
     if (entrance.has_token)
-        return "this token is not known here. Take a token of the service's token file";
+        return "this token is not known here. Take a token from the service's token file";
     return "a token is needed: connect to ?token=TOKEN, or send the header 'Authorization: Bearer "
            "TOKEN'. The token stands in the service's token file";
 }

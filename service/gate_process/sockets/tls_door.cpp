@@ -38,7 +38,7 @@ constexpr std::size_t kBlock_bytes = 16 * 1024;  // one TLS record
 constexpr unsigned char kTlsHandshake = 22;      // first byte of a ClientHello (RFC 8446, 5.1)
 constexpr const char* kUseTls =
     "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
-    "TLS is spoken here: connect to wss:// or https://\n";
+    "This port uses TLS: connect to wss:// or https://\n";
 
 /// Returns an error if other users can read the private key.
 Status check_key_file(const std::string& file) {
@@ -46,7 +46,8 @@ Status check_key_file(const std::string& file) {
     if (::stat(file.c_str(), &about) != 0)
         return usage_error(
             file + ": the private key cannot be read: " + std::generic_category().message(errno));
-    if (!S_ISREG(about.st_mode)) return usage_error(file + ": a private key is a regular file");
+    if (!S_ISREG(about.st_mode))
+        return usage_error(file + ": the private key must be a regular file");
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0)
         return usage_error(file + ": other users may read this private key; run chmod 600 " + file);
     return {};

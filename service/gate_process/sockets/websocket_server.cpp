@@ -279,8 +279,8 @@ void Connection::answer_request() {
             http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
     }
     if (path_of(target) == "/")
-        return refuse(http::status::upgrade_required, "a WebSocket is here");
-    refuse(http::status::not_found, "here are a WebSocket and /health");
+        return refuse(http::status::upgrade_required, "this path is a WebSocket");
+    refuse(http::status::not_found, "this port serves a WebSocket and /health");
 }
 
 void Connection::note_refusal(const Entrance& entrance) {

@@ -30,10 +30,13 @@ double square(double value) {
 }  // namespace
 
 void PatchConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("block_m", block_m, 0.005, 1.0, "side of the squares that planes are made of");
-    visitor.number("tolerance_m", tolerance_m, 0.001, 0.2, "cells lie on their plane within this");
-    visitor.number("sigma_factor", sigma_factor, 0.0, 10.0, "or within so many of their own sigma");
-    visitor.number("max_tolerance_m", max_tolerance_m, 0.001, 0.5, "but never further from it");
+    visitor.number(
+        "block_m", block_m, 0.005, 1.0, "side of the blocks of cells that planes are fitted to");
+    visitor.number(
+        "tolerance_m", tolerance_m, 0.001, 0.2, "largest distance of a cell from its plane");
+    visitor.number(
+        "sigma_factor", sigma_factor, 0.0, 10.0, "or this many of the cell's own sigmas");
+    visitor.number("max_tolerance_m", max_tolerance_m, 0.001, 0.5, "but never more than this");
     visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest patch");
 }
 

@@ -536,22 +536,29 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
     visitor.number("min_width_m", min_width_m, 0.1, 10.0, "narrower openings are no doors");
     visitor.number("max_width_m", max_width_m, 0.1, 10.0, "wider openings are no doors");
     visitor.number("max_depth_m", max_depth_m, 0.05, 10.0, "deeper openings are corridors");
-    visitor.number("rise_m", rise_m, 0.01, 2.0, "what rises higher beside ground is a wall");
-    visitor.number("wall_height_m", wall_height_m, 0.01, 3.0, "walls are seen to rise so high");
+    visitor.number("rise_m",
+                   rise_m,
+                   0.01,
+                   2.0,
+                   "anything higher than this above the ground beside it is a wall");
     visitor.number(
-        "wall_length_m", wall_length_m, 0.01, 10.0, "wall wanted on either side of a door");
+        "wall_height_m", wall_height_m, 0.01, 3.0, "visible height of a wall above the ground");
+    visitor.number("wall_length_m",
+                   wall_length_m,
+                   0.01,
+                   10.0,
+                   "least length of wall on either side of a door");
     visitor.number("min_sill_m", min_sill_m, 0.0, 1.0, "lower sills are not reported");
     visitor.number(
-        "sigma_factor", sigma_factor, 0.0, 100.0, "sills stand out of the floor by so many");
+        "sigma_factor", sigma_factor, 0.0, 100.0, "a sill exceeds the floor by this many");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
-    visitor.number(
-        "jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "of where a matcher puts the border of a jamb");
+        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+    visitor.number("jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "one sigma of the position of a jamb");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "what hangs over less than a square of this side may be a wrong match");
+                   "an overhead object smaller than a square of this side may be a wrong match");
 }
 
 std::optional<std::string> DoorConfig::problem() const {
