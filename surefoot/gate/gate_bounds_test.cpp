@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the gate's bounds lie, to the unit: what is allowed at a bound and refused beyond it.
+// The bounds of the gate to the unit: allowed at a bound, refused beyond it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -233,7 +233,7 @@ TEST(GateBounds, a_refusal_says_what_was_not_proven_and_lives_for_nothing) {
 }
 
 TEST(GateBounds, where_no_ground_is_known_under_the_feet_the_rest_is_not_asked) {
-    Terrain blind;  // and a wall behind, which the body of a step backwards would meet
+    Terrain blind;  // and a wall behind, which a step backwards would hit
     blind.box(-0.2, 0.4, -0.5, 0.5, static_cast<double>(kNaN));
     blind.box(-0.6, -0.5, -0.5, 0.5, 0.7);
     const Verdict verdict = ask(blind, kBackward);

@@ -26,9 +26,8 @@ struct Head {
     ChannelBegin begin;
     std::uint32_t layout = kLayout;
     std::uint32_t snapshot_bytes = sizeof(grid::MapSnapshot);
-    std::uint64_t writer = 0;  ///< number of the present writer; 0 while it starts
-    std::uint64_t published =
-        0;  ///< number of snapshots so far; the newest is in slot published % 3
+    std::uint64_t writer = 0;          ///< number of the present writer; 0 while it starts
+    std::uint64_t published = 0;       ///< snapshots so far; the newest is in slot published % 3
     std::uint64_t restart_wanted = 0;  ///< number of the writer that must restart
     std::uint64_t faults = 0;          ///< of the gate, until an operator re-arms it; 0 = none
     std::uint64_t faults_checksum = 0;

@@ -107,8 +107,7 @@ class SocketServer {
     Slots slots;
     WorkBudget guest_work;
     WorkBudget door_work;
-    std::int64_t accounted_ns =
-        0;  ///< processor time since the last tick that is assigned to a client
+    std::int64_t accounted_ns = 0;  ///< processor time since the last tick, assigned to clients
 
   private:
     void begin();

@@ -20,9 +20,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kSigmas = 2.0;  ///< significance of a slope for the classes level and steep
-constexpr double kUnseenDrop_m =
-    0.15;  ///< depth of the marked drop behind the border of ground that ends
+constexpr double kSigmas = 2.0;         ///< significance of a slope for the classes level and steep
+constexpr double kUnseenDrop_m = 0.15;  ///< depth of the marked drop behind ground that ends
 /// Tilt of treads and distortion of maps stay below this over a tread (see flights.cpp).
 constexpr double kTread_m = 0.035;
 constexpr double kLeastSigma_m = 0.001;  ///< no level of a map is more accurate

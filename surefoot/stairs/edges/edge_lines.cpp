@@ -251,8 +251,7 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
 }
 
 bool EdgeLineFinder::belong_together(const Piece& a, const Piece& b) const {
-    constexpr double kLeastCosine =
-        0.985;  // 10 deg: the direction of the shorter piece is uncertain
+    constexpr double kLeastCosine = 0.985;  // 10 deg: a short piece's direction is uncertain
     if (a.line.along().dot(b.line.along()) < kLeastCosine) return false;
     constexpr auto kSame_m = static_cast<double>(kLevel_m);
     if (std::abs(a.upper_m - b.upper_m) > kSame_m || std::abs(a.lower_m - b.lower_m) > kSame_m)

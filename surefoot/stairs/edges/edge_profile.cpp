@@ -22,8 +22,7 @@ constexpr double kLeastShare = 0.25;  ///< least share of known cells in a slice
 /// Largest difference of neighbouring slices of level ground; a ramp of 1:8 has 3 mm in 25 mm.
 constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< depth of level ground that gives the height
-constexpr double kStrip_m =
-    0.2;  ///< a tread with more visible depth is not a strip between occluded regions
+constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread between occluded regions
 constexpr double kStripRange_m = 0.06;
 constexpr double kBeside_m = 0.3;  ///< the edge may continue beyond the ends of its line
 constexpr double kHalfTurn =
