@@ -417,7 +417,7 @@ TEST(FootSupport, ground_that_is_not_known_or_not_joined_carries_no_foot) {
     on.map->source[at] = grid::EvidenceSource::unknown;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::unknown_cells));
     on.query.attested = {true, 0, 0, 10'000, 0};
-    EXPECT_TRUE(on.reasons().empty()) << "vouched ground is of no surface";
+    EXPECT_TRUE(on.reasons().empty()) << "attested ground belongs to no surface";
     on.query.attested.active = false;
     on.query.x_tenth_mm = 28'000;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::outside_map));

@@ -42,17 +42,17 @@ TEST(GateBounds, places_are_within_100_km_and_heights_within_1_km) {
              q.stance_source = StanceHeight::given;
              q.stance_height_tenth_mm = static_cast<std::int32_t>(v);
          }},
-        {"x of the vouched area",
+        {"x of the attested area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, v, 0, 100, 0};
          }},
-        {"y of the vouched area",
+        {"y of the attested area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, 0, v, 100, 0};
          }},
-        {"height of the vouched area",
+        {"height of the attested area",
          10'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, 0, 0, 100, static_cast<std::int32_t>(v)};
@@ -79,7 +79,7 @@ TEST(GateBounds, a_vouched_area_has_a_radius_up_to_the_limit_of_the_machine) {
     EXPECT_FALSE(refused(1));
     EXPECT_FALSE(refused(10'000));
     EXPECT_TRUE(refused(10'001));
-    EXPECT_FALSE(refused(10'001, false)) << "nobody vouches";
+    EXPECT_FALSE(refused(10'001, false)) << "no attestation is active";
 }
 
 TEST(GateBounds, the_length_of_a_heading_is_one_to_a_two_thousandth) {

@@ -363,7 +363,7 @@ TEST(Readiness, a_new_perception_means_a_new_warm_up) {
     station.become_ready();
     station.readiness.perception_restarted(station.now_ns);
     EXPECT_EQ(station.readiness.state(), GateState::warmup);
-    station.map->version = 0;  // counts anew, in another odom
+    station.map->version = 0;  // the count restarts in another odom
     station.map->body_x_tenth_mm = -5000;
     station.frames(1.9);
     EXPECT_EQ(station.readiness.state(), GateState::warmup);

@@ -106,8 +106,7 @@ const char* error_text(Reason reason) {
         case Reason::config: return "the machine description is not valid";
         case Reason::clock: return "the clock cannot be trusted";
         case Reason::bad_message: return "the message could not be read";
-        case Reason::bad_number:
-            return "the query holds a number that is no number or out of range";
+        case Reason::bad_number: return "a number of the query is not finite or is out of range";
         case Reason::frame_id: return "the query is in a frame that the gate does not know";
         case Reason::seq: return "the query is out of sequence";
         case Reason::unknown_command: return "the machine has no such movement";

@@ -29,12 +29,12 @@ struct Bottleneck {
 /// Finds bottlenecks on blocks of about 50 mm. A block is in a bottleneck if the circle about it
 /// that reaches the nearest wall also touches a wall on its opposite side. Such blocks form a line
 /// along a passage. A line longer than `max_depth_m` is a corridor, not a bottleneck.
-/// neck.
+///
 /// A wall is anything `rise_m` or more above the lowest level block within kReach_m.
-/// A wall is what stands `rise_m` above the lowest level block within kReach_m.
-/// Nearest walls: linear-time distance transform of Meijster, Roerdink and Hesselink (2000). Owns
-/// the working memory; not thread-safe.
-/// is linear in the number of blocks. Holds the working memory.
+///
+/// Nearest walls: distance transform of Meijster, Roerdink and Hesselink (2000). Its cost is linear
+/// in the number of blocks.
+/// Owns the working memory; not thread-safe.
 class BottleneckFinder {
   public:
     static constexpr double kBlock_m = 0.05;

@@ -44,7 +44,7 @@ class SightSteps {
     [[nodiscard]] double nose_sigma_m(double run_m, double below_m) const;
     void find_noses(std::span<const SightBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
-    /// Replaces levels and noses by the equal-step flight that explains the bins. Returns its
+    /// Replaces levels and nosings by the equal-step flight that explains the bins. Returns its
     /// visible steps. Changes nothing if no such flight has more than `steps` steps.
     [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
                                              double height_m,

@@ -23,7 +23,7 @@ class ObservationWeight {
   private:
     bool empty_ = true;
     double mean_var_ =
-        0.0;  ///< as if looks were independent, but not below the best / most_observations
+        0.0;  ///< as if observations were independent; at least best / most_observations
     double best_var_ = 0.0;
     double scatter_var_ = 0.0;
 };
