@@ -227,8 +227,7 @@ void judge_sweep(const Machine& machine,
     findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
-    if (!stance.both_tenth_mm) {  // no stance height to compare with; the unknown cells are already
-                                  // reported
+    if (!stance.both_tenth_mm) {  // no height to compare with: unknown cells are already reported
         findings.deny(Reason::unknown_cells);
         return;
     }

@@ -48,7 +48,7 @@ struct Evidence {
     bool overhead = false;            ///< it hangs: the value is the height of its lower side
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
-                                 ///< not looked at, and nothing about it is proven
+                                 ///< not read, and no proof about it holds
 
     bool stance_known = false;
     std::int64_t stance_height_tenth_mm = 0;  ///< odom z of the ground under the present feet

@@ -22,7 +22,7 @@ struct StairsConfig {
     double min_length_m = 0.30;  ///< least length of an edge: 12 cells of 25 mm
     double fit_tolerance_m = 0.03;
     double max_gap_m = 0.20;  ///< largest unknown gap within one edge
-    /// The occluded region behind an edge is at most so many times as long as the edge is high.
+    /// Largest depth of the occluded region behind an edge, as a multiple of the edge's height.
     /// Value: 2.5 m away from a camera 1 m above the ground.
     double shadow_per_height = 2.5;
     /// 1: a cell holds the highest point of its area. 0: a cell holds the height at its centre.
