@@ -380,8 +380,7 @@ Status RosbridgeSession::authenticate(const Call& call, std::string_view token) 
     if (!role)
         return usage_error(
             "this token is not known here, and nothing was changed. Take a token from the "
-            "service's "
-            "token file");
+            "service's token file");
     role_ = *role;
     return {};
 }
