@@ -15,8 +15,8 @@ namespace {
 constexpr std::int64_t kOpenEvery_ns = 100'000'000;
 constexpr std::int64_t kCanaryEvery_ns = 250'000'000;
 
-/// What the gate knows before the first snapshot: one cell that nobody has seen, of a camera that
-/// never sent an image. Sealed, so that the gate says what is missing and not that it is damaged.
+/// The map before the first snapshot: one unknown cell from a camera without images. It is sealed,
+/// so that the gate reports missing input instead of damage.
 std::unique_ptr<grid::MapSnapshot> nothing_seen() {
     auto map = std::make_unique<grid::MapSnapshot>();
     map->resolution_tenth_mm = 250;
@@ -92,13 +92,13 @@ SnapshotReader::Read Gatekeeper::read_channel(std::int64_t now_ns) {
     return read;
 }
 
-/// Whether `incoming_` is to be judged by now. The process may stand still between its look at the
-/// clock and its look at the channel; a frame that came meanwhile is not from the future, and waits
-/// for the next call. Once: a stamp that is wrong stays ahead of the clock.
+/// True if `incoming_` may be used now. The process can pause between reading the clock and reading
+/// the channel. A frame from this pause is not from the future: it waits for the next call, but
+/// only once, because a wrong stamp stays ahead of the clock.
 bool Gatekeeper::has_arrived(SnapshotReader::Read read, std::int64_t now_ns) noexcept {
     using Read = SnapshotReader::Read;
     if (read != Read::fresh && !(read == Read::same && waits_)) {
-        if (read != Read::same) waits_ = false;  // what waited was perhaps overwritten
+        if (read != Read::same) waits_ = false;  // the waiting snapshot may have been overwritten
         return false;
     }
     const bool is_ahead = incoming_->frame_time_ns > now_ns || incoming_->pose_time_ns > now_ns;
@@ -167,7 +167,7 @@ Answer Gatekeeper::ask_step(const StepQuestion& question, std::int64_t now_ns) {
     fetch(now_ns);
     const bool in_sequence = is_in_sequence(question);
     Judgement judgement = judge(question, in_sequence, now_ns);
-    // A newer snapshot came meanwhile: perhaps it knows better. Once, so that the answer ends.
+    // A newer snapshot has arrived: judge again with it, but only once.
     if (judgement.verdict.allows_step(now_ns) && reader_ && reader_->has_fresh()) {
         fetch(now_ns);
         judgement = judge(question, in_sequence, now_ns);
@@ -185,7 +185,7 @@ Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
     gate::Query here = gate::query_at_body(0, *map_);
     here.attested = attestation_.area();
     here.connection = question.connection;
-    // make_query refuses what is no number; then the goal is no pose either.
+    // make_query rejects invalid numbers; then the goal has no valid pose.
     const gate::Query there = gate::make_query(
         0, question.x_m, question.y_m, std::cos(question.yaw_rad), std::sin(question.yaw_rad));
     const gate::GoalPose goal{there.x_tenth_mm, there.y_tenth_mm, there.cos_yaw, there.sin_yaw};
@@ -199,7 +199,7 @@ std::span<const std::uint8_t> Gatekeeper::movements() const noexcept {
 }
 
 Prospect Gatekeeper::prospect_of(std::uint8_t command, std::int64_t now_ns) const noexcept {
-    // Connection 0 is nobody's, and the map is the one that the last poll fetched.
+    // Connection 0 belongs to no client. Uses the map of the last poll.
     Judgement judgement = judge({.connection = 0, .sequence = 0, .command = command}, true, now_ns);
     judgement.verdict.valid_until_ns = judgement.verdict.decided_ns;
     return {judgement.query, judgement.verdict};
@@ -232,18 +232,19 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
 }
 
 Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
-    // Known questions cost milliseconds: nobody makes a gate that works ask itself.
+    // The canaries take milliseconds, so run them only in a fault, not whenever a client asks.
     if (readiness_.state() == gate::GateState::fault && !canaries_->judge_all().passed)
-        return Error{ErrorCode::usage,
-                     "the gate fails its self-test: it answers a known question wrongly and must "
-                     "not be used. Restart the gate; if that does not help, reinstall it"};
+        return Error{
+            ErrorCode::usage,
+            "the gate fails its self-test: its verdict on a known map is wrong, so it must "
+            "not be used. Restart the gate; if that does not help, reinstall it"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
-                     "there is nothing to re-arm: the gate is in no fault, or in one that only a "
+                     "nothing to re-arm: the gate has no fault, or a fault that only a "
                      "restart with a valid configuration ends"};
     attestation_.revoke();
     if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
-    if (reader_) {  // the map that a fault left behind is not believed again
+    if (reader_) {  // do not use the map from before the fault again
         reader_->keep_faults(0);
         reader_->want_restart();
         given_up_ = reader_->writer();
@@ -272,12 +273,13 @@ std::int64_t Gatekeeper::least_radius_tenth_mm() const {
 Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
     fetch(now_ns);
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
-        return refuse_attestation("no healthy pose is known");
+        return refuse_attestation(
+            "the pose of the machine is unknown; wait until the odometry is healthy");
     if (readiness_.state() == gate::GateState::fault)
         return refuse_attestation("the gate is in a fault");
     if (auto status = check_radius(radius_m); !status) return status;
     if (!attestation_.attest(machine_, *map_, tenth_mm(radius_m), now_ns))
-        return refuse_attestation("the map of this moment is damaged");
+        return refuse_attestation("the newest map is damaged; try again");
     return {};
 }
 
@@ -303,9 +305,9 @@ void Gatekeeper::give_starters_word(std::int64_t now_ns) {
     const gate::GateState state = readiness_.state();
     if (state != gate::GateState::ready && state != gate::GateState::fault) return;
     const double radius_m = std::exchange(starters_word_m_, 0.0);
-    if (attestation_.area().active) return;  // the operator's own attestation is not replaced
-    // Refused in a fault, and then it is over: the attestation was for where the machine stood at
-    // the start. `report` says whether it is in force.
+    if (attestation_.area().active) return;  // do not replace the operator's own attestation
+    // If this is refused in a fault, do not retry: the attestation was for the position at the
+    // start. `report` shows whether it is valid.
     const Status attested = attest(0, radius_m, now_ns);
     note(act_of(ActKind::attest, Role::operator_, 0, attested, now_ns, radius_m));
 }

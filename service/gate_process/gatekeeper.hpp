@@ -20,7 +20,7 @@
 
 namespace surefoot::gate_process {
 
-/// A verdict and what it was made of, but for the machine and the map.
+/// A verdict and its inputs, except the machine and the map.
 struct Judgement {
     gate::Query query;
     gate::GateHealth health;
@@ -28,41 +28,41 @@ struct Judgement {
     gate::Verdict verdict;
 };
 
-/// How the gate finds the channel of its maps.
+/// State of the channel from which the gate reads its maps.
 enum class ChannelState : std::uint8_t {
-    absent,  ///< not there yet
+    absent,  ///< does not exist yet
     open,
-    lost,   ///< deleted, replaced or cut off; opened again when perception has mended it
-    forged  ///< a snapshot was not made by perception: a fault, until an operator re-arms the gate
+    lost,   ///< deleted, replaced or truncated; reopened after perception has repaired it
+    forged  ///< a snapshot was not made by perception: a fault until an operator re-arms the gate
 };
 
-/// The step gate of the gate process: newest snapshot of the channel, state machine, canaries, the
-/// operator's word, and decide(). One thread; no clock, all times come with the calls. Needs
-/// `poll` every few milliseconds, also while nobody asks.
+/// The step gate of the gate process. Joins the newest snapshot of the channel, the state machine,
+/// the canaries, the operator's attestation and decide(). Use it from one thread. Times are
+/// arguments; no clock inside. Call `poll` every few milliseconds, also without questions.
 class Gatekeeper final : public StepGate {
   public:
-    /// Called with every verdict about a step; must neither wait nor throw.
+    /// Called with every verdict about a step; must not block or throw.
     using Audit = std::function<void(const Judgement&, const grid::MapSnapshot&)>;
-    /// Called with every act that is to be logged; must neither wait nor throw.
+    /// Called with every act that belongs into the log; must not block or throw.
     using AuditAct = std::function<void(const Act&)>;
 
-    /// The channel need not be there yet.
+    /// The channel may be created later.
     Gatekeeper(const Machine& machine,
                const gate::ReadinessLimits& limits,
                ChannelAddress channel,
                Audit audit = {},
                AuditAct audit_act = {});
 
-    /// Fetches what is new, lets time pass, asks a canary now and then. `boottime_ns` is steady
-    /// time with what the computer slept.
+    /// Reads new snapshots, advances the time and judges a canary now and then. `boottime_ns`:
+    /// steady time that includes the time the computer slept.
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
-    /// An assured gate gives no OK (Reason::audit) while its log cannot be written.
+    /// A gate that requires a log gives no OK (Reason::audit) while the log cannot be written.
     void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
-    /// Whoever starts the process attests the ground: once, when the gate is first ready, and after
-    /// a fault not any more. An attestation that the operator gave before then stays. Refuses a
-    /// radius that could never be attested.
+    /// Attests the ground on behalf of the person who starts the process: once, when the gate is
+    /// first ready, and never after a fault. An earlier attestation of the operator stays. Returns
+    /// an error for a radius that can never be attested.
     [[nodiscard]] Status attest_when_ready(double radius_m);
-    /// The process ends: nothing is OK any more.
+    /// The process ends: no verdict is OK from now on.
     void stop() noexcept { readiness_.stop(); }
 
     [[nodiscard]] ChannelState channel_state() const noexcept { return channel_state_; }
@@ -79,8 +79,8 @@ class Gatekeeper final : public StepGate {
                                 double radius_m,
                                 std::int64_t now_ns) override;
     void forget(std::uint64_t connection) override { sequences_.erase(connection); }
-    /// Of refusals a hundred at once and ten a second in the long run are passed on: nobody fills
-    /// the log with them. The act that follows tells how many were left out.
+    /// Passes on at most a hundred refused acts at once and ten per second on average, so that no
+    /// client can fill the log. The next logged act contains the number of omitted acts.
     void note(const Act& act) override;
 
   private:
@@ -99,29 +99,29 @@ class Gatekeeper final : public StepGate {
                                   std::int64_t now_ns) const noexcept;
 
     Machine machine_;
-    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< the first movement_count_
+    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< movement_count_ are valid
     std::size_t movement_count_ = 0;
     ChannelAddress channel_;
     Audit audit_;
     AuditAct audit_act_;
-    TokenBucket refusals_{{10, 100}};  ///< that are passed on to the log
+    TokenBucket refusals_{{10, 100}};  ///< limit of the refused acts that are logged
     std::uint32_t refusals_left_out_ = 0;
     gate::Readiness readiness_;
     gate::Attestation attestation_;
     std::unique_ptr<gate::Canaries> canaries_;
     std::optional<SnapshotReader> reader_;
     ChannelState channel_state_ = ChannelState::absent;
-    std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest whole one
-    std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being fetched
+    std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest complete snapshot
+    std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being read
     bool has_map_ = false;
-    bool waits_ = false;          ///< `incoming_` is ahead of the time of the last call
-    std::uint64_t writer_ = 0;    ///< whose map it is
-    std::uint64_t given_up_ = 0;  ///< writer that was asked to begin anew: not believed any more
+    bool waits_ = false;          ///< the stamp of `incoming_` is later than the last call
+    std::uint64_t writer_ = 0;    ///< writer of `map_`
+    std::uint64_t given_up_ = 0;  ///< writer asked to restart; its maps are rejected
     std::int64_t next_open_ns_ = 0;
     std::int64_t next_canary_ns_ = 0;
     int canary_ = 0;
-    std::map<std::uint64_t, std::uint64_t> sequences_;  ///< of each connection, the last one
-    double starters_word_m_ = 0.0;                      ///< radius that is still to be vouched for
+    std::map<std::uint64_t, std::uint64_t> sequences_;  ///< last sequence of each connection
+    double starters_word_m_ = 0.0;                      ///< radius that is still to be attested
     bool log_failing_ = false;
     std::uint64_t asked_ = 0;
     std::uint64_t allowed_ = 0;

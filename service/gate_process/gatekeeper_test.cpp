@@ -23,7 +23,7 @@ using gate::testing::kMs;
 
 constexpr ChecksumKey kKey{3, 4};
 
-/// Perception at 15 Hz on one side of a channel, the gatekeeper on the other, and the time of both.
+/// Perception at 15 Hz on one side of a channel, the gatekeeper on the other, and their clock.
 class GatekeeperTest : public ::testing::Test {
   protected:
     GatekeeperTest()
@@ -227,7 +227,7 @@ TEST_F(GatekeeperTest, a_gate_that_fails_its_self_test_cannot_be_re_armed) {
     keeper_ =
         std::make_unique<Gatekeeper>(machine, gate::ReadinessLimits{}, ChannelAddress{path_, kKey});
     start_perception();
-    run(20.0);  // every single canary has been asked
+    run(20.0);  // every canary has run
     ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
     const Status refused = keeper_->rearm(1, now_ns_);
     ASSERT_FALSE(refused.ok());
@@ -358,7 +358,7 @@ TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault
 
     start_with_word();
     run(0.5);
-    map_->camera = CameraState::moved;  // before the gate is ready for the first time
+    map_->camera = CameraState::moved;  // before the gate is first ready
     run(0.2);
     map_->camera = CameraState::ok;
     re_arm();
@@ -445,7 +445,7 @@ TEST_F(GatekeeperTest, an_assured_gate_gives_no_ok_without_its_log) {
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
 }
 
-// A map that another process wrote into the channel, sealed as every map is: its checksum is of
+// A map that another process wrote into the channel. It is sealed, but its checksum was made with
 // another key.
 TEST_F(GatekeeperTest, a_forged_map_is_a_fault_until_an_operator_re_arms) {
     become_ready();
@@ -455,7 +455,7 @@ TEST_F(GatekeeperTest, a_forged_map_is_a_fault_until_an_operator_re_arms) {
         std::filesystem::rename(path_, true_path);
         auto forger = SnapshotWriter::create({path_, {kKey.low, kKey.high + 1}});
         ASSERT_TRUE(forger.ok());
-        run(0.15, false);  // the gate opens what has the name now
+        run(0.15, false);  // the gate opens the file that now has the name
         ++map_->version;
         map_->frame_time_ns = map_->pose_time_ns = now_ns_;
         gate::testing::seal(*map_);
@@ -494,8 +494,8 @@ TEST_F(GatekeeperTest, a_lost_channel_is_opened_again_when_it_is_mended) {
     }
 }
 
-// On a busy computer the gate stands still between its look at the clock and its look at the
-// channel: the frame that came meanwhile must not cost a warm-up.
+// On a busy computer the gate may pause between reading the clock and reading the channel. A frame
+// from that pause must not cost a warm-up.
 TEST_F(GatekeeperTest, a_frame_that_came_since_the_look_at_the_clock_is_not_from_the_future) {
     become_ready();
     const auto publish_ahead = [&](std::int64_t ahead_ns) {
@@ -506,11 +506,11 @@ TEST_F(GatekeeperTest, a_frame_that_came_since_the_look_at_the_clock_is_not_from
     };
     publish_ahead(15 * kMs);  // more than the machine tolerates
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "by the map of before";
-    now_ns_ += 15 * kMs;  // what the clock showed when the frame was read
+    now_ns_ += 15 * kMs;  // the clock when the frame was read
     run(0.005, false);
     EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
     EXPECT_EQ(keeper_->report(now_ns_).map_version, map_->version) << "now it is here";
-    // A stamp that is wrong is found by the next call.
+    // The next call detects a wrong stamp.
     publish_ahead(500 * kMs);
     run(0.01, false);
     EXPECT_EQ(keeper_->report(now_ns_).why, Reason::time_skew);

@@ -9,7 +9,7 @@
 namespace surefoot::gate_process {
 namespace {
 
-constexpr std::int64_t kRoundNs = 250'000'000;  // from beginning to beginning: 4 Hz
+constexpr std::int64_t kRoundNs = 250'000'000;  // from one round's start to the next: 4 Hz
 constexpr int kMostWaits = 4;                   // calls; 20 ms at the service's tick of 5 ms
 
 }  // namespace

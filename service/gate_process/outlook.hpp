@@ -11,21 +11,21 @@
 
 namespace surefoot::gate_process {
 
-/// What speaks for and against a look ahead in this moment.
+/// Conditions for computing the outlook at this moment.
 struct OutlookDemand {
-    bool subscribed = false;      ///< somebody listens
-    bool question_waits = false;  ///< a client's bytes wait to be read: answers come first
+    bool subscribed = false;      ///< at least one client subscribes
+    bool question_waits = false;  ///< a client has unread bytes: answers have priority
 };
 
-/// What the gate would say to every movement of the machine, for pages: round after round, one
-/// movement a call, so that no question waits for more than one verdict. A round is published when
-/// it is whole, four times a second at most. When the gate's state changes a round begins anew: no
-/// message mixes two states. Judging allocates nothing; a message does, like every topic's.
+/// Computes the gate's answer to every movement of the machine, for display. One call judges one
+/// movement, so a question waits for at most one verdict. A complete round is published, at most
+/// four times a second. A change of the gate's state restarts the round, so no message mixes two
+/// states. Judging allocates nothing; making the message does.
 class OutlookRounds {
   public:
-    /// Call it every few milliseconds. Without a subscriber the gate is not asked. Bytes that wait
-    /// delay a movement by a few calls at most: the flood of one client must not take the picture
-    /// from the others.
+    /// Call it every few milliseconds. Asks the gate only if a client subscribes. Unread bytes
+    /// delay a movement by a few calls at most, so that one client that floods the gate cannot stop
+    /// the outlook of the others.
     [[nodiscard]] std::optional<TopicMessage> next(StepGate& gate,
                                                    const OutlookDemand& demand,
                                                    std::int64_t now_ns);
@@ -36,10 +36,10 @@ class OutlookRounds {
 
     static constexpr std::size_t kMostMovements = Machine::kMovementCodes - 1;
     std::array<Prospect, kMostMovements> prospects_;
-    std::size_t judged_ = 0;  ///< of this round
+    std::size_t judged_ = 0;  ///< movements judged in this round
     gate::GateState state_ = gate::GateState::init;
-    std::optional<std::int64_t> began_ns_;  ///< this round, or the last one
-    int gave_way_ = 0;                      ///< calls in a row
+    std::optional<std::int64_t> began_ns_;  ///< start of this round, or of the last one
+    int gave_way_ = 0;                      ///< consecutive calls that gave priority to questions
 };
 
 }  // namespace surefoot::gate_process

@@ -20,7 +20,7 @@ using testing::ScriptedGate;
 constexpr OutlookDemand kListening{.subscribed = true, .question_waits = false};
 constexpr OutlookDemand kBusy{.subscribed = true, .question_waits = true};
 
-/// A gate, the rounds, and the service's time: one call every 5 ms.
+/// A gate, the rounds, and the time of the service: one call every 5 ms.
 struct Outlook {
     std::optional<Json> call(const OutlookDemand& demand = kListening) {
         now_ns += 5 * kMs;
@@ -87,7 +87,7 @@ TEST(OutlookRounds, WithoutASubscriberTheGateIsNotAsked) {
     Outlook outlook;
     EXPECT_EQ(outlook.messages_in(1000 * kMs, {}), 0);
     EXPECT_TRUE(outlook.gate.looked_at.empty());
-    // Who comes back hears nothing of the round that was left.
+    // A client that returns gets nothing of the abandoned round.
     (void)outlook.messages_in(1000 * kMs);
     while (outlook.gate.looked_at.size() % 3 != 1) (void)outlook.call();
     (void)outlook.messages_in(1000 * kMs, {});

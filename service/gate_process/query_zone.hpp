@@ -8,7 +8,7 @@
 
 namespace surefoot::gate_process {
 
-/// A rectangle of cells of a snapshot: the first one and how many. It lies inside the map.
+/// A rectangle of snapshot cells: first cell and size. It lies inside the map.
 struct CellBox {
     std::int32_t x = 0;
     std::int32_t y = 0;
@@ -21,15 +21,15 @@ struct CellBox {
     friend bool operator==(const CellBox&, const CellBox&) = default;
 };
 
-/// Whether a rectangle lies inside a map whose layers it can index.
+/// True if the rectangle lies inside the map and the map's layers have these cells.
 [[nodiscard]] bool is_inside(const CellBox& box, const grid::MapSnapshot& map) noexcept;
 
-/// Every cell that decide() may read for a query, and some more: the rectangle around both feet at
-/// start and target with their corridors and drop bands, the body's way, and the vouched area, with
-/// a ring of cells beside them. `drift_tenth_mm`: the most that a verdict met (Evidence), the wider
-/// are the regions. Any arguments may come: empty where decide() does not look at the
-/// ground (a pose, a command, a machine or a size of the map that cannot be), or where the zone
-/// lies beyond the map. Pure, allocates nothing; about a microsecond.
+/// The rectangle of all cells that decide() may read for a query, plus a few more: both feet at
+/// start and target with their corridors and drop bands, the path of the body, and the attested
+/// area, with a ring of cells around them. `drift_tenth_mm`: the largest drift of the verdict
+/// (Evidence); it widens the regions. Accepts any arguments. Empty if decide() does not read the
+/// ground (invalid pose, command, machine or map size), or if the zone lies outside the map. Pure;
+/// allocates nothing; about a microsecond.
 [[nodiscard]] CellBox query_zone(const Machine& machine,
                                  const gate::Query& query,
                                  const grid::MapSnapshot& map,

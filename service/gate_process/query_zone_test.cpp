@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The zone holds every cell that decide() reads: whatever lies outside of it may be anything.
+// The zone holds every cell that decide() reads: cells outside may have any value.
 #include "service/gate_process/query_zone.hpp"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 namespace surefoot::gate_process::testing {
 namespace {
 
-/// Other bytes in every cell outside of the zone: ground at the height of the floor on another
-/// surface, holes, walls, drops.
+/// Overwrites every cell outside the zone: ground at floor height on another surface, holes, walls,
+/// drops.
 void scramble_outside(grid::MapSnapshot& map, const CellBox& zone, Rng& rng) {
     for (std::int32_t iy = 0; iy < map.ny; ++iy) {
         for (std::int32_t ix = 0; ix < map.nx; ++ix) {
@@ -60,12 +60,12 @@ TEST(QueryZone, cells_outside_of_it_never_change_a_verdict) {
         allowed += c.verdict.decision == gate::Decision::ok ? 1 : 0;
         attested += c.verdict.evidence.attested_cells > 0 ? 1 : 0;
     }
-    EXPECT_GT(allowed, 20);  // or the rounds prove nothing
+    EXPECT_GT(allowed, 20);  // else the rounds prove nothing
     EXPECT_GT(attested, 20);
 }
 
-/// What the vouched area lends its word to lies one cell beside it: without that ring a landing
-/// there would become DISCONNECTED, or the other way round.
+/// The surface that the attested area extends to lies one cell beside the area. Without this ring a
+/// landing there would become DISCONNECTED, or the reverse.
 TEST(QueryZone, holds_the_surfaces_beside_the_vouched_area) {
     gate::testing::Terrain terrain;
     Case c;

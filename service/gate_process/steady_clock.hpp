@@ -8,7 +8,7 @@
 
 namespace surefoot::gate_process {
 
-/// Time that never jumps and stands still while the computer sleeps.
+/// Monotonic time that stops while the computer sleeps.
 [[nodiscard]] inline std::int64_t steady_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
                std::chrono::steady_clock::now().time_since_epoch())

@@ -10,7 +10,7 @@
 
 #include "service/gate_process/step_gate.hpp"
 
-/// What the tests of the service share: a gate that follows a script instead of a map.
+/// Shared by the tests of the service: a gate that follows a script instead of a map.
 namespace surefoot::gate_process::testing {
 
 inline constexpr std::int64_t kMs = 1'000'000;
@@ -28,9 +28,9 @@ inline Access three_tokens(Role guest = Role::rider) {
     return access;
 }
 
-/// tests/conformance/rosbridge/README.md has its rules: 9 is OK, 17 is a drop, 21 was never seen,
-/// every other code is unknown. A sequence that does not grow is ERROR / SEQ. Goals: ahead of
-/// x = 0 OK, beside it a drop, behind it ERROR.
+/// The rules are in tests/conformance/rosbridge/README.md: command 9 is OK, 17 is a drop, 21 is
+/// unknown ground, other codes are unknown commands. A sequence that does not increase is ERROR /
+/// SEQ. Goals: ahead of x = 0 OK, beside it a drop, behind it ERROR.
 class ScriptedGate : public StepGate {
   public:
     [[nodiscard]] Answer ask_step(const StepQuestion& question, std::int64_t now_ns) override {
@@ -109,7 +109,7 @@ class ScriptedGate : public StepGate {
 
     GateReport report_ = ready_report();
     std::int64_t life_ns = 300 * kMs;
-    void (*change_answer)(gate::Verdict&) = nullptr;  ///< to a wrong one
+    void (*change_answer)(gate::Verdict&) = nullptr;  ///< replaces the answer by a wrong one
 
     std::vector<StepQuestion> questions;
     std::vector<GoalQuestion> goals;
@@ -120,8 +120,8 @@ class ScriptedGate : public StepGate {
     std::map<std::uint64_t, std::uint64_t> last_sequence;
 
     std::vector<std::uint8_t> movement_codes{kForward, kBackward, 21};
-    mutable std::vector<std::uint8_t> looked_at;  ///< commands of prospects
-    std::vector<std::size_t> looks_before;        ///< prospects before each question
+    mutable std::vector<std::uint8_t> looked_at;  ///< commands of the prospects
+    std::vector<std::size_t> looks_before;        ///< number of prospects before each question
 
   private:
     void answer_by_script(Answer& answer, std::uint8_t command) const {

@@ -102,7 +102,7 @@ class ChannelNews {
         told_ = state;
         if (state == gate_process::ChannelState::lost)
             say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
-                "has made it again");
+                "has created it again");
         if (state == gate_process::ChannelState::open && was_lost) say("the channel is open again");
         if (state == gate_process::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "
@@ -301,7 +301,8 @@ int main_with_arguments(int argc, char** argv) {
         ->type_name("URL");
     app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
     app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");
-    app.add_option("--audit-mb", options.audit_mb, "of that folder; then the oldest logs go")
+    app.add_option(
+           "--audit-mb", options.audit_mb, "size limit of that folder; the oldest logs are deleted")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str()
         ->type_name("MB");

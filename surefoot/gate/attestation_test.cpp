@@ -9,7 +9,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// Where the camera sees nothing: within 0.7 m of the machine.
+/// A map with the blind zone of the camera: unknown within 0.7 m of the machine.
 std::unique_ptr<grid::MapSnapshot> blind_zone() {
     Terrain terrain;
     terrain.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNanF));
@@ -56,15 +56,14 @@ TEST(Attestation, is_void_for_good_once_the_machine_has_left) {
     here->body_x_tenth_mm = here->body_y_tenth_mm = 7'100;
     diagonal.observe(*here, kNowNs);
     EXPECT_FALSE(diagonal.area().active);
-    // Far away nothing overflows into "near".
+    // Large distances must not overflow into small ones.
     ASSERT_TRUE(diagonal.attest(rex(), *map, 10'000, kNowNs));
     here->body_x_tenth_mm = std::int64_t{1} << 32;
     diagonal.observe(*here, kNowNs);
     EXPECT_FALSE(diagonal.area().active);
 }
 
-// Somebody wheels the machine away while the lens is covered: the pose that comes next is one of
-// another place.
+// Somebody moves the machine while the lens is covered: the next pose belongs to another place.
 TEST(Attestation, is_void_for_good_once_nobody_knew_where_the_machine_was) {
     const auto map = blind_zone();
     const auto here = std::make_unique<grid::MapSnapshot>(*map);
@@ -89,7 +88,7 @@ TEST(Attestation, is_void_for_good_once_nobody_knew_where_the_machine_was) {
         here->health = grid::SnapshotHealth::ok;
         attestation.observe(*here, kNowNs + 3 * allowed_ns);
         EXPECT_FALSE(attestation.area().active);
-        // What was said while nothing came is not known either.
+        // An attestation during the pose loss is not valid either.
         ASSERT_TRUE(attestation.attest(rex(), *map, 10'000, kNowNs));
         here->health = health;
         attestation.observe(*here, kNowNs + 1);
@@ -102,7 +101,7 @@ TEST(Attestation, is_void_for_good_once_nobody_knew_where_the_machine_was) {
     }
 }
 
-// The rim of a platform in the blind zone, 0.45 m ahead; the camera looks over it.
+// The rim of a platform in the blind zone, 0.45 m ahead; the rays pass over it.
 TEST(Attestation, covers_no_drop_that_lines_of_sight_showed) {
     Terrain edge;
     edge.box(-3.0, 0.975, -3.0, 3.0, kNanF);
@@ -165,7 +164,7 @@ TEST(Attestation, the_area_lies_around_the_machine_wherever_that_is) {
     attestation.observe(*map, kNowNs);
     EXPECT_TRUE(attestation.area().active);
     const auto away = std::make_unique<grid::MapSnapshot>(*map);
-    away->body_y_tenth_mm = 2'500;  // as far from the origin of odom, but not here
+    away->body_y_tenth_mm = 2'500;  // as far from the origin of odom, but outside the area
     attestation.observe(*away, kNowNs);
     EXPECT_FALSE(attestation.area().active);
 }

@@ -9,25 +9,25 @@
 namespace surefoot::gate {
 namespace {
 
-// A yaw with exact cosine and sine that is parallel to nothing.
+// A yaw with exact cosine and sine that is not parallel to a grid axis.
 constexpr double kCosYaw = 0.8;
 constexpr double kSinYaw = 0.6;
 constexpr std::int64_t kNowNs = 1'000'000'000'000;
 constexpr std::int32_t kSideTenthMm = 250;
 constexpr std::uint16_t kSigmaTenthMm = 10;
 
-/// What a canary may change of level ground and of a question that is OK there.
+/// The inputs of an OK verdict on level ground that a canary may change.
 struct Setting {
     const Machine& machine;
     grid::MapSnapshot& map;
     Query& query;
     GateHealth& health;
     std::int64_t& now_ns;
-    const FootSweep& foot;  ///< under which the ground is changed
+    const FootSweep& foot;  ///< the foot whose ground is changed
 };
 
-/// Level ground, known, fresh and healthy, with the machine in its middle. Whether it is large
-/// enough for the movement is the canary's own affair: outside of it nothing is OK.
+/// Makes a level, known, fresh and healthy map with the machine in its middle. If the map is too
+/// small for a movement, the canary fails, because outside cells are never OK.
 void make_level(grid::MapSnapshot& map) noexcept {
     map.magic = grid::MapSnapshot::kMagic;
     map.layout = grid::MapSnapshot::kLayout;
@@ -41,7 +41,7 @@ void make_level(grid::MapSnapshot& map) noexcept {
     map.edge_count = 0;
     map.origin_x_tenth_mm = -kSideTenthMm * map.nx / 2;
     map.origin_y_tenth_mm = -kSideTenthMm * map.ny / 2;
-    map.body_x_tenth_mm = 37;  // off the lines of the grid
+    map.body_x_tenth_mm = 37;  // not on a grid line
     map.body_y_tenth_mm = -53;
     map.body_z_tenth_mm = 0;
     map.body_cos_yaw = kCosYaw;
@@ -61,16 +61,17 @@ void make_level(grid::MapSnapshot& map) noexcept {
     grid::seal(map);
 }
 
-/// Well inside a landing foot and as far from where it stands as can be: with a short step
-/// the middle would be ground that carries already.
+/// A point well inside a landing foot, as far as possible from its present position: after a short
+/// step the middle of the foot would be ground that carries already.
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
-    const auto from_stance = [&](grid::FixedPoint p) {  // the sum for all corners of what stands
-        std::int64_t sum_sq = 0;
-        for (const grid::FixedPoint q : foot.stance.points())
-            sum_sq += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-        return sum_sq;
-    };
+    const auto from_stance =
+        [&](grid::FixedPoint p) {  // sum of the distances to all corners of the stance area
+            std::int64_t sum_sq = 0;
+            for (const grid::FixedPoint q : foot.stance.points())
+                sum_sq += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+            return sum_sq;
+        };
     grid::FixedPoint farthest = center;
     for (const grid::FixedPoint corner : foot.landing.points()) {
         const grid::FixedPoint inside{(center.x + 3 * corner.x) / 4, (center.y + 3 * corner.y) / 4};
@@ -79,8 +80,8 @@ grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     return farthest;
 }
 
-/// A cell of new ground, or the last one of the map where that lies outside: there the canary
-/// fails, and says so.
+/// Changes a cell of new ground. If it lies outside the map, changes the last cell of the map, so
+/// that the canary fails and reports it.
 template <typename Change>
 void change_one_cell(const Setting& s, Change&& change) noexcept {
     const grid::FixedPoint place = new_ground(s.foot);
@@ -93,7 +94,7 @@ void change_one_cell(const Setting& s, Change&& change) noexcept {
     change(static_cast<std::size_t>(iy * s.map.nx + ix));
 }
 
-/// That cell and the one beside it: one alone is a pebble.
+/// Changes that cell and its neighbour, because a single cell counts as a pebble.
 template <typename Change>
 void change_two_cells(const Setting& s, Change&& change) noexcept {
     change_one_cell(s, [&](std::size_t i) {
@@ -115,7 +116,7 @@ struct Fault {
 };
 
 constexpr auto kFaults = std::to_array<Fault>({
-    // What perception says of itself, and of time.
+    // Faults that perception reports, and faults of time.
     {Reason::frame_stale,
      [](const Setting& s) { s.map.frame_time_ns -= s.machine.limits.frame_age_ns + 1; }},
     {Reason::pose_stale,
@@ -134,7 +135,7 @@ constexpr auto kFaults = std::to_array<Fault>({
     {Reason::mount_moved, [](const Setting& s) { s.map.camera = CameraState::moved; }},
     {Reason::plane_invalid, [](const Setting& s) { s.map.camera = CameraState::leaning; }},
     {Reason::internal, [](const Setting& s) { s.map.magic = 0; }},
-    // The gate itself, and the question.
+    // Faults of the gate and of the query.
     {Reason::not_ready, [](const Setting& s) { s.health.state = GateState::degraded; }},
     {Reason::warmup, [](const Setting& s) { s.health.state = GateState::warmup; }},
     {Reason::pose_jump, [](const Setting& s) { s.health.faults.add(Reason::pose_jump); }},
@@ -143,7 +144,7 @@ constexpr auto kFaults = std::to_array<Fault>({
     {Reason::bad_number, [](const Setting& s) { s.query.cos_yaw *= 2.0; }},
 });
 
-/// Under each foot.
+/// Faults of the ground, tested under each foot.
 constexpr auto kGroundFaults = std::to_array<Fault>({
     {Reason::unknown_cells,
      [](const Setting& s) {
@@ -152,7 +153,7 @@ constexpr auto kGroundFaults = std::to_array<Fault>({
              s.map.source[i] = grid::EvidenceSource::unknown;
          });
      }},
-    // An operator's word for ground that was seen to lie lower.
+    // An attestation of ground that rays prove to be lower.
     {Reason::unknown_cells,
      [](const Setting& s) {
          const GateLimits& limits = s.machine.limits;
@@ -209,7 +210,7 @@ constexpr auto kGroundFaults = std::to_array<Fault>({
      }},
 });
 
-/// What happens to a map that was sealed already.
+/// Changes of a map after it was sealed.
 constexpr auto kDamages = std::to_array<Fault>({
     {Reason::internal,
      [](const Setting& s) {
@@ -219,8 +220,8 @@ constexpr auto kDamages = std::to_array<Fault>({
 
 constexpr std::size_t kFaultCount = kFaults.size() + 2 * kGroundFaults.size() + kDamages.size();
 
-/// The index-th question with a broken rule: which one, under which foot, and whether it happens to
-/// a map that stays sealed as it was.
+/// Broken-rule canary `index`: its rule, its foot, and whether the change happens after the map was
+/// sealed.
 struct Broken {
     const Fault& fault;
     std::size_t foot = 0;
@@ -239,8 +240,8 @@ std::int64_t length_sq(const Movement& m) noexcept {
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
 }
 
-/// The longest movement has the most ground to find a fault in. Faults are of flat ground: on
-/// stairs some of them are treads.
+/// The longest movement covers the most ground. The faults are faults of flat ground; on stairs
+/// some of them are treads.
 bool is_harder(const Movement& a, const Movement& b) noexcept {
     if (a.movement_class != b.movement_class) return a.movement_class == MovementClass::walk;
     return length_sq(a) > length_sq(b);
@@ -265,7 +266,7 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
     Outcome outcome;
     index %= count();
     outcome.command = longest_;
-    if (index < first_fault_) {  // the index-th movement on level ground
+    if (index < first_fault_) {  // movement `index` on level ground
         int left = index;
         outcome.command = 1;
         while (movement_for(machine_, outcome.command) == nullptr || left-- > 0) ++outcome.command;

@@ -9,19 +9,19 @@
 
 namespace surefoot::gate {
 
-/// Maps whose verdicts are known: level ground for every movement of the machine, and for its
-/// longest movement one broken rule at a time, those of the ground under either foot. They go the
-/// way of every question, through decide(), so that a gate that has come to say OK (or nothing
-/// else) is noticed. Asked before the gate is armed, and one after the other while it runs.
+/// Canaries: maps with known verdicts. Level ground must be OK for every movement of the machine.
+/// For the longest movement each ground rule is broken once, those of the feet under either foot.
+/// Canaries pass through decide() like every query, so a gate that always says OK (or never does)
+/// is detected. Judge all before the gate is armed, then one after the other while it runs.
 ///
-/// Holds one map of 0.9 MB: belongs on the heap. Nothing is allocated afterwards; a canary costs
-/// less than a millisecond.
+/// Holds one map of 0.9 MB, so allocate it on the heap. Allocates nothing after construction. One
+/// canary costs less than a millisecond.
 class Canaries {
   public:
     explicit Canaries(const Machine& machine) noexcept;
 
     [[nodiscard]] int count() const noexcept { return first_fault_ + kBrokenRules; }
-    /// "level ground, movement 9", "unknown_cells".
+    /// Result of one canary. Examples of names: "level ground, movement 9", "unknown_cells".
     struct Outcome {
         bool passed = false;
         const char* name = "";
@@ -29,9 +29,9 @@ class Canaries {
         Reason expected = Reason::none;  ///< `none` = OK
         Reason found = Reason::internal;
     };
-    /// Judges canary `index`, taken modulo count().
+    /// Judges canary `index` modulo count().
     [[nodiscard]] Outcome judge(int index) noexcept;
-    /// All of them; the first that failed, or the last one.
+    /// Judges all canaries. Returns the first failure, or the last canary if all pass.
     [[nodiscard]] Outcome judge_all() noexcept;
 
   private:
@@ -39,8 +39,8 @@ class Canaries {
 
     Machine machine_;
     grid::MapSnapshot map_;
-    int first_fault_ = 0;       ///< = number of movements
-    std::uint8_t longest_ = 0;  ///< movement that the faults are asked with
+    int first_fault_ = 0;       ///< index of the first broken-rule canary = number of movements
+    std::uint8_t longest_ = 0;  ///< movement that the broken-rule canaries use
 };
 
 }  // namespace surefoot::gate

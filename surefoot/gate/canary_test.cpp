@@ -104,14 +104,14 @@ TEST(Canaries, a_machine_whose_foot_lands_beyond_the_map_fails_and_stays_inside_
         EXPECT_FALSE(first.passed);
         EXPECT_EQ(first.found, Reason::outside_map);
         EXPECT_EQ(canaries->judge_all().command, first.command) << "the first that failed";
-        int first_of_ground = 26;  // the left foot's, then as many of the right one, then a damage
+        int first_of_ground = 26;  // faults: left foot, as many of the right foot, damages
         while (is_error(canaries->judge(first_of_ground).expected)) ++first_of_ground;
         const int of_a_foot = (canaries->count() - 1 - first_of_ground) / 2;
         EXPECT_EQ(of_a_foot, 11);
         for (int i = 0; i < canaries->count(); ++i) {
             const Canaries::Outcome outcome = canaries->judge(i);
-            // No movement is OK, and of the ground of that foot nothing else is said; an error is
-            // one all the same.
+            // No movement is OK, and that foot has no other ground reason. An error remains an
+            // error.
             const bool of_that_foot = i >= first_of_ground && i < first_of_ground + of_a_foot;
             EXPECT_EQ(outcome.passed, i >= 26 && !of_that_foot) << i << " " << outcome.name;
         }
@@ -137,7 +137,7 @@ TEST(Canaries, a_default_outcome_has_passed_nothing) {
     EXPECT_EQ(outcome.found, Reason::internal);
 }
 
-// A limit that a slip of the pen made too wide is noticed where the canary breaks it by little.
+// A limit that was set too wide by mistake fails the canary that breaks it by little.
 TEST(Canaries, they_follow_the_limits_of_the_machine) {
     Machine machine = rex();
     machine.limits.drop_tenth_mm = 900;
@@ -151,7 +151,7 @@ TEST(Canaries, they_follow_the_limits_of_the_machine) {
     EXPECT_TRUE(canaries_of(machine)->judge_all().passed);
 }
 
-// Their faults are of flat ground: on stairs a surface beside the present one may be a tread.
+// The faults are faults of flat ground: on stairs a surface beside the present one may be a tread.
 TEST(Canaries, a_movement_for_stairs_does_not_make_them_fail) {
     Machine machine = rex();
     machine.limits.step[1].enabled = true;

@@ -9,18 +9,18 @@
 
 namespace surefoot::gate {
 
-/// One broken rule: where, how much, against which limit.
+/// One broken rule: its cell, the value and the limit.
 struct Finding {
-    std::int64_t cell_x = 0;  ///< in cells of the snapshot; may lie outside of it
+    std::int64_t cell_x = 0;  ///< in cells of the snapshot; may lie outside the snapshot
     std::int64_t cell_y = 0;
     std::int64_t value_tenth_mm = 0;
     std::int64_t limit_tenth_mm = 0;
-    std::int64_t severity = 0;  ///< the worst one of each reason is kept, the first among equals
+    std::int64_t severity = 0;  ///< the most severe one per reason is kept, of equals the first
     Foot foot = Foot::none;
-    bool overhead = false;  ///< it hangs: the value is the height at which it begins
+    bool overhead = false;  ///< an overhanging obstacle: the value is the height of its lower side
 };
 
-/// Collects proofs and broken rules while a decision is made.
+/// Collects proofs and broken rules during one decision.
 class Findings {
   public:
     void deny(Reason reason) noexcept {
@@ -28,7 +28,7 @@ class Findings {
         ++denials_;
     }
     void deny(Reason reason, const Finding& finding) noexcept;
-    /// Runs the test; the proof holds when it denied nothing.
+    /// Runs `test`. The proof holds if the test denied nothing.
     template <typename Test>
     void prove(Proof proof, Test&& test) noexcept {
         const std::uint64_t before = denials_;
@@ -37,14 +37,14 @@ class Findings {
     }
     [[nodiscard]] ReasonSet reasons() const noexcept { return reasons_; }
     [[nodiscard]] bool complete() const noexcept { return unproven() == 0; }
-    /// The proofs that do not hold, a bit each, as in Evidence.
+    /// The proofs that do not hold, one bit each, as in Evidence.
     [[nodiscard]] std::uint32_t unproven() const noexcept {
         return (bit(Proof::count) - 1U) & ~proofs_;
     }
-    /// The worst finding of a reason, or nullptr when it was denied without a place.
+    /// The most severe finding of a reason, or nullptr if it was denied without a cell.
     [[nodiscard]] const Finding* worst(Reason reason) const noexcept;
 
-    Evidence evidence;  ///< numbers that every verdict carries
+    Evidence evidence;  ///< numbers that every verdict contains
 
   private:
     static constexpr std::uint32_t bit(Proof proof) noexcept {
@@ -58,7 +58,7 @@ class Findings {
     std::array<bool, kReasonCount> has_worst_{};
 };
 
-/// Where the primary reason was worst, and by how much, into the evidence.
+/// Copies cell, value and limit of the worst finding of the primary reason into the evidence.
 void show_worst_cell(const grid::MapSnapshot& map,
                      const Findings& findings,
                      Reason primary,

@@ -11,7 +11,7 @@ namespace {
 
 using grid::FixedPoint;
 
-/// Exact sums over cells: x, y = doubled coordinates from the foot's middle, z over the stance.
+/// Exact sums over cells: x, y = doubled coordinates from the foot's middle, z above the stance.
 struct Sums {
     std::int64_t n = 0;
     std::int64_t x = 0, y = 0, z = 0;
@@ -30,13 +30,13 @@ struct Sums {
     }
 };
 
-/// The mean of a patch. Cells that are less sure than a patch must be weigh less, by their
-/// variance, so that one that has just refused a measurement does not spoil what the others know.
+/// The weighted mean of a patch. Cells with a larger sigma than a patch may have weigh less, by
+/// their variance, so that a cell after a rejected measurement does not spoil the patch.
 struct PatchSums {
     std::int64_t n = 0;
     double weight = 0.0;
     double x = 0.0, y = 0.0, z = 0.0;  ///< as in Sums, weighted
-    double variance = 0.0;             ///< weighted twice
+    double variance = 0.0;             ///< sum with squared weights
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma, std::int64_t sure) noexcept {
         const auto variance_of = [](std::int64_t s) { return static_cast<double>(s * s); };
@@ -62,14 +62,14 @@ struct FootPlane {
     [[nodiscard]] double at(double x, double y) const noexcept {
         return height + slope_x * (x - mean_x) + slope_y * (y - mean_y);
     }
-    /// Squared tangent of the tilt; the factor undoes the doubled coordinates.
+    /// Squared tangent of the tilt; the factor accounts for the doubled coordinates.
     [[nodiscard]] double tilt_tan_sq() const noexcept {
         return 4.0 * (slope_x * slope_x + slope_y * slope_y);
     }
 };
 
-/// Normal equations of the centred points. The sums are exact and only + - * / follow, none of them
-/// contracted: the same bits everywhere.
+/// Normal equations of the centred points. The sums are exact, and only uncontracted + - * /
+/// follow, so all machines give the same bits.
 FootPlane fit_plane(const Sums& sums) noexcept {
     FootPlane plane;
     if (sums.n < 3) return plane;
@@ -97,7 +97,7 @@ std::int64_t rounded(double value) noexcept {
     return saturated_integer<std::int64_t>(value < 0.0 ? value - 0.5 : value + 0.5);
 }
 
-/// The patches of a foot, in its own axes.
+/// The patches of a foot in the foot's axes.
 class Patches {
   public:
     static constexpr std::int64_t kMaxPerSide = 16;  // Machine::problem() bounds the foot
@@ -110,8 +110,8 @@ class Patches {
           along_(per_side(length_, limits)),
           across_(per_side(width_, limits)) {}
 
-    /// `p` in doubled odom coordinates from the foot's middle. Cells that only overlap the rim
-    /// count to the nearest patch: none gets lost.
+    /// `p`: doubled odom coordinates from the foot's middle. A cell that only overlaps the rim
+    /// belongs to the nearest patch, so no cell is lost.
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
         const std::int64_t forward = p.x * pose_.cos_yaw + p.y * pose_.sin_yaw;
         const std::int64_t left = p.y * pose_.cos_yaw - p.x * pose_.sin_yaw;
@@ -144,14 +144,14 @@ class Patches {
     std::array<PatchSums, static_cast<std::size_t>(kMaxPerSide* kMaxPerSide)> sums_{};
 };
 
-/// Everything about one landing foot while it is judged.
+/// The state of the test of one landing foot.
 struct Landing {
     const Scene& scene;
     const FootSweep& foot;
     FootPlane plane;
     Findings& findings;
 
-    /// A finding at the cell below a point in doubled coordinates from the foot's middle.
+    /// A finding at the cell of a point in doubled coordinates from the foot's middle.
     [[nodiscard]] Finding at(double x,
                              double y,
                              std::int64_t value,
@@ -171,7 +171,7 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// `where`: the place whose value is its height over the stance.
+/// Tests the step limits. `where`: a finding whose value is its height above the stance.
 void check_rise(const StepLimits& limits, Finding where, Findings& findings) noexcept {
     const std::int64_t rise = where.value_tenth_mm;
     const auto deny = [&](Reason reason, std::int64_t value, std::int64_t limit) {
@@ -191,8 +191,8 @@ void check_step(const Landing& landing) noexcept {
         evidence.height_delta_tenth_mm = rise;
     const StepLimits& limits = step_limits(landing.scene);
     check_rise(limits, landing.at(0.0, 0.0, rise, 0), landing.findings);
-    // With one foot above the mean of both and the other below, each could change by twice the
-    // limit.
+    // If one foot is above the mean of both feet and the other below, the height of one foot could
+    // change by twice the limit.
     const Scene& scene = landing.scene;
     const auto stood = scene.foot_stance_tenth_mm[landing.foot.foot == Foot::left ? 0 : 1];
     if (!stood) return;
@@ -200,7 +200,7 @@ void check_step(const Landing& landing) noexcept {
     check_rise(limits, landing.at(0.0, 0.0, own, 0), landing.findings);
 }
 
-/// False when it denies, like check_patch().
+/// Returns false if it denies, like check_patch().
 bool check_tilt(const Landing& landing) noexcept {
     const double tan_sq =
         steepest_tan_sq(landing.plane.tilt_tan_sq(), landing.scene.ground.vertical_bound_tan());
@@ -214,12 +214,11 @@ bool check_tilt(const Landing& landing) noexcept {
 }
 
 bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
-    if (patch.n == 0)
-        return true;  // every cell is in some patch; cells larger than patches leave gaps
+    if (patch.n == 0) return true;  // large cells leave patches empty; every cell lies in a patch
     const GateLimits& limits = landing.scene.machine.limits;
     const double x = patch.x / patch.weight;
     const double y = patch.y / patch.weight;
-    // The errors of neighbours hang together: more cells than `independent` average no further.
+    // Errors of neighbours are correlated: more than `independent` cells average no further.
     const std::int64_t independent =
         std::min<std::int64_t>(patch.n, limits.patch_independent_cells);
     const double alike = static_cast<double>(patch.n) / static_cast<double>(independent);
@@ -234,7 +233,7 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
         finding.severity = rounded(variance);
         landing.findings.deny(Reason::not_resolvable, finding);
     }
-    // Where the noise alone has refused the patch, the residual speaks only for itself.
+    // If the noise alone breaks the limit, the residual is tested without noise.
     const double noise_sq = resolvable ? limits.sigma_factor * limits.sigma_factor * variance : 0.0;
     const double residual = patch.z / patch.weight - landing.plane.at(x, y);
     const double size = residual < 0.0 ? -residual : residual;
@@ -246,13 +245,13 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
     return resolvable && even;
 }
 
-/// The cells under a landing foot, summed up.
+/// The sums over the cells under a landing foot.
 struct FootCells {
     Sums all{};
     Patches patches;
-    bool has_pebble = false;   ///< one of them stood alone
-    std::int64_t grounds = 0;  ///< the others
-    Finding lowest{};          ///< of these; its value: the height over the stance
+    bool has_pebble = false;   ///< one cell stood alone (stands_alone)
+    std::int64_t grounds = 0;  ///< number of the other cells
+    Finding lowest{};          ///< of the other cells; value = height above the stance
     Finding highest{};
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
@@ -267,10 +266,10 @@ struct FootCells {
     }
 };
 
-/// A single cell beyond the step limits while all eight around it are known and keep them, and no
-/// obstacle for a swinging foot nor a drop itself: a wrong match, or a pebble, of which the mean of
-/// its patch speaks. What a foot could stand on, a kerb or a sill, fills more than one cell. One
-/// such cell is forgiven a foot: on many of them it would stand.
+/// True for a single cell beyond the step limits whose eight neighbours are known and within them,
+/// and which is neither an obstacle for a swinging foot nor a drop. It is a wrong match or a
+/// pebble, and the mean of its patch covers it. A real kerb or sill fills more than one cell. One
+/// such cell per foot is allowed; on several the foot would stand.
 bool stands_alone(const Scene& scene,
                   std::int64_t ix,
                   std::int64_t iy,
@@ -287,7 +286,7 @@ bool stands_alone(const Scene& scene,
     });
 }
 
-/// False when a cell is not known: there is no plane then.
+/// Returns false if a cell is unknown: then no plane exists.
 bool gather_cells(const Scene& scene,
                   const FootSweep& foot,
                   const ReachableSurfaces& reachable,
@@ -303,7 +302,7 @@ bool gather_cells(const Scene& scene,
             }
             if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
                 findings.deny(Reason::disconnected, here);
-            // 3 m above or below is refused by the other rules; the bound keeps the sums exact.
+            // Other rules refuse heights beyond 3 m; the clamp keeps the sums exact.
             const std::int64_t height = std::clamp<std::int64_t>(
                 cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
             cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
@@ -332,8 +331,8 @@ void check_landing(const Scene& scene,
         findings.deny(Reason::not_resolvable, landing.at(0.0, 0.0, 0, 0));
         return;
     }
-    // Some cell is then an obstacle or a drop; a plane through both levels would tell a height and
-    // a tilt that nothing there has.
+    // Then some cell is an obstacle or a drop. A plane through both levels would give a height and
+    // a tilt that no part of the ground has.
     const std::int64_t spread = cells.highest.value_tenth_mm - cells.lowest.value_tenth_mm;
     const std::int64_t spread_limit = limits.swing_clearance_tenth_mm + limits.drop_tenth_mm;
     if (spread > spread_limit) {
@@ -344,7 +343,7 @@ void check_landing(const Scene& scene,
     bool flat = check_tilt(landing);
     for (std::int64_t i = 0; i < cells.patches.count(); ++i)
         flat = check_patch(landing, cells.patches[i]) && flat;
-    if (!flat) return;  // refused, and for a better reason than its highest cell
+    if (!flat) return;  // already refused, with a better reason than its highest cell
     check_rise(step_limits(scene), cells.highest, findings);
     check_rise(step_limits(scene), cells.lowest, findings);
 }

@@ -5,20 +5,20 @@
 
 namespace surefoot::gate {
 
-/// Ground under one landing foot, all of it flat:
-/// 1. every cell known, and every measured one on a surface that the machine stands on;
-/// 2. cells of one level: their spread is within swing_clearance + drop, else ROUGHNESS;
-/// 3. least-squares plane through the cells: tilt within the limit (z of its normal against a
-///    cosine), height at the middle of the foot within the step limits of the movement's class;
-/// 4. the foot is cut into patches of at least `patch_side` (50 mm). For each the variance of the
-/// mean
-///    is (mean of the cells' variances) / min(cells, `patch_independent_cells`): errors of
-///    neighbouring cells are partly the same error, so averaging is credited for a fixed small
-///    number of cells only, whatever the cell size. Wanted: sigma <= `patch_sigma`, and |residual
-///    to the plane| + sigma_factor * sigma <= `patch_residual`.
-/// 5. every cell within those step limits: a toe on the beginning of a ramp is a step, though the
-///    middle of the foot is not.
-/// No mean over the foot decides: each patch does, the worst one is reported.
+/// Checks the ground under one landing foot on flat ground:
+/// 1. Every cell is known, and every measured cell belongs to a reachable surface.
+/// 2. The cells have one level: their spread is at most swing_clearance + drop, else
+/// ROUGHNESS.
+/// 3. A least-squares plane through the cells keeps the tilt limit (z of its normal against a
+/// cosine). Its height at the middle of the foot keeps the step limits of the movement class.
+/// 4. The foot is cut into patches of at least `patch_side` (50 mm). The variance of a patch
+/// mean is (mean of the cell variances) / min(cells, `patch_independent_cells`). Errors of
+/// neighbouring cells are correlated, so averaging counts only a fixed small number of cells,
+/// for any cell size. Each patch needs sigma <= `patch_sigma` and |residual to the plane| +
+/// sigma_factor * sigma <= `patch_residual`.
+/// 5. Every cell keeps those step limits: a toe on the begin of a ramp is a step up, even if
+/// the middle of the foot is not.
+/// No mean over the whole foot decides. Each patch is tested; the worst is reported.
 void check_landing(const Scene& scene,
                    const FootSweep& foot,
                    const GroundBox& box,

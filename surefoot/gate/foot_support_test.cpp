@@ -17,7 +17,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// The rule for one landing foot, asked without the others, on a map that is set cell by cell.
+/// The rule for one landing foot alone, on a map that is set cell by cell.
 struct FootOnGround {
     Terrain terrain;
     std::unique_ptr<grid::MapSnapshot> map;
@@ -53,8 +53,8 @@ struct FootOnGround {
         return findings;
     }
     [[nodiscard]] ReasonSet reasons() const { return look().reasons(); }
-    /// Moves the machine by less than a cell: the middle of the foot comes to lie on the last tenth
-    /// of a millimetre of its cell, so that a finding must be true to that to name this cell.
+    /// Moves the machine by less than a cell: the middle of the foot lies on the last 0.1 mm of its
+    /// cell, so a finding must be that exact to name this cell.
     void go_to_the_end_of_a_cell() {
         const grid::FixedPoint p = sweep().feet[foot].landing_center;
         const std::int64_t side = map->resolution_tenth_mm;
@@ -68,7 +68,7 @@ struct FootOnGround {
         return where != nullptr &&
                static_cast<std::size_t>(where->cell_y * map->nx + where->cell_x) == middle();
     }
-    /// The cell that holds the middle of the landing foot, or one so many cells beside it.
+    /// The cell at the middle of the landing foot, or a cell at an offset from it.
     [[nodiscard]] std::size_t middle(int dx = 0, int dy = 0) const {
         const grid::FixedPoint p = sweep().feet[foot].landing_center;
         const std::int64_t side = map->resolution_tenth_mm;
@@ -82,7 +82,7 @@ struct PlainPatch {
     double n = 0.0, weight = 0.0, x = 0.0, y = 0.0, z = 0.0, variance = 0.0;
 };
 
-/// The same rule in plain floating point: what the integers are held against.
+/// The same rule in plain floating point, as the reference for the integers.
 struct PlainFoot {
     double height = 0.0, tilt_tan_sq = 0.0, largest_variance = 0.0;
     double largest_residual = 0.0, second_residual = 0.0;  ///< of rough patches
@@ -236,7 +236,7 @@ TEST(FootSupport, agrees_with_a_plain_least_squares_plane_and_plain_patches) {
         const Finding& worst = *findings.worst(Reason::roughness);
         EXPECT_NEAR(static_cast<double>(worst.value_tenth_mm), plain.largest_residual, 0.5 + 1e-6);
         EXPECT_EQ(worst.limit_tenth_mm, on.machine.limits.patch_residual_tenth_mm);
-        if (plain.largest_residual - plain.second_residual < 1.0) continue;  // the first of equals
+        if (plain.largest_residual - plain.second_residual < 1.0) continue;  // ambiguous maximum
         const grid::FixedPoint middle = on.sweep().feet[on.foot].landing_center;
         const double side = on.map->resolution_tenth_mm;
         const double cell_x =
@@ -246,7 +246,7 @@ TEST(FootSupport, agrees_with_a_plain_least_squares_plane_and_plain_patches) {
         EXPECT_NEAR(static_cast<double>(worst.cell_x) + 0.5, cell_x, 0.51);
         EXPECT_NEAR(static_cast<double>(worst.cell_y) + 0.5, cell_y, 0.51);
     }
-    // Both sides of each rule, or nothing was compared.
+    // Both results of each rule must occur, or nothing was compared.
     EXPECT_GT(compared, 200);
     EXPECT_GT(rough, 15);
     EXPECT_LT(rough, compared - 25);
@@ -417,7 +417,7 @@ TEST(FootSupport, ground_that_is_not_known_or_not_joined_carries_no_foot) {
     on.map->source[at] = grid::EvidenceSource::unknown;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::unknown_cells));
     on.query.attested = {true, 0, 0, 10'000, 0};
-    EXPECT_TRUE(on.reasons().empty()) << "vouched ground is of no surface";
+    EXPECT_TRUE(on.reasons().empty()) << "attested ground belongs to no surface";
     on.query.attested.active = false;
     on.query.x_tenth_mm = 28'000;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::outside_map));
@@ -428,7 +428,7 @@ TEST(FootSupport, fewer_cells_than_make_a_plane_resolve_nothing) {
         double x_m, y_m;
         bool plane;
     };
-    // Cells of 0.2 m: the left foot lands on two, on three in a row, on two rows of three.
+    // Cells of 0.2 m: the left foot covers two cells, three in a row, or two rows of three.
     for (const Case& c :
          {Case{0.1429, 0.1199, false}, Case{0.0, 0.1199, false}, Case{0.0, 0.0, true}}) {
         FootOnGround on(0.2);

@@ -8,16 +8,17 @@ namespace {
 
 using Corners = std::array<grid::FixedPoint, 4>;
 
-/// Drift that kBesideTenthMm and the margins of feet and body take up: up to here nothing was
-/// missed where the machine stood beside where it believed (docs/lab/gate_scenes.md).
+/// Drift that kBesideTenthMm and the margins of feet and body cover. Up to this drift no hazard was
+/// missed with a wrong machine position (docs/lab/gate_scenes.md).
 constexpr std::int64_t kDriftWithinTenthMm = 100;
 
-/// x / 2^20 rounded to nearest, halves upward: the same for every sign of x.
+/// x / 2^20, rounded to nearest with halves upward, for both signs of x.
 constexpr std::int64_t round_fraction(std::int64_t x) noexcept {
     return grid::floor_div(x + FixedPose::kOne / 2, FixedPose::kOne);
 }
 
-/// |value| <= 1.001: check_numbers(), the header of a snapshot and Machine::problem() see to it.
+/// Precondition: |value| <= 1.001, checked by check_numbers(), the snapshot header and
+/// Machine::problem().
 std::int64_t fraction(double value) noexcept {
     const double scaled = value * static_cast<double>(FixedPose::kOne);
     // in range: at most 1.001 * 2^20
@@ -25,7 +26,7 @@ std::int64_t fraction(double value) noexcept {
 }
 
 Corners corners_of(const GroundBox& box, const FixedPose& pose, std::int64_t margin) noexcept {
-    // Odd sizes grow by 0.1 mm: a box never shrinks by rounding.
+    // Odd sizes grow by 0.1 mm, so that rounding never shrinks a box.
     const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
     const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
     const std::int64_t x = box.center_x_tenth_mm;

@@ -10,9 +10,9 @@
 
 namespace surefoot::gate {
 
-/// The map shows things up to a cell of 25 mm beside their place: the rim of a table that was seen
-/// past is bare floor in the cells that it half covers. Of hazards that were missed on maps with
-/// measured noise, every one but a hole's corner had a cell that knew of it so far away
+/// The map can show an object up to one 25 mm cell beside its true position. Example: a cell that a
+/// table rim half covers can show the floor behind the rim. On maps with measured noise, all missed
+/// hazards except the corner of a hole had a cell with the hazard within this distance
 /// (docs/lab/gate_scenes.md).
 inline constexpr std::int64_t kBesideTenthMm = 250;
 
@@ -26,52 +26,52 @@ struct FixedPose {
     std::int64_t sin_yaw = 0;
 };
 
-/// |cos|, |sin| <= 1.001 wanted.
+/// Precondition: |cos_yaw| and |sin_yaw| <= 1.001.
 [[nodiscard]] FixedPose fixed_pose(std::int64_t x_tenth_mm,
                                    std::int64_t y_tenth_mm,
                                    double cos_yaw,
                                    double sin_yaw) noexcept;
-/// A point of the body in odom, rounded to 0.1 mm.
+/// A body point in odom, rounded to 0.1 mm.
 [[nodiscard]] grid::FixedPoint to_odom(const FixedPose& pose,
                                        std::int64_t forward_tenth_mm,
                                        std::int64_t left_tenth_mm) noexcept;
-/// Where base_link stands after the movement.
+/// The pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 
-/// What one foot needs for a movement.
+/// The regions that one foot needs for a movement.
 struct FootSweep {
     Foot foot = Foot::none;
-    grid::FixedConvex stance;   ///< where it stands
-    grid::FixedConvex landing;  ///< where it comes down
+    grid::FixedConvex stance;   ///< sole area at the start
+    grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
-    grid::FixedConvex corridor;  ///< hull of both, widened by the margin
+    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by the margin
     grid::FixedConvex band;      ///< the landing box widened by the drop band
 };
 
-/// All the ground that a movement needs, in odom.
+/// All regions that a movement needs, in odom.
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
-    /// Of each part of the body the hull of its box at start and target, widened by the sway.
+    /// For each part of the body: hull of its box at start and target, widened by the sway.
     std::array<grid::FixedConvex, Body::kMaxParts> body;
     FixedPose target;
 };
 
-/// A rectangle of odom, parallel to its axes.
+/// A rectangle in odom, parallel to its axes.
 struct Extent {
     grid::FixedPoint low;
     grid::FixedPoint high;
 
     void include(grid::FixedPoint p) noexcept;
 };
-/// That holds all of a sweep.
+/// The least rectangle that contains the whole sweep.
 [[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
 
-/// How much farther every region reaches, on all sides, when the cells have drifted by this much
-/// (1 sigma, horizontal) since they were seen: `sigma_factor` times what the margins of the regions
-/// do not take up.
+/// Extra distance by which every region grows because the cells have drifted (1 sigma, horizontal)
+/// since they were measured: `sigma_factor` times the drift that the margins of the regions do not
+/// already cover.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
-/// `margin_tenth_mm`: added to every region, but to where the feet stand and land.
+/// `margin_tenth_mm` widens every region except the stance and landing areas.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
                              const Movement& movement,

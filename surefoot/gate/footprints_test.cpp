@@ -14,7 +14,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// Pose in doubles: the oracle.
+/// A pose in doubles, as the reference.
 struct PlainPose {
     double x = 0.0, y = 0.0, yaw = 0.0;
 
@@ -24,7 +24,7 @@ struct PlainPose {
     }
 };
 
-/// How far outside of the polygon a point lies; <= 0 inside.
+/// Distance of a point outside the polygon; <= 0 inside.
 double outside_by(const grid::FixedConvex& polygon, std::pair<double, double> p) {
     double worst = -1e18;
     for (int i = 0; i < polygon.count; ++i) {
@@ -70,7 +70,7 @@ TEST(Footprints, target_and_boxes_agree_with_plain_trigonometry) {
             for (const int corner : {0, 1, 2, 3}) {
                 const double u = box.center_x_tenth_mm + (corner % 2 - 0.5) * box.length_tenth_mm;
                 const double v = box.center_y_tenth_mm + (corner / 2 - 0.5) * box.width_tenth_mm;
-                // On the rim: neither outside nor inside by more than the rounding.
+                // On the rim: at most the rounding error inside or outside.
                 EXPECT_NEAR(
                     outside_by(sweep.feet[foot].landing, target.point(u, v)), 0.0, kRoundingTenthMm)
                     << "round " << round;
@@ -125,7 +125,7 @@ void expect_box(const char* what, const Extent& box, grid::FixedPoint low, grid:
 
 TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
     // Foot 366.0 x 190.0 mm, 57 mm ahead and 180 mm to a side; margins 20 and 100 mm, sway 50 mm,
-    // and 25 mm by which a map may show things beside their place. A step of 400 mm.
+    // and 25 mm position error of objects in the map. A step of 400 mm.
     const Machine machine = rex();
     for (const std::int64_t extra : {0, 70}) {
         const Sweep sweep = sweep_of(machine, FixedPose{}, machine.movements[kForward], extra);
@@ -154,7 +154,7 @@ TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
                    {-3300 - 750 - extra, -3225 - 750 - extra},
                    {7300 + 750 + extra, 3225 + 750 + extra});
         EXPECT_EQ(sweep.body[1].count, 0) << "there is one part";
-        // Landing and body reach farthest; each side of the whole is that of some region.
+        // Landing and body reach farthest; each side of the extent belongs to a region.
         expect_box(
             "all", extent_of(sweep), {-4050 - extra, -4000 - extra}, {8050 + extra, 4000 + extra});
     }
@@ -193,7 +193,7 @@ TEST(Footprints, all_of_a_sweep_lies_in_its_extent_and_touches_its_four_sides) {
     }
 }
 
-/// Where a foot reaches farther than the body, the extent is that of the foot's regions.
+/// If a foot reaches farther than the body, the extent follows the regions of the foot.
 TEST(Footprints, the_extent_holds_feet_that_stand_far_out) {
     Machine machine = rex();
     machine.left_foot.center_y_tenth_mm = 20'000;
@@ -218,7 +218,7 @@ TEST(Footprints, angles_and_places_are_rounded_to_the_nearest) {
     // A quarter of a turn to the left, then places by hand: (x, y) becomes (-y, x).
     const FixedPose quarter = fixed_pose(100, 200, 0.0, 1.0);
     EXPECT_EQ(to_odom(quarter, 30, 4), (grid::FixedPoint{96, 230}));
-    // Half of a tenth goes up, whatever the sign: 0.5 * 1 and 0.5 * -1.
+    // Halves round upward for both signs: 0.5 * 1 and 0.5 * -1.
     FixedPose half;
     half.cos_yaw = FixedPose::kOne / 2;
     EXPECT_EQ(to_odom(half, 1, 0), (grid::FixedPoint{1, 0}));

@@ -16,7 +16,7 @@
 namespace surefoot::gate {
 namespace {
 
-/// 100 km and 1 km: bounds that keep every product of the exact geometry inside 64 bits.
+/// 100 km and 1 km: with these bounds every product of the exact geometry fits into 64 bits.
 constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
 constexpr std::int64_t kHighestTenthMm = 10'000'000;
 
@@ -29,7 +29,7 @@ void check_process(const GateHealth& health, std::int64_t now_ns, Findings& find
         findings.deny(Reason::warmup);
     else if (health.state != GateState::ready)
         findings.deny(Reason::not_ready);
-    // A steady clock is neither negative nor half way to its end.
+    // A valid steady clock is not negative and below half of its range.
     if (!(now_ns >= 0 && now_ns <= std::numeric_limits<std::int64_t>::max() / 2))
         findings.deny(Reason::clock);
     for (int i = 0; i < kReasonCount; ++i) {
@@ -59,7 +59,7 @@ void check_numbers(const Query& query, const GateLimits& limits, Findings& findi
     if (!(pose && stance && attested)) findings.deny(Reason::bad_number);
 }
 
-/// Both ends of the age: too old, and from the future. Unsigned differences cannot overflow.
+/// Tests both ends of an age: too old, and from the future. Unsigned differences cannot overflow.
 void check_stamp(std::int64_t stamp_ns,
                  std::int64_t now_ns,
                  std::int64_t max_age_ns,
@@ -111,8 +111,8 @@ void check_camera(CameraState camera, Findings& findings) noexcept {
         findings.deny(Reason::not_ready);
 }
 
-/// What perception delivered, whatever is asked of it; the cells are not looked at. `camera`: the
-/// map's, or better.
+/// Tests the snapshot independently of the query, without reading the cells. `camera`: the camera
+/// state of the map, or a better one.
 void judge_snapshot(const GateLimits& limits,
                     const grid::MapSnapshot& map,
                     CameraState camera,
@@ -126,7 +126,7 @@ void judge_snapshot(const GateLimits& limits,
         if (map.gravity_source != grid::GravitySource::plane &&
             map.gravity_source != grid::GravitySource::imu)
             findings.deny(Reason::plane_invalid);
-        // So unsure of the vertical that level ground might break the limit.
+        // The vertical is so uncertain that level ground might break the tilt limit.
         if (!keeps_tilt_limit(steepest_tan_sq(0.0, vertical_bound_tan(map, limits)), limits))
             findings.deny(Reason::plane_invalid);
     });
@@ -134,9 +134,9 @@ void judge_snapshot(const GateLimits& limits,
     findings.prove(Proof::camera_healthy, [&] { check_camera(camera, findings); });
 }
 
-/// Ground that was measured where the feet stand lies where the soles are, but for a step, and for
-/// knees that bend by twice what a foot swings over. Without measured ground there is nothing to
-/// compare.
+/// True if measured ground under the feet lies at the height of the soles, within a step plus twice
+/// the swing clearance for bent knees. Also true without measured ground, because there is nothing
+/// to compare.
 bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcept {
     const Query here = query_at_body(0, map);
     const Sweep standing =
@@ -155,7 +155,7 @@ bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcep
                   step + 2 * std::int64_t{machine.limits.swing_clearance_tenth_mm});
 }
 
-/// Everything but the terrain. Each line must hold before the ground is looked at.
+/// Tests everything except the terrain. All tests must pass before the ground is read.
 void judge_readiness(const Machine& machine,
                      const Query& query,
                      const grid::MapSnapshot& map,
@@ -173,7 +173,7 @@ void judge_readiness(const Machine& machine,
     });
 }
 
-/// Everything ahead of the present feet, on flat ground.
+/// Tests all ground ahead of the present feet, for flat ground.
 void judge_walk(const Scene& scene, Findings& findings) noexcept {
     findings.prove(Proof::corridors_clear, [&] { check_corridors(scene, findings); });
     findings.prove(Proof::body_clear, [&] { check_body(scene, findings); });
@@ -188,7 +188,7 @@ void judge_walk(const Scene& scene, Findings& findings) noexcept {
     });
 }
 
-/// The same where feet land on treads.
+/// Tests all ground ahead of the present feet, for landing on treads.
 void judge_stair(Scene scene, Findings& findings) noexcept {
     const Treads treads = find_treads(scene);
     scene.lift_tenth_mm = lift_of(treads);
@@ -209,7 +209,7 @@ void judge_stair(Scene scene, Findings& findings) noexcept {
     });
 }
 
-/// The ground of one sweep, region by region (safety.md 7, rule 4).
+/// Tests the ground of one sweep, region by region (safety.md 7, rule 4).
 void judge_sweep(const Machine& machine,
                  const Query& query,
                  const Ground& ground,
@@ -218,7 +218,7 @@ void judge_sweep(const Machine& machine,
     findings.prove(Proof::cells_intact, [&] {
         if (!ground.is_intact(ground.zone_of(sweep))) findings.deny(Reason::internal);
     });
-    if (!findings.reasons().empty()) return;  // of a damaged map nothing is said
+    if (!findings.reasons().empty()) return;  // a damaged map gives no terrain reasons
     const Movement& movement = *movement_for(machine, query.command);
     const StanceHeights stance = stance_heights(ground, query, sweep);
     const Scene scene{
@@ -227,7 +227,7 @@ void judge_sweep(const Machine& machine,
     findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
-    if (!stance.both_tenth_mm) {  // no height to compare with: the unknown cells have been reported
+    if (!stance.both_tenth_mm) {  // no height to compare with: unknown cells are already reported
         findings.deny(reason_of_unknown(Knowledge::unknown));
         return;
     }
@@ -237,7 +237,7 @@ void judge_sweep(const Machine& machine,
         judge_walk(scene, findings);
 }
 
-/// Called only when all is ready.
+/// Tests the terrain. Call it only if judge_readiness() denied nothing.
 void judge_terrain(const Machine& machine,
                    const Query& query,
                    const grid::MapSnapshot& map,
@@ -248,16 +248,16 @@ void judge_terrain(const Machine& machine,
     const Ground ground(map, query, machine.limits);
     const Findings before = findings;
     judge_sweep(machine, query, ground, sweep_of(machine, start, movement), findings);
-    // Cells that may lie far beside their place: all is asked again, as far as they may be.
+    // Cells may have drifted far from their position: repeat all tests with widened regions.
     const std::int64_t drift = findings.evidence.max_drift_tenth_mm;
     const std::int64_t margin = drift_margin(machine.limits, drift);
     if (margin == 0 || !findings.reasons().empty()) return;
     findings = before;
-    findings.evidence.max_drift_tenth_mm = drift;  // tells how far was looked
+    findings.evidence.max_drift_tenth_mm = drift;  // documents how far the regions were widened
     judge_sweep(machine, query, ground, sweep_of(machine, start, movement, margin), findings);
 }
 
-/// ERROR > NOT_TRAVERSABLE > OK, and OK only when nothing was denied and everything was proven.
+/// ERROR > NOT_TRAVERSABLE > OK. OK only if nothing was denied and everything was proven.
 void seal(const Machine& machine,
           const grid::MapSnapshot& map,
           const Findings& findings,
@@ -318,7 +318,7 @@ ReasonSet snapshot_faults(const Machine& machine,
                           const grid::MapSnapshot& map,
                           std::int64_t now_ns) noexcept {
     Findings findings;
-    // Every step leans: no movement begins then, but nothing is wrong.
+    // Every step leans the camera: no movement may begin then, but it is no fault.
     const bool leans = map.camera == CameraState::leaning;
     judge_snapshot(machine.limits, map, leans ? CameraState::ok : map.camera, now_ns, findings);
     if (!grid::is_intact(map))

@@ -9,16 +9,16 @@
 
 namespace surefoot::gate {
 
-/// Where the height of the ground under the present feet comes from.
+/// Source of the height of the ground under the present feet.
 enum class StanceHeight : std::uint8_t {
     map,   ///< mean of the cells under both feet
-    given  ///< told by the caller (joint sensors, arming); the cells must be known all the same
+    given  ///< from the caller (joint sensors, arming); the cells must be known nevertheless
 };
 
-/// Ground that an operator answered for when arming: unknown cells that lie wholly inside count as
-/// flat ground at `height`. Measured cells keep what was measured: a word never covers an obstacle.
-/// It holds only while base_link is inside; the caller forgets it for good after leaving, logs it
-/// and shows it. Off by default.
+/// Ground that an operator attested when arming. Unknown cells that lie wholly inside count as flat
+/// ground at `height`. Measured cells keep their heights: an attestation never hides an obstacle.
+/// It is valid only while base_link is inside. The caller discards it for good when base_link
+/// leaves, logs it and displays it. Inactive by default.
 struct AttestedArea {
     bool active = false;
     std::int64_t center_x_tenth_mm = 0;  ///< odom
@@ -27,7 +27,7 @@ struct AttestedArea {
     std::int32_t height_tenth_mm = 0;
 };
 
-/// "May I make this movement from here?" A default query is refused: its pose is no pose.
+/// The question "may I make this movement from here?" A default query is refused: no valid pose.
 struct Query {
     std::uint8_t command = 0;     ///< joystick code 1..26, see system_facts.md 7.2
     std::int64_t x_tenth_mm = 0;  ///< base_link in odom
@@ -37,42 +37,42 @@ struct Query {
     StanceHeight stance_source = StanceHeight::map;
     std::int32_t stance_height_tenth_mm = 0;  ///< odom z, for StanceHeight::given
     AttestedArea attested;
-    /// Who asks, and which question of theirs this is: returned in the verdict, which answers no
-    /// other question.
+    /// Identifies the client and its question. The verdict returns both numbers and answers only
+    /// this question.
     std::uint64_t connection = 0;
     std::uint64_t sequence = 0;
 };
 
-/// The movement behind a command code, or nullptr: code 0, codes beyond the table, codes without an
-/// entry and classes that are switched off all come out the same.
+/// The movement of a command code. nullptr for code 0, codes beyond the table, codes without an
+/// entry and disabled classes.
 [[nodiscard]] const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept;
 
-/// Query from coordinates in m. A coordinate that is not finite or beyond 100 km leaves the pose
-/// invalid, and the gate answers BAD_NUMBER.
+/// Makes a query from coordinates in m. If a coordinate is not finite or beyond 100 km, the pose
+/// stays invalid and the gate answers BAD_NUMBER.
 [[nodiscard]] Query make_query(
     std::uint8_t command, double x_m, double y_m, double cos_yaw, double sin_yaw) noexcept;
-/// Query at the pose that the snapshot was taken at.
+/// Makes a query at the pose of the snapshot.
 [[nodiscard]] Query query_at_body(std::uint8_t command, const grid::MapSnapshot& map) noexcept;
 
-/// State of the process around the gate. Only `ready` can give an OK.
+/// State of the gate process. Only `ready` can give an OK.
 enum class GateState : std::uint8_t { init, warmup, ready, degraded, fault, stopping };
 
 struct GateHealth {
     GateState state = GateState::init;
-    ReasonSet faults;  ///< ERROR codes that monitors raise; a terrain code among them is INTERNAL
+    ReasonSet faults;  ///< ERROR codes raised by monitors; a terrain code here becomes INTERNAL
 };
 
-/// What speaks against a snapshot at `now_ns`, whatever is asked of it: damage, age, a stamp of the
-/// future, gravity, pose, camera: decide() asks the same. And ground that was measured where the
-/// feet stand but does not lie where the soles are (PLANE_INVALID), which only a machine that
-/// stands on the map can say. Empty = it may be used.
+/// The faults of a snapshot at `now_ns` that do not depend on the query: damage, age, a stamp of
+/// the future, gravity, pose, camera. decide() applies the same tests. One more test: measured
+/// ground under the feet must lie at the height of the soles (PLANE_INVALID); it needs a machine
+/// that stands on the map. Empty = the snapshot can be used.
 [[nodiscard]] ReasonSet snapshot_faults(const Machine& machine,
                                         const grid::MapSnapshot& map,
                                         std::int64_t now_ns) noexcept;
 
-/// Is the movement safe? Pure: no clock, no allocation, no input or output, no libm; the same bytes
-/// give the same verdict on every machine. Written so that everything missing, broken, NaN, too old
-/// or from the future inhibits. Thread-safe; cost below 0.2 ms.
+/// Decides whether a movement is safe. Pure: no clock, allocation, input, output or libm; the same
+/// bytes give the same verdict on every machine. Missing, damaged, NaN, outdated or future input
+/// always inhibits. Thread-safe. Costs less than 0.2 ms.
 [[nodiscard]] Verdict decide(const Machine& machine,
                              const Query& query,
                              const grid::MapSnapshot& map,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the gate's bounds lie, to the unit: what is allowed at a bound and refused beyond it.
+// The bounds of the gate to the unit: allowed at a bound, refused beyond it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,17 +43,17 @@ TEST(GateBounds, places_are_within_100_km_and_heights_within_1_km) {
              q.stance_source = StanceHeight::given;
              q.stance_height_tenth_mm = static_cast<std::int32_t>(v);
          }},
-        {"x of the vouched area",
+        {"x of the attested area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, v, 0, 100, 0};
          }},
-        {"y of the vouched area",
+        {"y of the attested area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, 0, v, 100, 0};
          }},
-        {"height of the vouched area",
+        {"height of the attested area",
          10'000'000,
          [](Query& q, std::int64_t v) {
              q.attested = {true, 0, 0, 100, static_cast<std::int32_t>(v)};
@@ -80,7 +80,7 @@ TEST(GateBounds, a_vouched_area_has_a_radius_up_to_the_limit_of_the_machine) {
     EXPECT_FALSE(refused(1));
     EXPECT_FALSE(refused(10'000));
     EXPECT_TRUE(refused(10'001));
-    EXPECT_FALSE(refused(10'001, false)) << "nobody vouches";
+    EXPECT_FALSE(refused(10'001, false)) << "no attestation is active";
 }
 
 TEST(GateBounds, the_length_of_a_heading_is_one_to_a_two_thousandth) {
@@ -234,7 +234,7 @@ TEST(GateBounds, a_refusal_says_what_was_not_proven_and_lives_for_nothing) {
 }
 
 TEST(GateBounds, where_no_ground_is_known_under_the_feet_the_rest_is_not_asked) {
-    Terrain blind;  // and a wall behind, which the body of a step backwards would meet
+    Terrain blind;  // and a wall behind, which a step backwards would hit
     blind.box(-0.2, 0.4, -0.5, 0.5, static_cast<double>(kNanF));
     blind.box(-0.6, -0.5, -0.5, 0.5, 0.7);
     const Verdict verdict = ask(blind, kBackward);

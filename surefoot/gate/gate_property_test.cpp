@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold on any map: less evidence never helps, equal bytes give equal verdicts, nothing is
-// allocated, nothing crashes.
+// Properties that hold on any map: less evidence never helps, equal bytes give equal verdicts,
+// nothing allocates, nothing crashes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// A floor with noise and, now and then, things on it.
+/// A floor with noise and, at times, objects on it.
 std::unique_ptr<grid::MapSnapshot> random_map(Rng& rng) {
     Terrain terrain;
     const double tilt_x = rng.uniform(-0.03, 0.03);
@@ -45,7 +45,7 @@ std::uint8_t random_command(Rng& rng) {
     return static_cast<std::uint8_t>(1 + rng.below(26));
 }
 
-/// Takes evidence away from one cell near the machine, in one of the ways that exist.
+/// Removes evidence from one cell near the machine, in one of several ways.
 const char* worsen(grid::MapSnapshot& map, Rng& rng) {
     const std::size_t at = cell_at(map, rng.uniform(-0.7, 0.9), rng.uniform(-0.6, 0.6));
     const auto raise = [&rng](std::uint16_t value) {
@@ -66,7 +66,7 @@ const char* worsen(grid::MapSnapshot& map, Rng& rng) {
                 std::min<std::uint64_t>(255, map.drop_evidence[at] + rng.below(256)));
             return "drop evidence added";
         default:
-            // An obstacle is put on ground that is there: filling a hole would be another matter.
+            // Adds an obstacle to known ground only; filling a hole would be another test.
             if (map.source[at] == grid::EvidenceSource::measured &&
                 map.height_tenth_mm[at] > -400 && map.drop_evidence[at] == 0)
                 map.height_tenth_mm[at] += 3000;
@@ -97,7 +97,7 @@ TEST(GateProperty, less_evidence_never_turns_a_refusal_into_ok) {
             before = after;
         }
     }
-    // The rounds must exercise both sides, or they prove nothing.
+    // The rounds must produce both results, or they prove nothing.
     EXPECT_GT(refused, 500);
     EXPECT_GT(allowed, 125);
 }

@@ -15,7 +15,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// A refusal for the given main reason, with a place.
+/// Expects a refusal with the given primary reason and a cell.
 void expect_refused(const Verdict& verdict, Reason primary) {
     EXPECT_EQ(verdict.decision, Decision::not_traversable) << words(verdict);
     EXPECT_EQ(verdict.primary, primary) << words(verdict);
@@ -58,7 +58,7 @@ TEST(Gate, what_nobody_filled_in_names_no_movement_nobody_and_no_area) {
     EXPECT_FALSE(area.active);
     EXPECT_EQ(area.center_x_tenth_mm, 0);
     EXPECT_EQ(area.center_y_tenth_mm, 0);
-    EXPECT_EQ(area.radius_tenth_mm, 0);  // switched on alone it covers nothing
+    EXPECT_EQ(area.radius_tenth_mm, 0);  // active alone it covers nothing
     EXPECT_EQ(area.height_tenth_mm, 0);
 }
 
@@ -91,7 +91,8 @@ TEST(Gate, works_at_any_pose_yaw_and_cell_size) {
         Terrain floor;
         floor.geometry.resolution_m = res_m;
         floor.geometry.origin_m.setConstant(-120.0 * res_m);
-        // One cell of 50 mm is a whole patch: nothing averages there, so it must be surer itself.
+        // One cell of 50 mm is a whole patch: nothing is averaged, so its own sigma must be
+        // smaller.
         floor.variance.fill(res_m > 0.04 ? 6e-6F : 16e-6F);
         const auto map = floor.snapshot();
         for (int deg = -180; deg < 180; deg += 17) {
@@ -112,7 +113,7 @@ TEST(Gate, fused_noise_of_3_to_5_mm_passes_and_20_mm_does_not_resolve) {
     }
     floor.variance.fill(static_cast<float>(0.02 * 0.02));
     expect_refused(ask(floor, kForward), Reason::not_resolvable);
-    // The patches are stricter than the single cells: 8 mm passes along the way, not under a foot.
+    // Patches are stricter than single cells: 8 mm passes in the path, not under a foot.
     floor.variance.fill(static_cast<float>(0.008 * 0.008));
     const Verdict verdict = ask(floor, kForward);
     expect_refused(verdict, Reason::not_resolvable);
@@ -147,14 +148,14 @@ TEST(Gate, given_one_unknown_cell_under_the_landing_foot_then_it_is_named) {
     EXPECT_EQ(verdict.evidence.worst_y_tenth_mm, 1875);
     EXPECT_EQ(verdict.evidence.foot, Foot::left);
     EXPECT_LT(verdict.evidence.known_cells, verdict.evidence.cells);
-    expect_ok(ask(floor, kBackward));  // not asked for there
+    expect_ok(ask(floor, kBackward));  // backwards this ground is not needed
 }
 
 TEST(Gate, any_single_unknown_cell_of_the_swept_area_inhibits) {
     Terrain floor;
     const auto map = floor.snapshot();
     const Machine machine = rex();
-    // Everything between the rear of the body at the start and the drop band beyond the toes.
+    // Everything between the rear of the body at the start and the drop band ahead of the toes.
     for (double x = -0.36; x < 0.73; x += 0.025) {
         for (const double y : {-0.3, -0.18, 0.0, 0.18, 0.3}) {
             const std::size_t at = cell_at(*map, x, y);
@@ -215,7 +216,7 @@ TEST(Gate, given_a_table_ahead_then_the_way_is_blocked) {
                "............",  //
                "............",  //
                "............"});
-    expect_ok(ask(room, kForward));  // 1.0 m away: one step stays short of it
+    expect_ok(ask(room, kForward));  // 1.0 m away: one step does not reach it
     room.box(0.6, 1.0, -0.6, 0.6, 0.7);
     const Verdict blocked = ask(room, kForward);
     expect_refused(blocked, Reason::corridor_blocked);
@@ -230,7 +231,7 @@ TEST(Gate, given_something_only_the_body_meets_then_body_clearance) {
     const Verdict verdict = ask(room, kForward);
     expect_refused(verdict, Reason::body_clearance);
     EXPECT_FALSE(verdict.reasons.contains(Reason::corridor_blocked)) << words(verdict);
-    // A kerb there is lower than the body, and beyond the way of the foot.
+    // A kerb there is lower than the body and outside the path of the foot.
     Terrain kerb;
     kerb.box(0.2, 0.6, 0.325, 0.5, 0.1);
     expect_ok(ask(kerb, kForward));
@@ -333,7 +334,7 @@ TEST(Gate, slopes_up_to_the_limit_pass_and_beyond_are_refused) {
         }
         return ask(terrain, kForward);
     };
-    // Across the walk; each foot stands 18 cm to the side, so only small angles keep the step
+    // Across the path: each foot stands 18 cm to the side, so only small angles keep the step
     // limits.
     expect_ok(ramp(4.0));
     const Verdict steep = ramp(8.0);
@@ -445,9 +446,9 @@ TEST(Gate, given_two_unsure_cells_beside_the_feet_then_not_resolvable) {
 }
 
 TEST(Gate, what_is_not_sure_to_stay_below_a_swinging_foot_or_above_a_drop_is_not_resolvable) {
-    // 30 mm up from the margin beside the left foot's way on, 38 mm down from the band before its
-    // toes on: below the limits of 40 and 50 mm. 3.4 sigma = 9.5 mm keeps both below, 20.4 mm
-    // neither, not even where the errors of nine cells average to a half.
+    // 30 mm up beside the path of the left foot, from the margin on; 38 mm down ahead of its toes,
+    // from the band on. The limits are 40 and 50 mm. 3.4 sigma of 9.5 mm keep both limits, 20.4 mm
+    // break both, even where averaging nine cells halves the error.
     for (const auto& [x0, x1, y0, y1, height_m] :
          {std::tuple{0.05, 0.15, 0.28, 0.40, 0.030}, {0.675, 0.80, 0.10, 0.25, -0.038}}) {
         for (const auto& [sigma_m, allowed] : {std::pair{0.0028, true}, std::pair{0.006, false}}) {
@@ -473,8 +474,7 @@ TEST(Gate, what_is_not_sure_to_stay_below_a_swinging_foot_or_above_a_drop_is_not
 }
 
 TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
-    // Beside the left foot's way, where nothing may be higher than 40 mm. 3.4 sigma of the cell are
-    // 37 mm.
+    // Beside the path of the left foot, where the limit is 40 mm. 3.4 sigma of the cell are 37 mm.
     struct Case {
         double height_m;
         double around_m;
@@ -485,7 +485,7 @@ TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
                           {0.028, 0.0, 0.004, true},   // below by one sigma
                           {0.030, 0.0, 0.004, false},  // by less
                           {0.010, 0.020, 0.005, true},
-                          {0.010, 0.020, 0.006, false},     // one beside it is not sure either
+                          {0.010, 0.020, 0.006, false},     // one neighbour is uncertain too
                           {0.010, 0.027, 0.004, false}}) {  // for it is higher
         Terrain floor;
         const auto paint = [&](double x, double y, double height_m, double sigma_m) {
@@ -501,7 +501,7 @@ TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
             EXPECT_TRUE(verdict.reasons.contains(Reason::not_resolvable)) << words(verdict);
         }
     }
-    // A neighbour that nobody knows answers for nothing.
+    // An unknown neighbour supports nothing.
     Terrain hidden;
     hidden.paint(hidden.variance, 0.075, 0.10, 0.30, 0.325, 0.0119 * 0.0119);
     expect_ok(ask(hidden, kForward));
@@ -510,7 +510,7 @@ TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
 }
 
 TEST(Gate, a_cell_that_is_hardly_sure_proves_nothing_but_alone_among_sure_ones) {
-    // Under the body, which would pass over something of 0.14 m.
+    // Under the body, which would pass over an object of 0.14 m.
     for (const auto& [sigma_m, beside_m, allowed] : {std::tuple{0.0125, 0.0119, true},
                                                      {0.0239, 0.0119, true},
                                                      {0.0242, 0.0119, false},
@@ -521,7 +521,7 @@ TEST(Gate, a_cell_that_is_hardly_sure_proves_nothing_but_alone_among_sure_ones) 
         const Verdict verdict = ask(floor, kForward);
         EXPECT_EQ(verdict.decision == Decision::ok, allowed) << sigma_m << words(verdict);
     }
-    // A thing that nearly reaches up to the body must be sure to end there.
+    // The end of an object that nearly reaches the body must be certain.
     for (const auto& [sigma_m, allowed] : {std::pair{0.007, true}, {0.011, false}}) {
         Terrain box;
         box.box(-0.25, -0.15, -0.025, 0.025, 0.115);
@@ -555,7 +555,7 @@ TEST(Gate, one_cell_alone_above_or_below_the_step_is_no_step_but_two_are) {
         unseen.box(0.425, 0.45, 0.15, 0.175, kNanF);
         expect_refused(ask(unseen, kForward), Reason::unknown_cells);
     }
-    // On pegs in rows the whole foot would stand: one in a foot is a pebble, two are not.
+    // On rows of pegs the whole foot would stand: one peg under a foot is a pebble, two are not.
     Terrain pegs;
     pegs.box(0.40, 0.425, 0.15, 0.175, 0.036);
     expect_ok(ask(pegs, kForward));
@@ -572,7 +572,7 @@ TEST(Gate, one_cell_alone_above_or_below_the_step_is_no_step_but_two_are) {
     EXPECT_TRUE(ask(pit, kForward).reasons.contains(Reason::step_too_low));
 }
 
-// The height of the stance is the mean of both feet: each must keep the limits by itself, too.
+// The stance height is the mean of both feet, but each foot must keep the limits alone, too.
 TEST(Gate, a_foot_that_stood_high_may_not_step_down_by_twice_the_limit) {
     struct Case {
         double left_m, right_m;            // where the feet stand
@@ -608,7 +608,7 @@ TEST(Gate, given_an_island_at_floor_height_then_disconnected) {
     }
     seal(*map);
     expect_refused(ask(*map, kForward), Reason::disconnected);
-    map->component[cell_at(*map, 0.0, 0.18)] = 7;  // one cell under a foot ties them together
+    map->component[cell_at(*map, 0.0, 0.18)] = 7;  // one cell under a foot connects the surfaces
     seal(*map);
     expect_ok(ask(*map, kForward));
 }
@@ -638,7 +638,7 @@ TEST(Gate, what_drifted_may_stand_nearer_than_the_map_says) {
         EXPECT_EQ(verdict.decision == Decision::ok, allowed) << drift_m << " " << y_m;
         if (!allowed) expect_refused(verdict, Reason::body_clearance);
     }
-    // The cell that drifted need not be the one that is in the way.
+    // The drifted cell need not be the obstacle.
     Terrain wall;
     wall.box(-3.0, 3.0, 0.425, 3.0, 0.8);
     wall.paint(wall.drift, 0.4, 0.425, -0.1, -0.075, 0.024);
@@ -671,7 +671,7 @@ TEST(Gate, the_height_of_the_stance_comes_from_the_map_or_from_the_caller) {
     expect_error(decide(rex(), query, *map, kReady, kNowNs), Reason::bad_number);
 }
 
-// ---- the vouched start area ---------------------------------------------------------------------
+// ---- the attested start area --------------------------------------------------------------------
 
 struct AttestedStart : ::testing::Test {
     Terrain floor;
@@ -702,7 +702,7 @@ TEST_F(AttestedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) 
 }
 
 TEST_F(AttestedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
-    // All that is unknown lies in the area, but base_link has just left it.
+    // All unknown ground lies in the area, but base_link has just left it.
     Terrain spot;
     spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNanF));
     map = spot.snapshot();
@@ -725,7 +725,7 @@ TEST_F(AttestedStart, never_covers_what_was_measured) {
 }
 
 TEST_F(AttestedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
-    // The row of cells at the lower border of the image: seen by few points, from one place.
+    // The row of cells at the lower image border: few points, seen from one position.
     const auto row_with = [&](double height_m, std::uint16_t sigma_tenth_mm, double x_m) {
         floor = Terrain();
         floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNanF));
@@ -747,7 +747,7 @@ TEST_F(AttestedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
     EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
     row_with(-0.0151, kUnsure, 0.6);
     EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
-    // One that is surer counts as measured, whatever the word says.
+    // A cell with a smaller sigma counts as measured, whatever the attestation says.
     row_with(0.0, 79, 0.5);
     const std::int64_t measured = ask_now().evidence.attested_cells;
     row_with(0.0, 80, 0.5);
@@ -905,7 +905,7 @@ TEST(GateReadiness, the_camera_must_bring_new_and_whole_images) {
         floor.input.camera = static_cast<CameraState>(camera);
         expect_error(ask(floor, kForward), Reason::not_ready);
     }
-    // A freeze is older than its symptoms: it is the reason even where the map has aged, too.
+    // A freeze begins before its symptoms, so it is the reason even if the map has aged too.
     floor.input.camera = CameraState::frozen;
     floor.input.frame_time_ns = floor.input.pose_time_ns = kNowNs - 1000 * kMs;
     expect_error(ask(floor, kForward), Reason::frame_frozen);
@@ -925,13 +925,13 @@ TEST(GateReadiness, a_damaged_map_is_an_internal_error) {
     map->version ^= 1;
     expect_error(ask(*map, kForward), Reason::internal);
     map->version ^= 1;
-    // Far from the step nothing is read; whoever takes in the map looks at all of it.
+    // The verdict does not read cells far from the step; a reader of the whole map does.
     map->height_tenth_mm[cell_at(*map, 2.0, 2.9)] ^= 1;
     expect_ok(ask(*map, kForward));
     EXPECT_TRUE(snapshot_faults(rex(), *map, kNowNs).contains(Reason::internal));
 }
 
-/// Whatever decide() may read of any layer, a changed bit of it is noticed, or does not matter.
+/// A changed bit in any cell that decide() may read is detected, or has no effect.
 TEST(GateReadiness, no_verdict_is_made_of_a_changed_cell) {
     Terrain floor;
     const auto map = floor.snapshot();
@@ -1016,7 +1016,7 @@ TEST(GateReadiness, an_error_hides_no_terrain_and_beats_it) {
     expect_error(ask(nothing, kForward), Reason::frame_stale);
 }
 
-// ---- the words ----------------------------------------------------------------------------------
+// ---- the text -----------------------------------------------------------------------------------
 
 TEST(VerdictText, says_what_where_value_and_limit) {
     Terrain hole;
@@ -1044,7 +1044,7 @@ TEST(VerdictText, every_reason_has_a_sentence_and_a_code) {
     EXPECT_STREQ(to_string(static_cast<Decision>(200)), "ERROR");
 }
 
-/// A rim that the map shows a cell too far away is met all the same.
+/// A rim that the map shows one cell too far away is still an obstacle.
 TEST(Gate, what_the_map_shows_a_cell_beside_its_place_still_counts) {
     const double body_m = 0.4 + 0.33 + 0.05;  // step, half the box, sway
     const auto table_at = [](double x_m) {
@@ -1097,7 +1097,7 @@ TEST(GateBody, each_part_has_its_own_box_and_heights) {
         return ask_with(machine, floor);
     };
     expect_ok(far(1.5));
-    // Both parts at once: the one whose limit is broken by more is named.
+    // Both parts at once: the reported part is the one whose limit is broken by more.
     Terrain wall;
     wall.box(0.5, 0.6, -0.5, 0.5, 1.5);
     expect_refused(ask_with(machine, wall), Reason::corridor_blocked);

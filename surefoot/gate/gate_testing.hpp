@@ -13,7 +13,7 @@
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
-/// What the tests of the gate share: the REX, terrain to stand on, and one call that asks.
+/// Shared by the tests of the gate: the REX, test terrain and a function that asks the gate.
 namespace surefoot::gate::testing {
 
 inline constexpr std::int64_t kNowNs = 5'000'000'000;
@@ -80,8 +80,8 @@ inline Machine rex() {
     return m;
 }
 
-/// Ground of 240 x 240 cells of 25 mm around the machine, which stands at the origin of odom and
-/// looks along +x. Flat, known and fresh unless a test says otherwise.
+/// Ground of 240 x 240 cells of 25 mm. The machine stands at the origin of odom and faces +x. The
+/// ground is flat, known and fresh unless a test changes it.
 struct Terrain {
     grid::GridGeometry geometry{kResolutionM, 240, 240, {-3.0, -3.0}};
     grid::Layer height{240, 240, 0.0F};
@@ -101,7 +101,7 @@ struct Terrain {
         input.version = 42;
         input.config_hash = 4711;
     }
-    /// Sets a layer where a rectangle [x0, x1) x [y0, y1) in odom holds the centre of the cell.
+    /// Sets a layer in the cells whose centre lies in [x0, x1) x [y0, y1) in odom.
     Terrain& paint(grid::Layer& layer, double x0, double x1, double y0, double y1, double value) {
         for (int v = 0; v < geometry.ny; ++v) {
             for (int u = 0; u < geometry.nx; ++u) {
@@ -115,8 +115,8 @@ struct Terrain {
     Terrain& box(double x0, double x1, double y0, double y1, double height_m) {
         return paint(height, x0, x1, y0, y1, height_m);
     }
-    /// A map drawn as seen from above, forward = up, one character = 0.2 x 0.2 m, the machine in
-    /// the middle: '.' floor, '?' unknown, digit = tenths of a metre up, 'd' = 0.3 m down.
+    /// Draws a map seen from above, forward = up, one character = 0.2 x 0.2 m, machine in the
+    /// middle: '.' floor, '?' unknown, digit = tenths of a metre up, 'd' = 0.3 m down.
     Terrain& draw(const std::vector<std::string>& rows) {
         const double top_m = 0.1 * static_cast<double>(rows.size());
         for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -166,7 +166,7 @@ inline Verdict ask(Terrain& terrain, std::uint8_t command) {
     return ask(*terrain.snapshot(), command);
 }
 
-/// All reasons in words, for failure messages.
+/// All reasons as text, for failure messages.
 inline std::string words(const Verdict& verdict) {
     std::string text = std::string(to_string(verdict.decision)) + ":";
     for (int i = 0; i < kReasonCount; ++i) {

@@ -11,7 +11,7 @@
 namespace surefoot::gate {
 namespace {
 
-/// Wanted: all that the feet would stand on is joined to where they stand now.
+/// Requires that the surfaces under the goal's feet are connected to the present ones.
 void check_joined(const Machine& machine,
                   const Query& here,
                   const Sweep& there,
@@ -48,7 +48,7 @@ Verdict judge_goal(const Machine& machine,
                    const GateHealth& health,
                    std::int64_t now_ns) noexcept {
     constexpr std::uint8_t kStay = 1;
-    Machine standing = machine;  // that knows one movement: to stay where it is
+    Machine standing = machine;  // a machine whose only movement is to stay in place
     standing.movements = {};
     standing.movements[kStay].configured = true;
     standing.limits.step[static_cast<std::size_t>(MovementClass::walk)].enabled = true;

@@ -7,18 +7,18 @@
 
 namespace surefoot::gate {
 
-/// A place that somebody pointed at: base_link in odom.
+/// A pose that a person selected on the map: base_link in odom.
 struct GoalPose {
     std::int64_t x_tenth_mm = 0;
     std::int64_t y_tenth_mm = 0;
-    double cos_yaw = 0.0;  ///< a default goal is no pose
+    double cos_yaw = 0.0;  ///< a default goal is not a valid pose
     double sin_yaw = 0.0;
 };
 
-/// Would the machine stand there, on ground joined to where it stands now (`here`; its command is
-/// not read)? A picture of the ground for people: whatever the decision, the verdict allows no
-/// step, its life ends when it begins. The way there is not judged, only that the surface leads
-/// there. Pure, like decide().
+/// Decides whether the machine could stand at a goal, on ground connected to its present ground
+/// (`here`; its command is ignored). For display only: the verdict never allows a step, because it
+/// expires when it begins. The path is not judged; only the connection of the surface is. Pure,
+/// like decide().
 [[nodiscard]] Verdict judge_goal(const Machine& machine,
                                  const Query& here,
                                  const GoalPose& goal,

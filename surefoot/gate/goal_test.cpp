@@ -43,7 +43,7 @@ TEST(Goal, a_table_top_is_level_and_out_of_reach) {
     EXPECT_EQ(verdict.decision, Decision::not_traversable) << words(verdict);
     EXPECT_EQ(verdict.primary, Reason::disconnected) << words(verdict);
     EXPECT_TRUE(verdict.evidence.has_worst_cell);
-    // A surface is joined or not: no number says how far.
+    // A surface is connected or not: there is no length.
     EXPECT_EQ(verdict.evidence.value_tenth_mm, 0);
     EXPECT_EQ(verdict.evidence.limit_tenth_mm, 0);
     EXPECT_EQ(point_at(*map, -1.5, 1.0).decision, Decision::ok);
@@ -94,14 +94,14 @@ TEST(Goal, is_judged_at_its_own_place_heading_and_height) {
     room.box(1.6, 2.6, -3.0, 3.0, 0.01);
     const auto map = room.snapshot();
     Query here = query_at_body(0, *map);
-    here.stance_source = StanceHeight::given;  // that of here says nothing about there
+    here.stance_source = StanceHeight::given;  // the goal may have another height
     here.stance_height_tenth_mm = -30;
     const GoalPose there{21'000, -4'000, 0.0, 1.0};
     const Verdict verdict = judge_goal(rex(), here, there, *map, kReady, kNowNs);
     EXPECT_EQ(verdict.decision, Decision::ok) << words(verdict);
     EXPECT_EQ(verdict.evidence.stance_height_tenth_mm, 100);
 
-    // A post beside a machine that looks along +x, in the way of one that looks along -y.
+    // A post beside a machine that faces +x, in the way of a machine that faces -y.
     Terrain post;
     post.box(1.97, 2.0, -0.56, -0.53, 0.5);
     const auto with_post = post.snapshot();

@@ -12,7 +12,7 @@
 
 namespace surefoot::gate {
 
-/// What speaks for the ground in a cell. Only `vouched` and `measured` are knowledge.
+/// Source of the knowledge about a cell. Only `attested` and `measured` count as known.
 enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
 
 /// The reason for which the gate refuses a cell whose height is not known. Only this function turns
@@ -21,8 +21,8 @@ enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
     return knowledge == Knowledge::outside ? Reason::outside_map : Reason::unknown_cells;
 }
 
-/// One cell as the gate sees it. The numbers mean something only when `known()`, but for the
-/// evidence of a drop, which an unknown cell may have too.
+/// One cell as the gate reads it. The numbers are valid only if `known()`; only the evidence of a
+/// drop is also valid in an unknown cell.
 struct GroundCell {
     Knowledge knowledge = Knowledge::unknown;
     std::uint8_t drop_evidence = 0;
@@ -37,19 +37,19 @@ struct GroundCell {
     }
 };
 
-/// The map, seen through an operator's word where there is one. The only place where a cell becomes
-/// known; a cell without a measurement has no other way than to lie wholly in the vouched area.
-/// There the word also stands for a measurement that decides nothing by itself and does not
-/// contradict it: it must not be worse to have looked than not to have looked. What hangs over such
-/// a cell and evidence of a drop stay, and where lines of sight passed below the vouched ground by
-/// a drop the word is wrong: such a cell is unknown and a drop.
+/// The map together with the operator's attestation. Only this class makes a cell known. A cell
+/// without a measurement becomes known only if it lies wholly in the attested area. There the
+/// attestation also replaces a measurement that is too uncertain to decide and agrees with it. So
+/// measuring a cell never makes the verdict worse than leaving it unmeasured. Overhead obstacles
+/// and drop evidence stay. A ray lower than the attested ground by a drop makes an unknown cell a
+/// drop.
 class Ground {
   public:
     Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept;
 
     [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] std::span<const grid::SnapshotEdge> edges() const noexcept;
-    /// In the header: a verdict asks for thousands.
+    /// In the header for speed: one verdict reads thousands of cells.
     [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept {
         GroundCell cell;
         if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) {
@@ -69,7 +69,7 @@ class Ground {
         if (attestation_) take_word(at, ix, iy, cell);
         return cell;
     }
-    /// The eight cells around one are known, and each passes `test(cell)`.
+    /// True if the eight cells around a cell are known and each passes `test(cell)`.
     template <typename Test>
     [[nodiscard]] bool all_around(std::int64_t ix, std::int64_t iy, Test&& test) const noexcept {
         for (std::int64_t y = iy - 1; y <= iy + 1; ++y) {
@@ -81,32 +81,32 @@ class Ground {
         }
         return true;
     }
-    /// Twice the centre of a cell relative to twice `origin`: exact for every cell size.
+    /// Twice the centre of a cell minus twice `origin`; exact for every cell size.
     [[nodiscard]] grid::FixedPoint doubled_center(std::int64_t ix,
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_attesting() const noexcept { return attestation_; }
     /// Tangent of the largest angle between the map's z axis and the vertical (tilt.hpp).
     [[nodiscard]] double vertical_bound_tan() const noexcept { return vertical_bound_tan_; }
-    /// What a verdict about `sweep` may read: the sweep and the vouched area, with a ring of cells
-    /// beside both (`all_around`, `ReachableSurfaces::add_beside_attested`).
+    /// The zone that a verdict about `sweep` may read: the sweep and the attested area, plus a ring
+    /// of cells around both (`all_around`, `ReachableSurfaces::add_beside_attested`).
     [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
-    /// Nobody changed a cell of the rows of a zone since the map was sealed. Precondition:
+    /// True if no cell in the rows of a zone changed since the map was sealed. Precondition:
     /// grid::is_sealed().
     [[nodiscard]] bool is_intact(const Extent& zone) const noexcept;
     [[nodiscard]] const AttestedArea& attested() const noexcept { return attested_; }
 
   private:
-    /// What an operator's word makes of a cell; not in the header, because few verdicts have one.
+    /// Applies the attestation to a cell. Not in the header, because few verdicts have one.
     void take_word(std::size_t at,
                    std::int64_t ix,
                    std::int64_t iy,
                    GroundCell& cell) const noexcept;
-    /// Too unsure for the limits of a foot by itself, and nearer to the word than two of its sigma.
+    /// Too uncertain for the foot limits, and within two of its sigmas of the attested height.
     [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept;
-    /// Of an unknown cell: there is no ground where somebody vouched for it.
+    /// For an unknown cell: rays prove that there is no ground at the attested height.
     [[nodiscard]] bool is_proven_lower(std::size_t at) const noexcept;
-    /// Whole, in the area.
+    /// True if the whole cell lies in the attested area.
     [[nodiscard]] bool is_attested(std::int64_t ix, std::int64_t iy) const noexcept;
 
     const grid::MapSnapshot& map_;
@@ -117,13 +117,13 @@ class Ground {
     bool attestation_ = false;
 };
 
-/// The connected surfaces that the machine stands on.
+/// The connected surfaces that the machine can stand on.
 class ReachableSurfaces {
   public:
     void add(std::uint16_t component) noexcept;
     [[nodiscard]] bool contains(std::uint16_t component) const noexcept;
-    /// Surfaces that begin in the vouched area or beside it, no more than `step_tenth_mm` above or
-    /// below it: an operator's word reaches as far as the floor it touches.
+    /// Adds surfaces in or beside the attested area that lie at most `step_tenth_mm` above or below
+    /// it: an attestation extends to the floor that it touches.
     void add_beside_attested(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
 
   private:

@@ -130,7 +130,7 @@ TEST(Ground, cells_are_known_by_measurement_only_and_outside_is_not_unknown) {
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::measured);
     for (const auto& [ix, iy] : {std::pair{-1, 0}, {0, -1}, {240, 0}, {0, 240}})
         EXPECT_EQ(ground.cell(ix, iy).knowledge, Knowledge::outside) << ix << " " << iy;
-    map->source[0] = grid::EvidenceSource::attested;  // nobody vouches inside a map
+    map->source[0] = grid::EvidenceSource::attested;  // a map cannot contain attested cells
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::unknown);
     map->source[0] = static_cast<grid::EvidenceSource>(9);
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::unknown);
@@ -250,7 +250,7 @@ TEST(Ground, a_cell_is_what_the_layers_say_of_it) {
     EXPECT_EQ(unknown.clearance_tenth_mm, grid::MapSnapshot::kNoCeiling);
 }
 
-/// The surfaces beside a vouched area, held against plain distances.
+/// The surfaces beside an attested area, compared with plain distances.
 TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     Terrain floor;
     const auto map = floor.snapshot();
@@ -273,7 +273,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
         const bool excluded = i == lower || i == lower + 3 || i == lower + 4;
         ASSERT_EQ(surfaces.contains(map->component[i]), near && !excluded) << i;
     }
-    // The middle of a cell lies as far away as is reached: on all four sides.
+    // The centre of a cell lies exactly at the reach, on all four sides.
     const Query centred = attestation(0.3125, -0.4125, 0.5, 0.3125, -0.4125);
     ReachableSurfaces rim;
     rim.add_beside_attested(Ground(*map, centred, rex().limits), 400);

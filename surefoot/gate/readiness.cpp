@@ -4,7 +4,7 @@
 namespace surefoot::gate {
 namespace {
 
-/// Differences of stamps never overflow: both are taken as they are, without a sign.
+/// Difference of two stamps. Unsigned arithmetic cannot overflow.
 constexpr std::uint64_t gap(std::int64_t later, std::int64_t earlier) noexcept {
     return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
 }
@@ -24,7 +24,7 @@ const char* ReadinessLimits::problem() const noexcept {
         return "the frames to warm up or to recover are outside 5-10000";
     if (!(warmup_timeout_ns > warmup_ns && warmup_timeout_ns <= 600 * kSecond) ||
         !(degraded_timeout_ns > recover_ns && degraded_timeout_ns <= 600 * kSecond))
-        return "a time-out is shorter than what it waits for, or longer than 600 s";
+        return "a timeout is shorter than the time it waits for, or longer than 600 s";
     if (!detail::within(fastest_m_s, 0.01, 5.0) || !detail::within(fastest_rad_s, 0.01, 10.0))
         return "the fastest motion is outside 0.01-5 m/s or 0.01-10 rad/s";
     if (!detail::within(jump_m, 0.001, 0.1) || !detail::within(jump_rad, 0.001, 0.2))
@@ -80,12 +80,12 @@ void Readiness::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexc
         const auto reason = static_cast<Reason>(i);
         if (present_.contains(reason) && is_latched(reason)) latch(reason, now_ns);
     }
-    // The fields of a damaged snapshot say nothing, not even where it came from.
+    // The fields of a damaged snapshot have no meaning, including its origin.
     if (!present_.contains(Reason::internal)) check_succession(map, now_ns);
     judge(now_ns);
 }
 
-/// Does this snapshot follow on the one before?
+/// Tests that a snapshot is a valid successor of the previous one.
 void Readiness::check_succession(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept {
     if (last_.any) {
         if (map.config_hash != last_.config_hash) latch(Reason::config, now_ns);
@@ -120,9 +120,9 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // beyond it nothing is excluded
+    constexpr double kQuarter_rad = 1.5;  // beyond a quarter turn no angle can be excluded
     if (turn_rad >= kQuarter_rad) return false;
-    // sin(x) <= x: a turn by more than allowed that still passes is at most a few percent larger.
+    // sin(x) <= x: an undetected turn is at most a few percent above the limit.
     const double sine = last_.cos_yaw * map.body_sin_yaw - last_.sin_yaw * map.body_cos_yaw;
     const double cosine = last_.cos_yaw * map.body_cos_yaw + last_.sin_yaw * map.body_sin_yaw;
     return !(magnitude(sine) <= turn_rad && cosine > 0.0);

@@ -9,69 +9,69 @@
 
 namespace surefoot::gate {
 
-/// How long everything must be well before an OK may come, and what no machine does. ASSUMPTION:
-/// the times are those of the hazard analysis; none of them has a value that switches a rule off.
+/// Times and counts of healthy input before an OK is possible, and motion limits. ASSUMPTION: the
+/// times come from the hazard analysis. No value of a limit disables a rule.
 struct ReadinessLimits {
-    std::int64_t warmup_ns = 2'000'000'000;  ///< all well for so long, and for so many frames
+    std::int64_t warmup_ns = 2'000'000'000;  ///< required healthy time, with the frames below
     std::int32_t warmup_frames = 20;
-    std::int64_t warmup_timeout_ns = 60'000'000'000;  ///< longer is a fault
-    std::int64_t recover_ns = 1'000'000'000;          ///< the same after a disturbance
+    std::int64_t warmup_timeout_ns = 60'000'000'000;  ///< a longer warm-up is a fault
+    std::int64_t recover_ns = 1'000'000'000;          ///< required healthy time after a disturbance
     std::int32_t recover_frames = 10;
     std::int64_t degraded_timeout_ns = 10'000'000'000;
-    /// What base_link moves at most: so fast, and between two snapshots so much on top for the
-    /// errors of poses. Beyond it the position jumped.
+    /// Largest speed of base_link, and the extra motion between two snapshots that pose errors may
+    /// cause. A larger motion is a jump of the pose.
     double fastest_m_s = 1.0;
     double fastest_rad_s = 1.5708;
     double jump_m = 0.050;
     double jump_rad = 0.0524;
-    /// The two clocks of the computer drift apart by less unless it slept.
+    /// Largest difference of the two clocks; a larger one means that the computer slept.
     std::int64_t clock_gap_ns = 100'000'000;
 
-    /// First reason why they cannot be used, in words; nullptr when they can.
+    /// The first reason why the limits are invalid, in words; nullptr = valid.
     [[nodiscard]] const char* problem() const noexcept;
 };
 
-/// The state of the process around the gate:
+/// State of the gate process:
 /// ```
-/// INIT ──self-test──► WARMUP ──all well for 2 s and 20 frames──► READY ◄──1 s, 10 frames──
-/// DEGRADED
-///   │ fails              │ 60 s                                   └──anything not well──────►┘ │
-///   10 s └───────────► FAULT ◄┴──────────── a latched reason, from every state
-///   ────────────────────┘
-///                   └── an operator re-arms ──► WARMUP
+/// INIT     -- self-test passed --> WARMUP; failed --> FAULT
+/// WARMUP   -- healthy for 2 s and 20 frames --> READY; after 60 s --> FAULT
+/// READY    -- anything unhealthy --> DEGRADED
+/// DEGRADED -- healthy for 1 s and 10 frames --> READY; after 10 s --> FAULT
+/// any      -- a latched reason --> FAULT
+/// FAULT    -- an operator re-arms --> WARMUP
 /// ```
-/// Inhibits at once, releases slowly: one bad sample leaves READY. FAULT is left by `rearm` alone,
-/// which starts nothing but a whole warm-up. Pure: time comes with the calls, nothing is allocated.
-/// One thread.
+/// Inhibits at once and releases slowly: one bad sample leaves READY. Only `rearm` leaves FAULT,
+/// and it starts a full warm-up. Pure: times are arguments, nothing is allocated.
+/// Use it from one thread.
 class Readiness {
   public:
-    /// Limits or a machine that cannot be used end in FAULT / CONFIG.
+    /// An invalid machine or invalid limits lead to FAULT / CONFIG.
     Readiness(const Machine& machine, const ReadinessLimits& limits) noexcept;
 
-    /// Known maps were judged: all verdicts right? At the start, and again while running.
+    /// Reports the result of the self-test (canaries), at the start and while running.
     void self_tested(bool passed, std::int64_t now_ns) noexcept;
-    /// A snapshot came, of a newer version than the one before.
+    /// Processes a new snapshot whose version is higher than the previous one.
     void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
-    /// A snapshot came that was not made by perception: a latched fault.
+    /// Reports a snapshot that perception did not make. Latches a fault.
     void snapshot_forged(std::int64_t now_ns) noexcept;
-    /// Nothing came. To be called more often than frames are expected.
+    /// Processes the passing of time. Call it more often than frames are expected.
     void tick(std::int64_t now_ns) noexcept;
-    /// Steady time without and with the time that the computer slept.
+    /// Compares the steady clock without and with the time that the computer slept.
     void clocks(std::int64_t monotonic_ns, std::int64_t boottime_ns) noexcept;
-    /// Whoever makes the snapshots began anew: another odom, another map.
+    /// Reports a restart of perception: odom and map are new.
     void perception_restarted(std::int64_t now_ns) noexcept;
-    /// An operator's explicit act. False, and nothing changes, when there is no fault to leave, the
-    /// self-test never passed or the configuration is wrong.
+    /// Executes an operator's re-arm request. Returns false and changes nothing without a fault,
+    /// without a passed self-test or with an invalid configuration.
     [[nodiscard]] bool rearm(std::int64_t now_ns) noexcept;
-    /// `latched().bits()` of an earlier process of this gate that nobody re-armed, 0 = none: a
-    /// FAULT does not end because its process did.
+    /// Restores the fault of an earlier process: its `latched().bits()`, 0 = none. A restart of the
+    /// process does not clear a FAULT; only a re-arm does.
     void resume_fault(std::uint64_t bits) noexcept;
-    /// For good: the process ends.
+    /// Final state: the process ends.
     void stop() noexcept;
 
     [[nodiscard]] GateState state() const noexcept { return state_; }
     [[nodiscard]] ReasonSet latched() const noexcept { return latched_; }
-    /// State and all that speaks against an OK now.
+    /// The state and all present reasons against an OK.
     [[nodiscard]] GateHealth health() const noexcept;
 
   private:
@@ -100,10 +100,10 @@ class Readiness {
     ReadinessLimits limits_;
     GateState state_ = GateState::init;
     ReasonSet latched_;  ///< of FAULT
-    ReasonSet present_;  ///< of the last snapshot, and of time
+    ReasonSet present_;  ///< of the last snapshot, and of passing time
     Sighting last_;
     std::int64_t now_ns_ = 0;
-    std::int64_t entered_ns_ = 0;     ///< the present state
+    std::int64_t entered_ns_ = 0;     ///< time at which the present state began
     std::int64_t well_since_ns_ = 0;  ///< meaningful while `well_frames_` > 0
     std::int32_t well_frames_ = 0;
     bool tested_ = false;

@@ -15,14 +15,14 @@ namespace {
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kFrameNs = kSecondNs / 15;
 
-/// A perception that publishes at 15 Hz, the gate's state machine behind it, and their clock.
+/// Perception at 15 Hz, the state machine of the gate, and their common clock.
 class Station {
   public:
     explicit Station(const ReadinessLimits& limits = {}, const Machine& machine = rex())
         : map(Terrain{}.snapshot()), readiness(machine, limits) {
         map->version = 0;
     }
-    /// One frame: a newer snapshot, stamped as perception would.
+    /// One frame: a newer snapshot, with the stamps of perception.
     void frame(std::int64_t age_ns = 50 * kMs) {
         now_ns += kFrameNs;
         ++map->version;
@@ -35,7 +35,7 @@ class Station {
         const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(seconds * 1e9);
         while (now_ns + kFrameNs <= end_ns) frame();
     }
-    /// Nothing comes; the gate looks every 10 ms.
+    /// No frames; the gate polls every 10 ms.
     void silence(double seconds) {
         const std::int64_t end_ns = now_ns + static_cast<std::int64_t>(seconds * 1e9);
         while (now_ns < end_ns) {
@@ -47,7 +47,7 @@ class Station {
         readiness.self_tested(true, now_ns);
         frames(3.0);
     }
-    /// What a question gets now.
+    /// The present verdict of a query.
     [[nodiscard]] Verdict ask() const {
         return decide(rex(), query_at_body(kForward, *map), *map, readiness.health(), now_ns + kMs);
     }
@@ -79,7 +79,7 @@ TEST(Readiness, a_forged_snapshot_is_a_latched_fault) {
     EXPECT_FALSE(station.allows()) << "until an operator re-arms";
 }
 
-/// docs/evidence/safety.md and surefoot/gate/README.md promise these; the other tests read them.
+/// docs/evidence/safety.md and surefoot/gate/README.md state these times; the other tests use them.
 TEST(Readiness, the_times_are_those_that_are_promised) {
     const ReadinessLimits limits;
     EXPECT_EQ(limits.warmup_ns, 2 * kSecondNs);
@@ -107,7 +107,7 @@ TEST(Readiness, ground_that_is_not_where_the_soles_are_is_no_ground) {
         EXPECT_EQ(station.allows(), believed) << height_m;
         EXPECT_EQ(station.readiness.health().faults.contains(Reason::plane_invalid), !believed)
             << height_m;
-        // It comes back to where it belongs.
+        // The ground returns to the height of the soles.
         terrain.height.fill(0.0F);
         const std::uint64_t version = station.map->version;
         station.map = terrain.snapshot();
@@ -115,7 +115,7 @@ TEST(Readiness, ground_that_is_not_where_the_soles_are_is_no_ground) {
         station.frames(5.0);
         EXPECT_TRUE(station.allows()) << height_m;
     }
-    // What was not measured is told by nobody, or by an operator: the cells decide.
+    // Unmeasured ground has no height to compare with, except from an operator: the cells decide.
     Terrain unseen;
     unseen.box(-0.5, 0.5, -0.5, 0.5, static_cast<double>(kNanF));
     EXPECT_TRUE(snapshot_faults(rex(), *unseen.snapshot(), kNowNs).empty());
@@ -174,7 +174,7 @@ TEST(Readiness, the_same_frame_again_is_not_a_fresh_one) {
     station.readiness.self_tested(true, station.now_ns);
     station.frame();
     const std::int64_t frame_time_ns = station.map->frame_time_ns;
-    for (int i = 0; i < 100; ++i) {  // the pose goes on, the depth does not
+    for (int i = 0; i < 100; ++i) {  // new poses, but no new depth
         station.now_ns += 20 * kMs;
         ++station.map->version;
         station.map->pose_time_ns = station.now_ns;
@@ -364,7 +364,7 @@ TEST(Readiness, a_new_perception_means_a_new_warm_up) {
     station.become_ready();
     station.readiness.perception_restarted(station.now_ns);
     EXPECT_EQ(station.readiness.state(), GateState::warmup);
-    station.map->version = 0;  // counts anew, in another odom
+    station.map->version = 0;  // the count restarts in another odom
     station.map->body_x_tenth_mm = -5000;
     station.frames(1.9);
     EXPECT_EQ(station.readiness.state(), GateState::warmup);
@@ -400,7 +400,7 @@ TEST(Readiness, a_fault_of_an_earlier_process_lasts_until_somebody_re_arms) {
         EXPECT_EQ(again.readiness.latched(), one) << to_string(static_cast<Reason>(i));
     }
     Station damaged;
-    damaged.readiness.resume_fault(std::uint64_t{1} << 63U);  // nothing that this gate knows
+    damaged.readiness.resume_fault(std::uint64_t{1} << 63U);  // a bit without a meaning here
     EXPECT_EQ(damaged.readiness.latched(), ReasonSet(Reason::internal));
 }
 
@@ -469,7 +469,7 @@ TEST(Readiness, time_that_runs_backwards_is_a_fault_whoever_brings_it) {
         EXPECT_EQ(station.readiness.state(), GateState::fault);
         EXPECT_TRUE(station.readiness.rearm(station.now_ns));
     }
-    Station untested;  // a test that passed in the past is none
+    Station untested;  // an earlier passed test does not count
     untested.readiness.tick(untested.now_ns);
     untested.readiness.self_tested(true, untested.now_ns - 1);
     EXPECT_EQ(untested.readiness.state(), GateState::fault);
@@ -491,7 +491,7 @@ TEST(Readiness, a_fault_collects_reasons_and_forgets_them_when_an_operator_ends_
 TEST(Readiness, repeated_frames_count_once_though_none_is_stale) {
     Station station;
     station.readiness.self_tested(true, station.now_ns);
-    for (int i = 0; i < 12; ++i) {  // 5.3 Hz, each told three times: 36 maps, but 12 frames
+    for (int i = 0; i < 12; ++i) {  // 5.3 Hz, each frame in three maps: 36 maps, but 12 frames
         station.now_ns += 120 * kMs;
         station.frame(0);
         const std::int64_t frame_time_ns = station.map->frame_time_ns;
@@ -585,7 +585,7 @@ TEST(Readiness, each_stamp_grows_stale_at_its_own_age_and_one_of_the_future_neve
     ahead.readiness.tick(ahead.now_ns + 500 * kMs);
     EXPECT_EQ(ahead.readiness.health().faults, ReasonSet(Reason::time_skew));
 
-    Station silent;  // nothing ever came
+    Station silent;  // no snapshot came
     silent.readiness.self_tested(true, silent.now_ns);
     silent.readiness.tick(silent.now_ns);
     EXPECT_TRUE(silent.readiness.health().faults.contains(Reason::frame_stale));
@@ -624,7 +624,7 @@ TEST(Readiness, a_new_perception_changes_nothing_before_the_self_test) {
     station.readiness.perception_restarted(station.now_ns);
     EXPECT_EQ(station.readiness.state(), GateState::init);
     EXPECT_TRUE(station.readiness.health().faults.contains(Reason::frame_stale));
-    // One that begins anew while the gate is disturbed has the whole warm-up before it as well.
+    // A restart while the gate is degraded also needs the whole warm-up.
     Station disturbed;
     disturbed.become_ready();
     disturbed.silence(0.5);
@@ -687,7 +687,7 @@ TEST(Readiness, the_times_count_from_the_first_good_frame_to_the_nanosecond) {
             station.frame();
             const std::int64_t first_ns = station.now_ns;
             while (station.now_ns + 2 * kFrameNs < first_ns + c.wanted_ns) station.frame();
-            // More frames than are wanted, but too early.
+            // More frames than required, but too early.
             while (station.now_ns + 2 * kMs < first_ns + c.wanted_ns) {
                 station.now_ns += 2 * kMs - kFrameNs;
                 station.frame(0);

@@ -49,7 +49,7 @@ const char* to_string(Reason reason) noexcept {
         case Reason::edge_margin: return "EDGE_MARGIN";
         case Reason::none: return "NONE";
     }
-    return "INTERNAL";  // a value outside the enum came over a wire: it is no permission
+    return "INTERNAL";  // an invalid value from outside must never become a permission
 }
 
 const char* to_string(Decision decision) noexcept {

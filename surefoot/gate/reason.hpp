@@ -5,8 +5,8 @@
 
 namespace surefoot::gate {
 
-/// Why a step is not OK. The order is the order of precedence: the first reason that applies is the
-/// primary one. Codes of an ERROR come before those of the terrain.
+/// The reason why a step is not OK. The order defines the precedence: the first applicable reason
+/// is the primary one. ERROR codes come before terrain codes.
 enum class Reason : std::uint8_t {
     // ERROR: the gate cannot judge.
     internal,
@@ -35,7 +35,7 @@ enum class Reason : std::uint8_t {
     deadline,
     overload,
     audit,
-    // NOT_TRAVERSABLE: perception is healthy; the terrain says no, or is not known.
+    // NOT_TRAVERSABLE: perception is healthy, but the terrain is unsafe or unknown.
     outside_map,
     drop_off,
     step_too_high,
@@ -48,26 +48,26 @@ enum class Reason : std::uint8_t {
     disconnected,
     memory_uncertain,
     not_resolvable,
-    support_area,  ///< too little of a foot on its tread
-    edge_margin,   ///< enough of it only if the edge lies just where it seems to
+    support_area,  ///< too little of a foot is on its tread
+    edge_margin,   ///< enough support only if the edge position has no error
     none,          ///< only an OK has no reason
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
 
-/// The code as in messages and logs: "UNKNOWN_CELLS".
+/// The code in messages and logs, for example "UNKNOWN_CELLS".
 [[nodiscard]] const char* to_string(Reason reason) noexcept;
 
 [[nodiscard]] constexpr bool is_error(Reason reason) noexcept {
     return reason < Reason::outside_map;
 }
 
-/// A fault that stays until an operator re-arms the gate: what the map was built on is in doubt.
+/// True for a fault that stays until an operator re-arms the gate: the map may be wrong.
 [[nodiscard]] constexpr bool is_latched(Reason reason) noexcept {
     return reason == Reason::internal || reason == Reason::config || reason == Reason::clock ||
            reason == Reason::mount_moved || reason == Reason::pose_jump;
 }
 
-/// A set of reasons in one word.
+/// A set of reasons, stored as bits.
 class ReasonSet {
   public:
     constexpr ReasonSet() noexcept = default;
@@ -81,7 +81,7 @@ class ReasonSet {
         return reason != Reason::none && (bits_ >> static_cast<unsigned>(reason) & 1U) != 0;
     }
     [[nodiscard]] constexpr bool empty() const noexcept { return bits_ == 0; }
-    /// The reason of highest precedence, or `none`.
+    /// The reason of highest precedence, or `none` for an empty set.
     [[nodiscard]] constexpr Reason primary() const noexcept {
         for (int i = 0; i < kReasonCount; ++i) {
             if (contains(static_cast<Reason>(i))) return static_cast<Reason>(i);

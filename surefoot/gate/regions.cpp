@@ -8,10 +8,10 @@
 namespace surefoot::gate {
 namespace {
 
-// What is asked of each of the thousands of cells of a verdict is always_inline: it is asked from
-// five places, and by itself the compiler would call it (0.055 ms a verdict instead of 0.043).
+// Functions that test each of the thousands of cells of a verdict are always_inline. They have five
+// callers, so the compiler would not inline them (0.055 ms a verdict instead of 0.043).
 
-/// A cell with its place.
+/// A cell and its position.
 struct Place {
     GroundCell cell;
     std::int64_t ix = 0;
@@ -38,8 +38,8 @@ void deny(Findings& findings,
     findings.deny(reason, finding_at(place.ix, place.iy, place.foot, value, limit));
 }
 
-/// Not less sure than `cell_sigma`; a single cell among eight that are known and sure may be less
-/// sure by a factor of two: it has just refused measurements, and nothing beside it has.
+/// True if the sigma is at most `cell_sigma`. A single cell among eight known and certain ones may
+/// have twice that: it has just rejected measurements, and its neighbours have not.
 bool is_sure(const Scene& scene, const Place& place) noexcept {
     constexpr std::int64_t kAloneFactor = 2;
     const std::int64_t limit = scene.machine.limits.cell_sigma_tenth_mm;
@@ -50,7 +50,7 @@ bool is_sure(const Scene& scene, const Place& place) noexcept {
            });
 }
 
-/// What check_knowledge() says of a cell that is not known, sure and where it was seen.
+/// The slow path of check_knowledge(): reports why a cell fails.
 bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const GroundCell& cell = place.cell;
@@ -69,8 +69,8 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return true;
 }
 
-/// Knowledge, sureness and drift: what every region asks of every cell. False when the cell says
-/// nothing about the height of the ground. Nearly every cell is in order, and costs a few compares.
+/// The tests of every cell in every region: known, certain, not drifted. Returns false if the cell
+/// has no usable height. Nearly every cell passes after a few comparisons.
 [[gnu::always_inline]] inline bool check_knowledge(const Scene& scene,
                                                    const Place& place,
                                                    Findings& findings) noexcept {
@@ -83,15 +83,15 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return check_doubtful(scene, place, findings);
 }
 
-/// Height over the stance.
+/// Height of a cell above the stance.
 std::int64_t rise_of(const Scene& scene, const GroundCell& cell) noexcept {
     return cell.height_tenth_mm - scene.stance_tenth_mm;
 }
 
-/// Which way from the height of the stance.
+/// The side of a limit relative to the stance height.
 enum class Side : std::int8_t { up = 1, down = -1 };
 
-/// The ground of a cell lies below `limit` on this side of the stance by `factor` sigma.
+/// True if the ground of a cell lies below `limit` on this side of the stance by `factor` sigma.
 bool is_below(const Scene& scene,
               const GroundCell& cell,
               Side side,
@@ -101,7 +101,7 @@ bool is_below(const Scene& scene,
     return factor * static_cast<double>(cell.sigma_tenth_mm) <= static_cast<double>(slack);
 }
 
-/// What check_below() says of a cell that is not surely below.
+/// The slow path of check_below(): reports why a cell fails.
 void check_unsure(const Scene& scene,
                   const Place& place,
                   Side side,
@@ -127,11 +127,10 @@ void check_unsure(const Scene& scene,
          static_cast<std::int64_t>(static_cast<double>(limit - value) / factor));
 }
 
-/// Wanted: the ground of the place below `limit` on this side of the stance by `sigma_factor`
-/// sigma. One cell alone, among eight that are, need only be so by one sigma: it has just refused
-/// measurements, and what stands or gapes on the ground is seldom smaller than a cell. What is
-/// measured beyond the limit is refused for `reason`; what is only not sure to be below is not
-/// resolvable.
+/// Requires the ground of a cell below `limit` on this side of the stance by `sigma_factor` sigma.
+/// A single cell among eight that pass needs only one sigma: it has just rejected measurements, and
+/// real obstacles or holes are seldom smaller than a cell. A height beyond the limit is refused
+/// with `reason`; a height that is only uncertain is not resolvable.
 [[gnu::always_inline]] inline void check_below(const Scene& scene,
                                                const Place& place,
                                                Side side,
@@ -142,7 +141,7 @@ void check_unsure(const Scene& scene,
         check_unsure(scene, place, side, limit, reason, findings);
 }
 
-/// Wanted: nothing hangs lower over the stance than `height`.
+/// Requires that nothing hangs lower above the stance than `height`.
 [[gnu::always_inline]] inline void check_overhead(const Scene& scene,
                                                   const Place& place,
                                                   std::int64_t height,
@@ -157,9 +156,9 @@ void check_unsure(const Scene& scene,
     findings.deny(reason, finding);
 }
 
-/// Asks one cell of a region; `test(place)` sees it if it is known, `always(place)` if it is inside
-/// the map. False when it is not: one cell beyond the map ends a region, the rest of it out there
-/// tells nothing new.
+/// Tests one cell of a region: `always(place)` for a cell inside the map, `test(place)` for a known
+/// cell. Returns false outside the map, which ends the region, because its other outside cells add
+/// nothing.
 template <typename Test, typename Always>
 bool check_cell(const Scene& scene,
                 std::int64_t ix,
@@ -175,7 +174,7 @@ bool check_cell(const Scene& scene,
     return inside;
 }
 
-/// Asks every cell of a region.
+/// Tests every cell of a region.
 template <typename Test, typename Always>
 void check_region(const Scene& scene,
                   const grid::FixedConvex& region,
@@ -189,8 +188,8 @@ void check_region(const Scene& scene,
         });
 }
 
-/// The room that the body takes over some neighbouring cells of a row: from the lowest of its parts
-/// there to the highest, whatever is free between two of them.
+/// The space of the body over some neighbouring cells of a row: from the lowest part there to the
+/// highest, including free space between the parts.
 struct BodyOver {
     std::int64_t low_tenth_mm = INT64_MAX;
     std::int64_t high_tenth_mm = INT64_MIN;
@@ -214,7 +213,7 @@ BodyOver body_over(std::span<const BodyPart> parts,
     return over;
 }
 
-/// The highest thing in the way of a swinging foot: on stairs the nosing that it steps over.
+/// Greatest height that a swinging foot may meet; on stairs the nosing that it steps over.
 std::int64_t swing_height(const Scene& scene) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const bool stairs = scene.movement.movement_class == MovementClass::stair;
@@ -225,7 +224,7 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 
 constexpr auto kNothing = [](const Place&) noexcept {};
 
-/// Of the known cells under present feet.
+/// Mean over the known cells under the present feet.
 struct MeanHeight {
     std::int64_t sum = 0;
     std::int64_t known = 0;
@@ -326,7 +325,7 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
         rows = {std::min(rows.first, areas[i].rows().first),
                 std::max(rows.last, areas[i].rows().last)};
     }
-    // The parts lie over each other: every cell is asked once, for all that are above it.
+    // The parts lie above each other, so each cell is tested once for all parts above it.
     for (std::int64_t iy = rows.first; iy <= rows.last; ++iy) {
         std::array<grid::FixedRun, Body::kMaxParts> runs;
         grid::FixedRun all{INT64_MAX, INT64_MIN};
@@ -367,8 +366,8 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
-        // A drop below a table top beside the foot is no drop for a foot on the floor: evidence on
-        // a cell that was measured higher than a foot may stand belongs to somebody up there.
+        // A drop beside a table top is no drop for a foot on the floor. So drop evidence counts
+        // only on cells that a foot could stand on, not on higher ones.
         const auto evidence = [&](const Place& place) {
             const bool above =
                 place.cell.known() && rise_of(scene, place.cell) > limits.swing_clearance_tenth_mm;

@@ -11,54 +11,54 @@
 
 namespace surefoot::gate {
 
-/// What all tests of the terrain share.
+/// Input that all terrain tests share.
 struct Scene {
     const Machine& machine;
     const Movement& movement;
     const Ground& ground;
     const Sweep& sweep;
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
-    /// The same under each foot by itself, where any of it is known.
+    /// The same under each foot alone; empty if no cell there is known.
     std::array<std::optional<std::int64_t>, 2> foot_stance_tenth_mm{};
-    std::int64_t lift_tenth_mm = 0;  ///< how much higher the body stands at the target
+    std::int64_t lift_tenth_mm = 0;  ///< height of the body at the target minus its height now
 };
 
-/// A finding at a cell.
+/// Makes a finding at a cell.
 [[nodiscard]] Finding finding_at(std::int64_t ix,
                                  std::int64_t iy,
                                  Foot foot,
                                  std::int64_t value_tenth_mm,
                                  std::int64_t limit_tenth_mm) noexcept;
 
-/// Heights of the ground under the present feet, the means of all known cells there; nothing where
-/// no cell is known.
+/// Heights of the ground under the present feet: means of the known cells; empty if no cell is
+/// known.
 struct StanceHeights {
-    std::optional<std::int64_t> both_tenth_mm;  ///< told by the query, if it tells
+    std::optional<std::int64_t> both_tenth_mm;  ///< from the query if it has the height
     std::array<std::optional<std::int64_t>, 2> feet_tenth_mm;
 };
 [[nodiscard]] StanceHeights stance_heights(const Ground& ground,
                                            const Query& query,
                                            const Sweep& sweep) noexcept;
 
-/// Surfaces under the present feet, as far as they lie at the height of the stance, and those that
-/// the vouched area touches.
+/// Surfaces under the present feet at the height of the stance, and surfaces that touch the
+/// attested area.
 [[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
 
-/// The four regions of safety.md 7 (4). In each every cell must be inside the map, known (or
-/// vouched), surer than `cell_sigma` and not drifted more than `drift`. Where a limit counts in
-/// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE. A single cell
-/// may be less sure, never higher or lower, when each of the eight around it passes: it has just
-/// refused a wrong match, and its neighbours know.
-/// - under the present feet none is a drop;
+/// Tests of the four regions of safety.md 7 (4). Every cell must lie inside the map, be known
+/// (or attested), have a sigma below `cell_sigma` and a drift below `drift`. A height limit in
+/// mm must hold by `sigma_factor` sigma, else NOT_RESOLVABLE. A single cell may be less
+/// certain, but not out of limits, if its eight neighbours pass: it may be a rejected wrong
+/// match.
+/// - check_stance: no cell under the present feet is a drop.
 void check_stance(const Scene& scene, Findings& findings) noexcept;
-/// - in the way of a foot nothing stands higher over the stance than `swing_clearance`, nor hangs
-///   so low that a lifted foot meets it;
+/// - check_corridors: nothing in the path of a foot is higher above the stance than
+///   `swing_clearance`, or hangs so low that a lifted foot touches it.
 void check_corridors(const Scene& scene, Findings& findings) noexcept;
-/// - in the way of each part of the body nothing stands higher than its lower edge, nor hangs lower
-///   than its top;
+/// - check_body: nothing in the path of a part of the body is higher than its lower edge, or hangs
+///   lower than its top.
 void check_body(const Scene& scene, Findings& findings) noexcept;
-/// - under and `drop_band` around the landing feet nothing lies lower than `drop` or shows evidence
-///   of a drop.
+/// - check_bands: under the landing feet and within `drop_band` around them no cell is lower than
+///   `drop` or has drop evidence.
 void check_bands(const Scene& scene, Findings& findings) noexcept;
 
 }  // namespace surefoot::gate

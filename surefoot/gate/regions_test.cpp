@@ -16,8 +16,8 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// A map whose cells are set to the tenth of a millimetre: level, sure, seen just now. The rules
-/// are asked one by one, not through decide().
+/// A map whose cells are set to the tenth of a millimetre: level, certain, fresh. The rules are
+/// tested one by one, without decide().
 struct Floor {
     Terrain terrain;
     std::unique_ptr<grid::MapSnapshot> map = terrain.snapshot();
@@ -29,7 +29,7 @@ struct Floor {
         map->drift_tenth_mm.fill(0);
     }
     [[nodiscard]] std::size_t at(double x_m, double y_m) const { return cell_at(*map, x_m, y_m); }
-    /// Sets a layer at a cell and at the eight around it.
+    /// Sets a layer in a cell and in its eight neighbours.
     template <typename Layer, typename Value>
     void around(Layer& layer, double x_m, double y_m, Value value) const {
         for (const double dx : {-kResolutionM, 0.0, kResolutionM}) {
@@ -320,7 +320,7 @@ TEST(Regions, a_height_must_keep_its_limit_by_3_4_sigma_or_one_where_all_beside_
             }
         }
     }
-    // What it says: the sigma, and the largest that would do.
+    // The finding holds the sigma and the largest sigma that would pass.
     Floor floor;
     floor.map->sigma_tenth_mm.fill(100);
     floor.map->height_tenth_mm.fill(-330);
@@ -398,7 +398,7 @@ TEST(Body, what_stands_between_two_parts_is_not_in_the_way) {
     // Each part has its own height.
     EXPECT_TRUE(reasons_with(0.35, 1000).empty());
     EXPECT_EQ(reasons_with(-0.35, 1000), blocked);
-    // Unknown ground between the parts is not asked for, below them it is.
+    // Unknown ground between the parts is allowed, below them it is not.
     floor.map->source[floor.at(0.0, 0.0)] = grid::EvidenceSource::unknown;
     EXPECT_TRUE(floor.look(check_body).reasons().empty());
     floor.map->source[floor.at(0.35, 0.0)] = grid::EvidenceSource::unknown;

@@ -9,7 +9,7 @@
 
 namespace surefoot::gate {
 
-/// Square root after Newton: the gate calls no libm. 0 for 0 and below.
+/// Square root by Newton's method, because the gate calls no libm. Returns 0 for 0 and below.
 [[nodiscard]] constexpr double root(double square) noexcept {
     if (!(square > 0.0)) return 0.0;
     double value = square > 1.0 ? square : 1.0;
@@ -18,7 +18,7 @@ namespace surefoot::gate {
 }
 
 /// Tangent of the largest angle between odom's z axis and the vertical: `sigma_factor` sigmas of
-/// the snapshot's tilt. Infinite where the tilt is not known or larger than half a radian.
+/// the snapshot's tilt. Infinite if the tilt is unknown or the angle exceeds 0.5 rad.
 [[nodiscard]] constexpr double vertical_bound_tan(const grid::MapSnapshot& map,
                                                   const GateLimits& limits) noexcept {
     constexpr double kRadPerUnit = 1e-6;
@@ -32,10 +32,10 @@ namespace surefoot::gate {
     return bound_rad * (1.0 + 0.5 * bound_rad * bound_rad);
 }
 
-/// Squared tangent of the steepest tilt that ground may have whose tilt against odom's z axis has
-/// the squared tangent `tan_sq`: tan(a + b) = (tan a + tan b) / (1 - tan a tan b). A vertical that
-/// is exactly known leaves `tan_sq` as it is, to the last bit. Infinite from a right angle on, and
-/// for NaN.
+/// Squared tangent of the steepest possible tilt against the vertical, for ground whose tilt
+/// against odom's z axis has the squared tangent `tan_sq`: tan(a + b) = (tan a + tan b) / (1 - tan
+/// a tan b). For a bound of zero the result is exactly `tan_sq`. Infinite from a right angle on,
+/// and for NaN.
 [[nodiscard]] constexpr double steepest_tan_sq(double tan_sq, double bound_tan) noexcept {
     if (bound_tan == 0.0) return tan_sq;
     if (!(tan_sq >= 0.0)) return std::numeric_limits<double>::infinity();  // NaN
@@ -46,7 +46,7 @@ namespace surefoot::gate {
     return steepest * steepest;
 }
 
-/// n_z = 1 / sqrt(1 + tan^2) >= limit, without the root. False for NaN.
+/// True if n_z = 1 / sqrt(1 + tan^2) >= the limit. Needs no square root. False for NaN.
 [[nodiscard]] constexpr bool keeps_tilt_limit(double tan_sq, const GateLimits& limits) noexcept {
     return limits.min_normal_z * limits.min_normal_z * (1.0 + tan_sq) <= 1.0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of treads one by one, each held against the same rule written plainly, at their limits
+// The rules of treads, one by one. Each is compared with the same rule in plain code, at its limits
 // to the tenth of a millimetre.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t kNone = Tread::kNone;
 
-/// A machine with a movement of class stair, somewhere on a map that is set cell by cell.
+/// A machine with a movement of class stair, on a map that is set cell by cell.
 struct OnTreads {
     std::unique_ptr<grid::MapSnapshot> map = Terrain().snapshot();
     Machine machine = rex();
@@ -43,7 +43,7 @@ struct OnTreads {
         query.y_tenth_mm = y_tenth_mm;
         look();
     }
-    /// After a change of the machine, too.
+    /// Call it again after a change of the machine.
     void look() {
         sweep =
             sweep_of(machine,
@@ -51,7 +51,7 @@ struct OnTreads {
                      machine.movements[query.command]);
         ground.emplace(*map, query, machine.limits);
     }
-    /// Anywhere within a cell, any way round, with an ankle anywhere and feet of two sizes.
+    /// A random position within a cell, random heading and ankle, feet of two sizes.
     void place_anywhere(Rng& rng) {
         machine.right_foot.length_tenth_mm = 3320;
         machine.right_foot.width_tenth_mm = 1700;
@@ -75,7 +75,7 @@ struct OnTreads {
         return foot == 0 ? machine.left_foot : machine.right_foot;
     }
 
-    /// A place along and across a landed foot, from its middle, doubled, to the nearest.
+    /// A position along and across a landed foot, from its middle, doubled and rounded.
     struct Place {
         std::int64_t along = 0;
         std::int64_t across = 0;
@@ -96,7 +96,7 @@ struct OnTreads {
         };
         return place_of(foot, at(map->origin_x_tenth_mm, ix), at(map->origin_y_tenth_mm, iy));
     }
-    /// Half a cell's shadow on the axes of the foot, doubled, and never too little.
+    /// Half of a cell's projection on the axes of the foot, doubled, rounded up.
     [[nodiscard]] std::int64_t reach() const {
         const double shadow = std::abs(static_cast<double>(sweep.target.cos_yaw)) +
                               std::abs(static_cast<double>(sweep.target.sin_yaw));
@@ -115,7 +115,7 @@ struct OnTreads {
     }
 };
 
-/// find_treads, plainly.
+/// find_treads in plain code.
 Tread plain_tread(const OnTreads& on, std::size_t foot) {
     Tread tread;
     double sum = 0.0;
@@ -143,7 +143,7 @@ Tread plain_tread(const OnTreads& on, std::size_t foot) {
         const bool last = cell.drop_evidence >= on.machine.limits.drop_evidence &&
                           above <= on.machine.limits.swing_clearance_tenth_mm;
         if (!lower && !last) return;
-        // The cell itself is no tread, or it is the last that is.
+        // The cell itself is off the tread, or it is the last cell of it.
         const std::int64_t along = on.middle_of(foot, ix, iy).along;
         const std::int64_t from_middle = lower ? -on.reach() : on.reach();
         if (along > on.ankle(foot))
@@ -241,7 +241,7 @@ TEST(TreadBounds, a_drop_begins_a_tenth_of_a_millimetre_beyond_its_limit) {
     EXPECT_EQ(with(401, 128), kNone);  // a wall, not the ground before a drop
 }
 
-/// check_tread_bands of one foot, plainly: what is said of each cell.
+/// check_tread_bands for one foot in plain code: the expected reasons of each cell.
 struct PlainBand {
     std::set<Reason> reasons;
     Evidence evidence;
@@ -299,7 +299,7 @@ struct PlainBand {
         const std::int64_t gap = std::max(std::abs(place.along) - box.length_tenth_mm,
                                           std::abs(place.across) - box.width_tenth_mm) -
                                  on.reach();
-        // At least a tenth of a millimetre more than the drift, for the rounding.
+        // At least 0.1 mm more than the drift, because of rounding.
         const auto drift =
             static_cast<std::int64_t>(std::floor(limits.sigma_factor * cell.drift_tenth_mm)) + 1;
         const std::int64_t above =
@@ -325,8 +325,8 @@ std::set<Reason> reasons_of(const Findings& findings) {
     return all;
 }
 
-/// One cell of a band of a foot that lands on even ground is changed, in each of its numbers to
-/// what lies at a limit and beside it.
+/// Changes one cell in the band of a foot on even ground. Each number takes the values at a limit
+/// and beside it.
 TEST(TreadBounds, the_band_of_a_tread_asks_each_cell_what_a_plain_reckoning_asks) {
     Rng rng(92);
     OnTreads on;
@@ -464,7 +464,7 @@ TEST(TreadBounds, a_band_counts_what_an_operator_answers_for_and_ends_where_the_
     Findings all_but_one;
     check_tread_bands(on.scene(), level, all_but_one);
     EXPECT_EQ(all_but_one.evidence.attested_cells, attested.evidence.cells - 1);
-    // Half a cell of the band lies beyond the last row of the map: one cell is enough.
+    // Half a cell of the band lies beyond the last row of the map: one cell is sufficient.
     on.query.attested = {};
     on.map->source.fill(grid::EvidenceSource::measured);
     on.place(26'000, 0, 0.0);
@@ -478,7 +478,7 @@ TEST(TreadBounds, a_band_counts_what_an_operator_answers_for_and_ends_where_the_
     EXPECT_LT(beyond.evidence.cells, all);
 }
 
-/// check_tread on even ground, plainly: what its numbers alone decide.
+/// check_tread on even ground in plain code: the part that numbers alone decide.
 enum class Carried { whole, unsure, little };
 
 struct PlainCarried {
@@ -550,7 +550,7 @@ TEST(TreadBounds, what_carries_a_foot_is_enough_to_the_tenth_of_a_millimetre) {
             500 + 2 * (static_cast<std::int64_t>(limits.sigma_factor *
                                                  static_cast<double>(tread.drift_tenth_mm)) +
                        1);
-        // At one of the limits, as seen or for sure, and a tenth of a millimetre beside it.
+        // At one of the limits, as measured or with uncertainty, and 0.1 mm beside it.
         const auto edge = [&](std::int64_t ankle) -> std::int64_t {
             const std::array<std::int64_t, 5> at{
                 length - 2 * limits.tread_overhang_tenth_mm,
@@ -618,8 +618,8 @@ TEST(TreadBounds, a_tread_that_is_not_known_carries_nothing) {
     EXPECT_EQ(reasons_of(findings), std::set<Reason>{Reason::unknown_cells});
 }
 
-/// A line of the snapshot from one place to another, both along and across a foot that looks along
-/// +x, from its middle [tenth_mm].
+/// A line of the snapshot between two positions, both along and across a foot that faces +x, from
+/// its middle [tenth_mm].
 grid::SnapshotEdge line(const OnTreads& on,
                         std::int64_t from_along,
                         std::int64_t from_across,
@@ -641,14 +641,14 @@ grid::SnapshotEdge line(const OnTreads& on,
     return edge;
 }
 
-/// How much of a foot is surely carried, as its refusal says [doubled tenth_mm].
+/// The certainly supported length of a foot, as stated by its refusal [doubled tenth_mm].
 std::int64_t carried(const OnTreads& on, const Tread& tread) {
     const Findings findings = tread_findings(on, 0, tread);
     const Finding* worst = findings.worst(Reason::edge_margin);
     return worst == nullptr ? -1 : 2 * worst->value_tenth_mm;
 }
 
-/// The tread seems to end 100 tenth_mm before the toes; with 600 more it is not enough.
+/// The tread seems to end 100 tenth_mm before the toes; with 600 more it is too short.
 struct Nosing {
     OnTreads on;
     Tread tread{true, 0, kNone, kNone, 0};
@@ -677,7 +677,7 @@ TEST(TreadBounds, a_line_takes_back_doubt_to_the_tenth_of_a_millimetre) {
         Nosing n(at_toe);
         const std::int64_t way = at_toe ? 1 : -1;
         EXPECT_EQ(carried(n.on, n.tread), 2 * n.length - 200 - 500 - 2);
-        // 1630 along, a line of no doubt but the rounding; lower ground on its right.
+        // 1630 along, a line whose only uncertainty is rounding; lower ground on its right.
         const auto at = [&](std::int64_t right_along, std::int64_t left_along, std::int64_t wide) {
             return at_toe ? line(n.on, right_along, -wide, left_along, wide)
                           : line(n.on, left_along, wide, right_along, -wide);
@@ -685,7 +685,7 @@ TEST(TreadBounds, a_line_takes_back_doubt_to_the_tenth_of_a_millimetre) {
         const auto straight = at(way * 1630, way * 1630, 2000);
         const std::int64_t with_line = n.length + 2 * 1630 - 2 - 2;
         EXPECT_EQ(n.with(straight), with_line);
-        // One that just spans the foot, and one that does not.
+        // A line that just spans the foot, and one that does not.
         EXPECT_EQ(n.with(at(way * 1630, way * 1630, 950)), with_line);
         const std::int64_t without = 2 * n.length - 200 - 500 - 2;
         auto shorter = at(way * 1630, way * 1630, 950);
@@ -697,13 +697,13 @@ TEST(TreadBounds, a_line_takes_back_doubt_to_the_tenth_of_a_millimetre) {
         // Slanted: where it crosses the nearer side of the foot, 950 of 2000 across.
         EXPECT_EQ(n.with(at(way * 1670, way * 1590, 2000)), n.length + 2 * 1611 - 4);
         EXPECT_EQ(n.with(at(way * 1590, way * 1670, 2000)), n.length + 2 * 1611 - 4);
-        // Its sigma, 3.4 times and rounded up, to both sides.
+        // Adds its sigma, times 3.4 and rounded up, on both sides.
         auto unsure = straight;
         unsure.across_sigma_tenth_mm = 10;
         EXPECT_EQ(n.with(unsure), with_line - 2 * 34);
-        unsure.across_sigma_tenth_mm = 1'000;  // more doubt than a cell: the cell's counts
+        unsure.across_sigma_tenth_mm = 1'000;  // larger than a cell: the cell's value counts
         EXPECT_EQ(n.with(unsure), without);
-        // Farther out than the cells say: the cells decide.
+        // Farther out than the cells: the cells decide.
         EXPECT_EQ(n.with(at(way * 1800, way * 1800, 2000)), -1);
         n.tread.drift_tenth_mm = 30;
         EXPECT_EQ(n.with(at(way * 1800, way * 1800, 2000)), 2 * n.length - 200 - 2 * 103);
@@ -749,7 +749,7 @@ TEST(TreadBounds, the_ends_of_a_line_lie_within_a_hundred_metres) {
     EXPECT_GT(ends(-kFarthest, kFarthest), without);
     EXPECT_EQ(ends(-kFarthest - 1, kFarthest), without);
     EXPECT_EQ(ends(-kFarthest, kFarthest + 1), without);
-    // Along the way: a slant that far runs through the same place on both sides of the foot.
+    // Along the foot: such a slanted line passes the same position on both sides of the foot.
     const auto along = [&](std::int32_t from_x, std::int32_t to_x) {
         grid::SnapshotEdge edge = line(n.on, 1630, -2000, 1630, 2000);
         edge.across_sigma_tenth_mm = 0;
@@ -758,7 +758,7 @@ TEST(TreadBounds, the_ends_of_a_line_lie_within_a_hundred_metres) {
         n.set(edge);
         return answer_of(tread_findings(n.on, 0, n.tread));
     };
-    // Beyond the toes on both sides only if both ends are: such a line takes all doubt back.
+    // Beyond the toes on both sides only if both ends are: such a line removes all uncertainty.
     EXPECT_EQ(along(kFarthest, kFarthest), Carried::whole);
     EXPECT_EQ(along(kFarthest + 1, kFarthest), Carried::unsure);
     EXPECT_EQ(along(kFarthest, kFarthest + 1), Carried::unsure);
@@ -782,7 +782,7 @@ TEST(TreadBounds, of_two_lines_the_nearer_counts) {
     }
 }
 
-/// What is carried is judged as a foot of that size: a bump counts from its first cell on.
+/// The supported part is tested like a foot of that size: a bump counts from its first cell on.
 TEST(TreadBounds, the_carried_part_of_a_foot_is_judged_and_nothing_else) {
     Rng rng(94);
     OnTreads on;
@@ -842,7 +842,7 @@ TEST(TreadBounds, a_lowered_body_passes_what_is_just_as_high_as_it_begins) {
     EXPECT_TRUE(said());
     std::swap(treads[0], treads[1]);  // the lower one counts
     EXPECT_TRUE(said());
-    // Level, or up: the way of the body was judged already.
+    // Level or up: the path of the body was tested before.
     on.map->height_tenth_mm.fill(5000);
     treads = {};
     EXPECT_FALSE(said());
@@ -883,7 +883,7 @@ TEST(TreadBounds, a_lowered_body_asks_the_cells_below_its_parts_with_sway_and_a_
         for (std::int64_t iy = cy - reach; iy <= cy + reach; ++iy) {
             for (std::int64_t ix = cx - reach; ix <= cx + reach; ++ix) {
                 const std::size_t at = on.index(ix, iy);
-                on.map->height_tenth_mm[at] = 101;  // over the treads one more than the part begins
+                on.map->height_tenth_mm[at] = 101;  // one unit above the lower edge of the part
                 Findings findings;
                 check_body_lowered(on.scene(), treads, findings);
                 const Finding* worst = findings.worst(Reason::body_clearance);
@@ -900,7 +900,7 @@ TEST(TreadBounds, a_lowered_body_asks_the_cells_below_its_parts_with_sway_and_a_
             }
         }
     }
-    // Nobody knows of what is not known.
+    // Unknown cells report nothing.
     on.map->source.fill(grid::EvidenceSource::unknown);
     on.map->height_tenth_mm.fill(5000);
     Findings findings;
@@ -922,7 +922,8 @@ TEST(TreadBounds, a_body_is_lifted_by_the_higher_tread_and_never_lowered) {
     EXPECT_EQ(lift(-1500, 1), 1);
 }
 
-/// Two surfaces in the way of a foot: 1 is stood on, 2 begins `gap` cells beyond a strip of 3.
+/// Two surfaces in the path of a foot: 1 is the present one, 2 begins `gap` cells beyond a strip of
+/// 3.
 struct Surfaces {
     OnTreads on;
     std::int64_t row = 0;
@@ -980,7 +981,7 @@ TEST(TreadBounds, up_and_down_have_limits_of_their_own) {
     EXPECT_FALSE(s.joins());
     s.set(s.column + 1, s.row, 2, -500);
     EXPECT_TRUE(s.joins());
-    // Seen from the other side of the border: the surface that is stood on is the second cell.
+    // From the other side of the border: the present surface is the second cell.
     s.set(s.column, s.row, 2, -500);
     s.set(s.column + 1, s.row, 1, 0);
     EXPECT_TRUE(s.joins());
@@ -1012,7 +1013,7 @@ TEST(TreadBounds, only_measured_ground_in_the_way_of_a_foot_is_a_step_away) {
     s.on.map->source[s.on.index(s.column, s.row)] = grid::EvidenceSource::unknown;
     EXPECT_FALSE(s.joins());
     s.on.map->source[s.on.index(s.column, s.row)] = grid::EvidenceSource::measured;
-    // Every cell of the corridor: the pair counts where both lie in it.
+    // Every cell of the corridor: a pair counts if both cells lie in it.
     s.set(s.column, s.row, 0, 0);
     s.set(s.column + 1, s.row, 0, 0);
     std::set<std::size_t> way;

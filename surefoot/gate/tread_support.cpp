@@ -15,7 +15,7 @@ constexpr std::int64_t magnitude(std::int64_t x) noexcept {
     return x < 0 ? -x : x;
 }
 
-/// Rounded up, and never less than x itself.
+/// factor * x, rounded up and never less than x.
 std::int64_t times_up(double factor, std::int64_t x) noexcept {
     // in range: x has 32 bits; sigma_factor is at most 10 (Machine::problem())
     return std::max(x, static_cast<std::int64_t>(factor * static_cast<double>(x)) + 1);
@@ -29,8 +29,8 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// The axes of a landed foot; places along it forward, across it to the left, from its middle,
-/// doubled.
+/// The axes of a landed foot. Positions count from its middle, along = forward, across = to the
+/// left, and are doubled.
 class FootAxes {
   public:
     struct Place {
@@ -42,7 +42,7 @@ class FootAxes {
         : ground_(scene.ground),
           pose_(scene.sweep.target),
           middle_(foot.landing_center),
-          // A cell reaches half its side times (|cos| + |sin|) to each side of its middle.
+          // A cell reaches half its side times (|cos| + |sin|) on each side of its centre.
           reach_(1 - grid::floor_div(-(magnitude(pose_.cos_yaw) + magnitude(pose_.sin_yaw)) *
                                          scene.ground.grid().side,
                                      FixedPose::kOne)),
@@ -51,7 +51,7 @@ class FootAxes {
           ankle_(2 * scene.machine.ankle_from_heel_tenth_mm - length_),
           ankle_reach_(scene.machine.limits.patch_side_tenth_mm) {}
 
-    /// `doubled`: from the middle of the foot, in odom.
+    /// `doubled`: position in odom relative to the middle of the foot, doubled.
     [[nodiscard]] Place place_of(FixedPoint doubled) const noexcept {
         return {rounded(doubled.x * pose_.cos_yaw + doubled.y * pose_.sin_yaw),
                 rounded(doubled.y * pose_.cos_yaw - doubled.x * pose_.sin_yaw)};
@@ -63,13 +63,13 @@ class FootAxes {
     [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< doubled half of it
     [[nodiscard]] std::int64_t width() const noexcept { return width_; }
     [[nodiscard]] std::int64_t ankle() const noexcept { return ankle_; }
-    /// The ground under the ankle: half a patch to each side.
+    /// Half extent of the ankle area along the foot: half a patch.
     [[nodiscard]] std::int64_t ankle_reach() const noexcept { return ankle_reach_; }
-    /// Some part of a cell lies under the ankle, or beside it.
+    /// True if any part of a cell lies under the ankle or touches it.
     [[nodiscard]] bool touches_ankle(const Place& middle) const noexcept {
         return magnitude(middle.along - ankle_) < ankle_reach_ + reach_;
     }
-    /// How far the nearest part of a cell lies from the foot, doubled; negative below it.
+    /// Distance of the nearest part of a cell from the foot, doubled; negative = under the foot.
     [[nodiscard]] std::int64_t gap(const Place& middle) const noexcept {
         return std::max(magnitude(middle.along) - length_, magnitude(middle.across) - width_) -
                reach_;
@@ -90,7 +90,7 @@ class FootAxes {
     std::int64_t ankle_reach_;
 };
 
-/// Mean height over the stance of the cells under the ankle.
+/// Mean height above the stance of the cells under the ankle.
 void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const FootAxes axes(scene, foot);
     std::int64_t sum = 0;
@@ -108,8 +108,8 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
 }
 
-/// Where ground begins that is a drop lower than the tread. A cell with evidence of a drop is the
-/// last one before it.
+/// Finds where the first ground begins that is lower than the tread by a drop. A cell with drop
+/// evidence is the last cell before it.
 void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const FootAxes axes(scene, foot);
@@ -137,7 +137,7 @@ void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
         });
 }
 
-/// A cell of a band while it is judged.
+/// A cell of a band during its tests.
 struct BandCell {
     const GroundCell& cell;
     Finding here;
@@ -148,7 +148,7 @@ struct BandCell {
         finding.limit_tenth_mm = limit;
         findings.deny(reason, finding);
     }
-    /// Wanted: `value` below `limit` by `sigma_factor` sigma; see regions.cpp.
+    /// Requires `value` below `limit` by `sigma_factor` sigma; see regions.cpp.
     void check_below(const GateLimits& limits,
                      std::int64_t value,
                      std::int64_t limit,
@@ -161,7 +161,7 @@ struct BandCell {
             deny(findings, Reason::not_resolvable, cell.sigma_tenth_mm, limit - value);
         }
     }
-    /// What every region asks of every cell.
+    /// The tests of every cell in every region.
     [[nodiscard]] bool check_knowledge(const GateLimits& limits, Findings& findings) const {
         ++findings.evidence.cells;
         if (!cell.known()) {
@@ -217,13 +217,12 @@ void check_band(const Scene& scene,
             }
             return true;
         });
-    // A ridge is no tread, and what is lower beside a foot lies at both ends of it.
+    // A ridge is no tread: it has lower ground at both ends of the foot.
     if (tread.toe_edge != Tread::kNone && tread.heel_edge != Tread::kNone)
         findings.deny(Reason::drop_off);
 }
 
-/// The part of a foot that is carried: its ends, from the middle, doubled; the heel's counted
-/// backward.
+/// The supported part of a foot: its ends, from the middle, doubled; the heel end counts backward.
 struct Carried {
     std::int64_t toe = 0;
     std::int64_t heel = 0;
@@ -239,7 +238,7 @@ bool is_enough(const Carried& carried, const FootAxes& axes, const GateLimits& l
            carried.heel >= -axes.ankle() + axes.ankle_reach();
 }
 
-/// Numbers that the exact geometry holds, and a sigma that is one.
+/// True if the edge has numbers in the range of the exact geometry, and a valid sigma.
 bool is_sound(const grid::SnapshotEdge& edge) noexcept {
     constexpr std::int64_t kFarthest = 1'000'000;  // 100 m
     const auto within = [](std::int64_t x) { return x >= -kFarthest && x <= kFarthest; };
@@ -248,8 +247,8 @@ bool is_sound(const grid::SnapshotEdge& edge) noexcept {
            edge.across_sigma_tenth_mm >= 0;
 }
 
-/// How far the tread reaches at least by what the snapshot says of its nosing as a line, before
-/// drift; nothing where no line is this nosing. Counted as Tread's edges.
+/// Least extent of the tread by the nosing line of the snapshot, before drift. Empty if no line is
+/// this nosing. Same coordinates as Tread's edges.
 std::optional<std::int64_t> nosing_line(const Scene& scene,
                                         const FootSweep& foot,
                                         const FootAxes& axes,
@@ -270,7 +269,7 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
         };
         FootAxes::Place from = end(edge.from_x_tenth_mm, edge.from_y_tenth_mm);
         FootAxes::Place to = end(edge.to_x_tenth_mm, edge.to_y_tenth_mm);
-        // The lower ground lies on the right of the line: at the toe the line runs to the left.
+        // The lower ground lies on the right of the line, so at the toe the line runs to the left.
         if (!at_toe) std::swap(from, to);
         if (!(from.across <= -axes.width() && to.across >= axes.width())) continue;
         const std::int64_t sign = at_toe ? 1 : -1;
@@ -286,8 +285,8 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
     return nearest;
 }
 
-/// One end of the tread less all doubt about it. A line takes back some of a cell's doubt and no
-/// more: the cells decide where the tread ends.
+/// One end of the tread minus its uncertainty. A line may reduce the uncertainty of a cell, but the
+/// cells decide where the tread ends.
 std::int64_t sure_end(const Scene& scene,
                       const FootSweep& foot,
                       const FootAxes& axes,
@@ -315,7 +314,7 @@ std::array<FixedPoint, 4> corners_of(const FixedPose& pose,
             to_odom(pose, x - half_x, y + half_y)};
 }
 
-/// The carried part judged like a whole foot.
+/// Tests the supported part like a whole foot.
 void check_carried(const Scene& scene,
                    const FootSweep& foot,
                    const GroundBox& box,
@@ -408,7 +407,7 @@ void check_tread(const Scene& scene,
 }
 
 void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept {
-    constexpr std::int64_t kBetween = 2;  // the cell of a riser lies at any height
+    constexpr std::int64_t kBetween = 2;  // the cell of a riser can have any height
     const ReachableSurfaces here = reachable;
     const StepLimits& step = step_limits(scene);
     const Ground& ground = scene.ground;
@@ -420,7 +419,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
             if (other.knowledge != Knowledge::measured || cell.component == other.component) return;
             const bool from_cell = here.contains(cell.component);
             if (from_cell == here.contains(other.component)) return;
-            const GroundCell& low = from_cell ? cell : other;  // the one that is stood on
+            const GroundCell& low = from_cell ? cell : other;  // the reachable one
             const GroundCell& next = from_cell ? other : cell;
             const std::int64_t rise = next.height_tenth_mm - low.height_tenth_mm;
             if (rise <= step.up_tenth_mm && -rise <= step.down_tenth_mm)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Movements of class stair: feet that their treads do not hold whole.
+// Movements of class stair: treads that are shorter than a foot.
 #include "surefoot/gate/tread_support.hpp"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ Machine stair_rex() {
     return m;
 }
 
-/// A flight along x; the machine stands on the tread that ends at `near_m`, the next one is
-/// `going_m` deep, another follows.
+/// A flight along x. The machine stands on the tread that ends at `near_m`; the next tread is
+/// `going_m` deep, and one more follows.
 struct Flight {
     double near_m = 0.0;
     double going_m = 0.0;
@@ -95,7 +95,7 @@ void expect_refused(const Verdict& verdict, Reason reason) {
 }
 
 TEST(GateTreads, a_foot_may_stand_on_a_tread_that_does_not_hold_it_whole) {
-    // Heels 31 mm over the nosing on the way up, 26 mm on the way back and down.
+    // Heels 31 mm beyond the nosing on the way up, 26 mm on the way back and down.
     const Verdict up = ask_stair(kUpFlight, kForward);
     EXPECT_EQ(up.decision, Decision::ok) << words(up);
     const Verdict down = ask_stair(kDownFlight, kBackward);
@@ -120,7 +120,7 @@ TEST(GateTreads, class_walk_takes_no_stairs) {
 }
 
 TEST(GateTreads, an_edge_a_cell_nearer_is_too_near_to_be_sure_and_two_cells_are_too_many) {
-    // Up: the nosing moves under the heel. 31, 56, 81 mm seem to hang over; 73 mm may.
+    // Up: the nosing moves under the heel. 31, 56, 81 mm seem to overhang; 73 mm are allowed.
     expect_refused(ask_stair(Flight{0.350, 0.400, kRise_m}, kForward), Reason::edge_margin);
     const Verdict over = ask_stair(Flight{0.375, 0.400, kRise_m}, kForward);
     expect_refused(over, Reason::support_area);
@@ -139,7 +139,7 @@ TEST(GateTreads, what_is_over_counts_in_all_its_limits) {
         const auto map = t.snapshot();
         return decide(machine, query_at_body(kForward, *map), *map, kReady, kNowNs);
     };
-    // 31 mm seem to hang over, 60 mm may: 0.915 and 0.836 of the foot are carried.
+    // 31 mm seem to overhang, 60 mm are allowed: 0.915 and 0.836 of the foot are supported.
     EXPECT_EQ(with([](Machine& m) { m.limits.tread_share_permille = 830; }).decision, Decision::ok);
     expect_refused(with([](Machine& m) { m.limits.tread_share_permille = 840; }),
                    Reason::edge_margin);
@@ -157,7 +157,7 @@ TEST(GateTreads, what_is_over_counts_in_all_its_limits) {
 }
 
 TEST(GateTreads, toes_may_hang_over_as_heels_do) {
-    // Down and ahead: 20 mm of the toes seem to hang over, 49 mm may.
+    // Down and ahead: 20 mm of the toes seem to overhang, 49 mm are allowed.
     Terrain t = terrain_of({0.250, 0.400, -kRise_m});
     const auto map = t.snapshot();
     Machine machine = stair_rex();
@@ -236,7 +236,7 @@ TEST(GateTreads, the_tread_beyond_the_nosing_is_within_a_step_and_known) {
     EXPECT_EQ(beyond(-2.0 * kRise_m).decision, Decision::ok);
     expect_refused(beyond(-kRise_m - 0.185), Reason::drop_off);
     expect_refused(beyond(-1.5), Reason::drop_off);
-    // Within the limit, but not surely: 4 mm sigma, 3.4 times.
+    // Within the limit, but not by 3.4 times its sigma of 4 mm.
     expect_refused(beyond(-kRise_m - 0.170), Reason::not_resolvable);
     expect_refused(beyond(static_cast<double>(kNanF)), Reason::unknown_cells);
 }
@@ -265,9 +265,9 @@ TEST(GateTreads, what_stands_on_the_tread_blocks) {
     // The next riser under the toes, then 40 mm ahead of them.
     expect_refused(ask_stair(Flight{0.325, 0.325, kRise_m}, kForward), Reason::corridor_blocked);
     expect_refused(ask_stair(Flight{0.325, 0.375, kRise_m}, kForward), Reason::corridor_blocked);
-    // On the way down the toes would land on the nosing that was left.
+    // On the way down the toes would land on the previous nosing.
     expect_refused(ask_stair(Flight{-0.200, 0.400, -kRise_m}, kBackward), Reason::corridor_blocked);
-    // A brick beside the heel, lower than what a foot passes over on the way.
+    // A brick beside the heel, lower than the swing clearance in the path of the foot.
     Terrain brick = terrain_of(kUpFlight);
     brick.box(0.50, 0.55, 0.30, 0.32, kRise_m + 0.06);
     expect_refused(ask_stair(brick, kForward), Reason::corridor_blocked);
@@ -280,7 +280,7 @@ TEST(GateTreads, what_stands_on_the_tread_blocks) {
 TEST(GateTreads, a_step_higher_than_the_class_is_refused) {
     expect_refused(ask_stair(Flight{0.325, 0.400, 0.185}, kForward), Reason::step_too_high);
     expect_refused(ask_stair(Flight{-0.150, 0.450, -0.185}, kBackward), Reason::step_too_low);
-    // The foot passes over nothing that is higher than a step and what it clears.
+    // The foot cannot pass over obstacles higher than a step plus its clearance.
     Terrain wall = terrain_of(kUpFlight);
     wall.box(0.0, 0.05, 0.285, 0.315, 0.23);
     expect_refused(ask_stair(wall, kForward), Reason::corridor_blocked);
@@ -293,11 +293,11 @@ TEST(GateTreads, both_feet_land_at_one_height) {
 }
 
 TEST(GateTreads, a_surface_that_is_no_step_away_is_not_connected) {
-    // The tread hangs behind a gap that goes down 0.4 m.
+    // The tread lies behind a gap that is 0.4 m deep.
     Terrain t = terrain_of(kUpFlight);
     t.box(0.245, 0.325, -3.0, 3.0, -0.40);
     expect_refused(ask_stair(t, kForward), Reason::disconnected);
-    // One that is two steps up.
+    // A tread that is two steps up.
     expect_refused(ask_stair(Flight{0.325, 0.400, 0.30}, kForward), Reason::disconnected);
 }
 
@@ -337,7 +337,7 @@ TEST(GateTreads, a_line_at_the_nosing_takes_back_the_doubt_of_a_cell) {
     // Right of the way from +y to -y at the heel lies -x.
     EXPECT_EQ(with(nosing(0.350, kRise_m, 0.002), 0.350).decision, Decision::ok);
     expect_refused(with(nosing(0.350, kRise_m, 0.006), 0.350), Reason::edge_margin);
-    // A line of another height, another place, the other direction, or beside the foot.
+    // A line at another height, position or direction, or beside the foot.
     expect_refused(with(nosing(0.350, 0.0, 0.002), 0.350), Reason::edge_margin);
     expect_refused(with(nosing(0.375, kRise_m, 0.002), 0.350), Reason::edge_margin);
     grid::SnapshotInput::Edge turned = nosing(0.350, kRise_m, 0.002);
@@ -349,14 +349,14 @@ TEST(GateTreads, a_line_at_the_nosing_takes_back_the_doubt_of_a_cell) {
     beside = nosing(0.350, kRise_m, 0.002);
     beside.from_m.y() = -0.10;
     expect_refused(with(beside, 0.350), Reason::edge_margin);
-    // Slanted: its worse side counts.
+    // Slanted: the worse side counts.
     grid::SnapshotInput::Edge slanted = nosing(0.350, kRise_m, 0.002);
     slanted.from_m.x() = 0.400;
     slanted.to_m.x() = 0.300;
     expect_refused(with(slanted, 0.350), Reason::edge_margin);
-    // A line that runs farther out than the cells takes nothing more back.
+    // A line that runs farther out than the cells removes no more uncertainty.
     expect_refused(with(nosing(0.325, kRise_m, 0.001), 0.375), Reason::support_area);
-    // One that lies farther in never helps, and takes nothing away from what the cells prove.
+    // A line that lies farther in never helps, and never reduces the support that cells prove.
     EXPECT_EQ(with(nosing(0.360, kRise_m, 0.001), 0.325).decision, Decision::ok);
 }
 
@@ -380,7 +380,7 @@ TEST(GateTreads, a_line_with_broken_numbers_is_no_line) {
     expect_refused(with([](auto& e) { e.lower_tenth_mm = kMost; }), Reason::edge_margin);
 }
 
-/// Takes evidence away from one cell; see gate_property_test.cpp.
+/// Removes evidence from one cell; see gate_property_test.cpp.
 void worsen(grid::MapSnapshot& map, Rng& rng) {
     const std::size_t at = cell_at(map, rng.uniform(-0.8, 0.9), rng.uniform(-0.5, 0.5));
     const auto raise = [&rng](std::uint16_t value) {
@@ -433,8 +433,8 @@ TEST(GateTreads, less_evidence_never_turns_a_refusal_into_ok) {
     EXPECT_GT(allowed, 50);
 }
 
-/// An OK means that truly enough of the foot is carried, wherever the nosing lies under its cells
-/// and however the machine stands to it.
+/// An OK means that enough of the foot is really supported, for every position of the nosing within
+/// its cells and every pose of the machine.
 TEST(GateTreads, ok_means_that_the_foot_is_carried_by_the_flight_that_was_drawn) {
     Rng rng(77);
     int allowed = 0;

@@ -13,51 +13,51 @@ enum class Decision : std::uint8_t { error = 0, not_traversable = 1, ok = 2 };
 
 enum class Foot : std::uint8_t { none, left, right };
 
-/// What has to be shown, all of it, before the gate says OK.
+/// Facts that must all be proven before the gate says OK.
 enum class Proof : std::uint8_t {
     process_ready,    ///< state ready, no fault raised
     machine_valid,    ///< the machine file passes its own check
-    snapshot_intact,  ///< layout, ranges and checksums, but for the cells
+    snapshot_intact,  ///< layout, ranges and checksums are valid (cells: see below)
     numbers_valid,    ///< pose, heights and areas of the query
     stamps_fresh,     ///< neither old nor from the future
     gravity_known,    ///< measured, not assumed
     pose_healthy,     ///< odometry neither lost nor degraded
-    camera_healthy,   ///< its images are new and whole
+    camera_healthy,   ///< the images are new and complete
     command_known,    ///< the machine file has this movement and its class is enabled
-    cells_intact,     ///< the rows of the map that are read are those that were sealed
-    stance_known,     ///< ground under the present feet
-    corridors_clear,  ///< nothing in the way of either foot
-    body_clear,       ///< nothing in the way of the body
-    bands_solid,      ///< no drop beyond either landing foot
-    left_supported,   ///< ground under the left landing foot
-    right_supported,  ///< the same for the right one
+    cells_intact,     ///< the map rows that are read equal the sealed ones
+    stance_known,     ///< the ground under the present feet is known
+    corridors_clear,  ///< no obstacle in the path of either foot
+    body_clear,       ///< no obstacle in the path of the body
+    bands_solid,      ///< no drop around either landing foot
+    left_supported,   ///< the left landing foot has safe ground
+    right_supported,  ///< the right landing foot has safe ground
     count
 };
-/// "corridors_clear".
+/// The name of a proof, for example "corridors_clear".
 [[nodiscard]] const char* to_string(Proof proof) noexcept;
 
-/// The numbers behind a verdict. Lengths in units of 0.1 mm.
+/// The numbers behind a verdict. Lengths are in units of 0.1 mm.
 struct Evidence {
-    /// The cell that decided (centre, odom); of the primary reason.
+    /// The worst cell of the primary reason (centre, odom).
     bool has_worst_cell = false;
     std::int64_t worst_x_tenth_mm = 0;
     std::int64_t worst_y_tenth_mm = 0;
     Foot foot = Foot::none;           ///< the landing foot that the primary reason is about
-    std::int64_t value_tenth_mm = 0;  ///< what was found there, in the unit of the limit ...
-    std::int64_t limit_tenth_mm = 0;  ///< ... that it broke; both 0 where no length decides
-    bool overhead = false;            ///< it hangs: the value is the height at which it begins
+    std::int64_t value_tenth_mm = 0;  ///< the value at that cell, in the unit of the limit
+    std::int64_t limit_tenth_mm = 0;  ///< the limit that it breaks; both are 0 if no length decides
+    bool overhead = false;            ///< it hangs: the value is the height of its lower side
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
-                                 ///< not looked at, and nothing about it is proven
+                                 ///< not read, and no proof about it holds
 
     bool stance_known = false;
     std::int64_t stance_height_tenth_mm = 0;  ///< odom z of the ground under the present feet
-    std::int64_t cells = 0;                   ///< cells asked, those of several tests counted again
-    std::int64_t known_cells = 0;             ///< of these measured or vouched
-    std::int64_t attested_cells = 0;          ///< of these on an operator's word
-    std::int64_t height_delta_tenth_mm = 0;   ///< of the landing foot that differs most from stance
-    /// Squared tangent of the steeper foot plane's tilt, at worst: the uncertainty of the vertical
-    /// is added.
+    std::int64_t cells = 0;                   ///< cells read; a cell counts once per test
+    std::int64_t known_cells = 0;             ///< of these, cells that are measured or attested
+    std::int64_t attested_cells = 0;          ///< of these, cells known only by an attestation
+    std::int64_t height_delta_tenth_mm = 0;   ///< landing foot with the largest height difference
+    /// Squared tangent of the steeper foot plane's tilt, with the uncertainty of the vertical
+    /// added.
     double max_tilt_tan_sq = 0.0;
     double max_patch_sigma_sq_tenth_mm2 = 0.0;
     std::int64_t max_drift_tenth_mm = 0;
@@ -69,15 +69,15 @@ struct Evidence {
     }
 };
 
-/// The gate's answer about one movement. A default Verdict is an ERROR; only decide() makes an OK,
-/// out of a complete list of proofs. It is worth nothing after `valid_until_ns`.
+/// The gate's answer about one movement. A default Verdict is an ERROR. Only decide() makes an OK,
+/// from a complete list of proofs. The verdict is void from `valid_until_ns` on.
 struct Verdict {
     Decision decision = Decision::error;
     ReasonSet reasons{Reason::internal};
     Reason primary = Reason::internal;
     Evidence evidence;
     std::uint8_t command = 0;
-    std::uint64_t connection = 0;  ///< as in the query, like the sequence
+    std::uint64_t connection = 0;  ///< copied from the query, like the sequence
     std::uint64_t sequence = 0;
     std::uint64_t map_version = 0;
     std::uint64_t config_hash = 0;
@@ -86,7 +86,7 @@ struct Verdict {
     std::int64_t decided_ns = 0;
     std::int64_t valid_until_ns = 0;
 
-    /// The only question that a client may act on.
+    /// The only test that allows a client to act.
     [[nodiscard]] constexpr bool allows_step(std::int64_t now_ns) const noexcept {
         return decision == Decision::ok && reasons.empty() && now_ns >= decided_ns &&
                now_ns < valid_until_ns;

@@ -24,18 +24,18 @@ std::string fixed(double value, int decimals) {
 
 std::string length(std::int64_t tenth_mm) {
     const double value_m = metres(tenth_mm);
-    // Below 0.1 m hundredths of a metre hide what the limits are about.
+    // Below 0.1 m two decimals are too coarse for the limits.
     return fixed(value_m, magnitude(value_m) < 0.0995 ? 3 : 2) + " m";
 }
 
-/// Distance of a point from an interval around `center`, signed; 0 inside.
+/// Signed distance of a point from an interval around `center`; 0 inside.
 double beyond(double at, double center, double size) {
     if (at > center + size / 2.0) return at - (center + size / 2.0);
     if (at < center - size / 2.0) return at - (center - size / 2.0);
     return 0.0;
 }
 
-/// "0.31 m ahead of the left foot", from the present stance.
+/// Position relative to the present stance, for example "0.31 m ahead of the left foot".
 std::string place(const Evidence& evidence, const Query& query, const Machine& machine) {
     const double dx = metres(evidence.worst_x_tenth_mm - query.x_tenth_mm);
     const double dy = metres(evidence.worst_y_tenth_mm - query.y_tenth_mm);
@@ -106,8 +106,7 @@ const char* error_text(Reason reason) {
         case Reason::config: return "the machine description is not valid";
         case Reason::clock: return "the clock cannot be trusted";
         case Reason::bad_message: return "the message could not be read";
-        case Reason::bad_number:
-            return "the query holds a number that is no number or out of range";
+        case Reason::bad_number: return "a number of the query is not finite or is out of range";
         case Reason::frame_id: return "the query is in a frame that the gate does not know";
         case Reason::seq: return "the query is out of sequence";
         case Reason::unknown_command: return "the machine has no such movement";

@@ -12,7 +12,7 @@
 namespace surefoot::gate::testing {
 namespace {
 
-/// A refusal without a place.
+/// A refusal without a cell.
 Verdict refusal(Reason reason, std::int64_t value_tenth_mm = 0, std::int64_t limit_tenth_mm = 0) {
     Verdict verdict;
     verdict.decision = Decision::not_traversable;
@@ -33,7 +33,7 @@ Query standing_at(std::int64_t x_tenth_mm,
     return query;
 }
 
-/// Where a place is said to be: what follows the reason.
+/// The position part of the sentence, which follows the reason.
 std::string place_of(std::int64_t x_tenth_mm,
                      std::int64_t y_tenth_mm,
                      Foot foot,
@@ -156,7 +156,7 @@ TEST(VerdictText, every_refusal_says_its_own_numbers) {
          false,
          "ground seen too far back to be sure where it is: drift 0.12 m (limit 0.034 m)"},
         {Reason::not_resolvable, false, "ground not seen well enough (limit 0.034 m)"},
-        {Reason::none, false, "NONE"},  // cannot be; it is no permission all the same
+        {Reason::none, false, "NONE"},  // impossible state; it must not permit a step
     };
     for (const Case& c : cases) {
         Verdict verdict = refusal(c.reason, 1200, 340);

@@ -18,7 +18,7 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
         "mirror_score", mirror_score, 4.0, 50.0, "score from which a mirror is suspected");
     visitor.number("glass_score", glass_score, 4.0, 50.0, "score from which glass is suspected");
     visitor.number("keep_score", keep_score, 0.0, 50.0, "least score to keep a suspected line");
-    visitor.integer("forget_looks",
+    visitor.integer("forget_observations",
                     forget_looks,
                     1,
                     100,

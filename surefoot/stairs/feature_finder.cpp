@@ -80,9 +80,9 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
 
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
     constexpr double kLeastShare = 0.25;
-    constexpr int kDeep_cells = 6;  ///< beyond two, which may be half of either ground
-    // What is narrower than the cells that are asked has other ground behind it: a bar is not
-    // walked on because the floor on its far side is.
+    constexpr int kDeep_cells = 6;  ///< beyond two cells, which may belong half to either side
+    // Behind an object that is narrower than the tested depth lies other ground: a bar is not
+    // walkable because the floor behind it is.
     constexpr double kSame_m = 0.06;
     const double cell_m = terrain.geometry.resolution_m;
     for (Edge& edge : edges) {
@@ -106,14 +106,14 @@ void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edg
             }
             return known > 0 && reached >= kLeastShare * known;
         };
-        // Ground below that was not seen has no level, only a bound.
+        // Lower ground that was not seen has no level, only an upper bound.
         edge.upper_walkable = walkable(-1.0, edge.upper_m);
         edge.lower_walkable =
             walkable(+1.0, edge.lower_seen ? std::optional(edge.lower_m) : std::nullopt);
     }
 }
 
-/// A ragged seed may lead to the steps of a flight that is already there.
+/// True if a ragged seed leads to steps that already belong to a flight.
 bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     for (const std::vector<Edge>& other : chains_)
         for (const Edge& step : other)
@@ -124,7 +124,7 @@ bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     return false;
 }
 
-/// Steps of a spiral are no parallels: where one of the chain's is a longer edge that is turned.
+/// True for a spiral: a longer edge at one of the chain's steps has another direction.
 bool FeatureFinder::turns(std::span<const Edge> chain, std::span<const Edge> edges) const {
     constexpr double kLeast_rad = 0.21;  // 12 deg
     constexpr double kNear_m = 0.9;
@@ -144,9 +144,9 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     chains_.clear();
     std::vector<bool> taken(edges.size(), false);
     std::vector<Edge> chain;
-    for (std::size_t i = 0; i < edges.size(); ++i) {  // longest first
+    for (std::size_t i = 0; i < edges.size(); ++i) {  // edges are sorted, longest first
         const Edge& seed = edges[i];
-        // Higher ones may be boards without risers, which are no deeper than treads.
+        // Higher edges may be boards without risers, which are no deeper than treads.
         if (taken[i] || seed.length_m() < config_.min_width_m ||
             (seed.height_m() > config_.max_riser_m && seed.upper_depth_m > config_.max_going_m))
             continue;
@@ -176,7 +176,7 @@ void FeatureFinder::see_faces(const Terrain& terrain, std::vector<Edge>& edges) 
 
 void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& edges) {
     constexpr std::size_t kEnough = 3;
-    constexpr int kTries = 4;  // each takes a tenth of a millisecond or two
+    constexpr int kTries = 4;  // each costs 0.1 to 0.2 ms
     for (std::vector<Edge>& chain : chains_) {
         if (chain.size() >= kEnough) continue;
         from_above_.assign(chain.rbegin(), chain.rend());
@@ -190,7 +190,7 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
         if (seen_.size() == 1) edges[i] = seen_.front();
         if (!add_seen(edges)) ++i;
     }
-    // What stands out of no pair of cells or slices may still be plain in the image.
+    // Edges below the noise of cells and slices may still be clear in the image.
     int tries = 0;
     for (const Edge& guess : guesses_) {
         const auto has = [&](const Edge& edge) { return is_part_of(guess, edge); };
@@ -206,7 +206,7 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
     }
 }
 
-/// The flight that is seen, instead of those edges that are parts of it.
+/// Replaces the edges that are parts of a visible flight by that flight.
 bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
     if (seen_.size() < 2 || shares_a_step(seen_)) return false;
     std::erase_if(edges, [&](const Edge& edge) {
@@ -218,8 +218,8 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 }
 
 void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
-    if (!edge.lower_seen) return;       // there is nothing to be explained
-    constexpr double kBeside_m = 0.05;  ///< the next riser is spread so far over its tread
+    if (!edge.lower_seen) return;       // without lower ground there is nothing to explain
+    constexpr double kBeside_m = 0.05;  ///< the next riser is smeared this far over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;
     const auto observed_at_m = [&](double depth_m) {
@@ -227,7 +227,7 @@ void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
     };
     const StepEvidence evidence = evidence_.weigh(
         terrain, edge, observed_at_m(edge.upper_depth_m), observed_at_m(edge.lower_depth_m));
-    // What the last look saw of it may say more than the map.
+    // The current frame may have given stronger evidence than the map.
     if (!(edge.log_step_ratio >= evidence.log_ratio)) edge.log_step_ratio = evidence.log_ratio;
     edge.hidden = evidence.is_hidden;
 }
@@ -245,8 +245,8 @@ void FeatureFinder::weigh(const Terrain& terrain, std::vector<Edge>& edges) {
     });
 }
 
-/// A flight ends where smooth ground explains what goes on. At least half of its steps are proven
-/// ones, the others no worse than drops, in shadow, or between two proven ones.
+/// Ends a flight where smooth ground explains the further steps. At least half of its steps must be
+/// proven. Every other step must be as likely as a drop, occluded, or between two proven ones.
 void FeatureFinder::keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const {
     const auto is_step = [&](std::size_t k) { return is_step_of(config_, chain[k]); };
     const double likely = std::log(config_.drop_ratio);
@@ -294,7 +294,7 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
     for (std::size_t i = 0; i < out.edges.size(); ++i) {
         const Edge& edge = out.edges[i];
         if (in_flight_[i]) continue;
-        // Ground above it that can be walked to makes it a drop, from whichever side one stands.
+        // With walkable ground above it the edge is a drop, from either side.
         const bool both = edge.upper_walkable && edge.lower_walkable;
         const bool goes_down = both ? edge.below_m(terrain.stance_m) < 0.0 : edge.upper_walkable;
         if (!goes_down && !edge.lower_walkable) continue;
@@ -303,7 +303,7 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
         if (edge.lower_seen && edge.height_m() <= config_.kerb_m && is_step_of(config_, edge))
             out.kerbs.push_back(feature);
     }
-    // The near edge of a flight down is a drop like any other.
+    // The near edge of a flight down is also reported as a drop.
     for (const Flight& flight : out.flights) {
         const LineFeature feature =
             line_feature(flight.edges.front(), flight.kind == FlightKind::down);

@@ -21,33 +21,33 @@
 
 namespace surefoot::stairs {
 
-/// What the ground is: its edges, and what they make up. Looks at one map alone; what was seen
-/// before and is not seen now, it does not know.
+/// Finds the terrain features of one map: edges, and the flights, kerbs, drops and doors of them.
+/// It has no memory of earlier maps (see FeatureTracker). The same map gives the same result.
 ///
-/// Holds the working memory; not thread-safe. The same result for the same map.
+/// Owns the working memory. Not thread-safe.
 class FeatureFinder {
   public:
     explicit FeatureFinder(const StairsConfig& config);
     [[nodiscard]] const StairsConfig& config() const noexcept { return config_; }
-    /// `config().problem()` is empty. Maps of fewer than 2 x 2 cells have no features.
+    /// Precondition: `config().problem()` is empty. Maps below 2 x 2 cells have no features.
     void find(const Terrain& terrain, TerrainFeatures& out);
 
   private:
     void find_edges(const Terrain& terrain, std::vector<Edge>& edges);
-    /// Takes the steps of flights out of the edges and places them together.
+    /// Moves the steps of flights from `edges` to `chains_` and fits each flight as a whole.
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
-    /// Places what goes up by what is seen of its faces.
+    /// Places risers that face the camera by the visible points of their faces.
     void see_faces(const Terrain& terrain, std::vector<Edge>& edges);
-    /// Adds the steps down that the camera sees where the map holds fewer.
+    /// Adds steps down that the camera sees and the map lacks.
     void see_steps_down(const Terrain& terrain, std::vector<Edge>& edges);
     bool add_seen(std::vector<Edge>& edges);
-    /// Takes out what smooth ground explains as well, and ends flights where that begins.
+    /// Removes edges that smooth ground explains as well; ends flights where such edges begin.
     void weigh(const Terrain& terrain, std::vector<Edge>& edges);
     void weigh_one(const Terrain& terrain, Edge& edge);
     void keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const;
-    /// Measured alike, pieces of a ragged edge turn out to be one.
+    /// Joins pieces of a ragged edge whose measurements agree.
     void join_pieces(std::vector<Edge>& edges) const;
-    /// Which sides of the edges can be walked to.
+    /// Marks the sides of each edge that can be walked to from the stance.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
     [[nodiscard]] bool turns(std::span<const Edge> chain, std::span<const Edge> edges) const;
     [[nodiscard]] bool shares_a_step(std::span<const Edge> chain) const;
@@ -65,13 +65,13 @@ class FeatureFinder {
     FlightSides flight_sides_;
     DoorFinder door_finder_;
     traversability::Reachability reachability_;
-    grid::Layer walk_step_m_;  ///< NaN = not to be walked to
+    grid::Layer walk_step_m_;  ///< NaN = cannot be walked to
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
-    std::vector<Edge> guesses_;  ///< lines of which the map does not show what lies below them
+    std::vector<Edge> guesses_;  ///< lines whose lower ground the map does not show
     std::vector<Edge> from_above_;
     std::vector<Edge> seen_;
-    std::vector<std::vector<Edge>> chains_;  ///< of steps placed together
+    std::vector<std::vector<Edge>> chains_;  ///< of steps that were placed together
     std::vector<bool> in_flight_;
 };
 

@@ -20,8 +20,8 @@ using testing::Ground;
 using testing::TestFlight;
 using testing::TestMap;
 
-/// An edge along the rows lies anywhere within its cells, half a cell from their middles at most;
-/// one that crosses them is known far better.
+/// Position error of an edge along the rows: up to half a cell from the cell centres. An edge
+/// across the rows is far more accurate.
 constexpr double kAcross_m = 0.0131;
 const double kYaws_deg[] = {0.0, 7.0, 31.0, 45.0, 90.0, 133.0, 200.0, 270.0};
 
@@ -36,7 +36,7 @@ Ground ground_of(const TestFlight& flight) {
     return [flight](double x_m, double y_m) { return flight.at(x_m, y_m); };
 }
 
-/// The stance is the camera's place on the floor.
+/// The stance is the position of the camera on the floor.
 TerrainFeatures seen_from(TestMap& map, double x_m, double height_m = 1.0) {
     map.hide_from({x_m, 0.0, height_m});
     return find(map.terrain({x_m, 0.0}));
@@ -82,7 +82,7 @@ TEST(FeatureFinder, flights_down_are_read_from_the_strips_of_their_treads_that_a
         EXPECT_NEAR(f.riser_m, 0.17, 1e-3);
         EXPECT_NEAR(f.going_m, 0.29, 0.005);
         EXPECT_NEAR(map.to_world(f.pose.p_m.head<2>()).x(), 0.0, kAcross_m);
-        // Its first edge is a drop, of one step.
+        // The first edge is also a drop of one step.
         bool drop = false;
         for (const LineFeature& d : found.drops)
             drop = drop || (std::abs(map.to_world(d.pose.p_m.head<2>()).x()) <= kAcross_m &&
@@ -101,7 +101,7 @@ TEST(FeatureFinder, noise_of_3_mm_changes_a_riser_by_less_than_1_mm) {
         EXPECT_EQ(found.flights[0].steps, 4) << "seed " << seed;
         EXPECT_NEAR(found.flights[0].riser_m, 0.15, 1e-3) << "seed " << seed;
         EXPECT_NEAR(found.flights[0].going_m, 0.28, 0.006) << "seed " << seed;
-        // Levels share errors that no cell states; a map without any variance has none.
+        // Levels share errors that no cell states; a map without variances has none.
         EXPECT_GE(found.flights[0].riser_sigma_m, 0.001) << "seed " << seed;
     }
     const TestMap exact(ground_of(flight), 0.3, {0.0, 0.0});
@@ -160,7 +160,7 @@ TEST(FeatureFinder, a_kerb_up_is_a_kerb_and_no_drop) {
 }
 
 TEST(FeatureFinder, what_cannot_be_walked_to_is_no_drop) {
-    // A table: its far rim is 0.7 m above the floor, but nobody stands on it.
+    // A table: its far rim is 0.7 m above the floor, but nobody can stand on it.
     const TestMap map(
         [](double x_m, double y_m) {
             return x_m > 0.2 && x_m < 1.0 && std::abs(y_m) < 0.6 ? 0.7 : 0.0;
@@ -175,7 +175,7 @@ TEST(FeatureFinder, what_cannot_be_walked_to_is_no_drop) {
 }
 
 TEST(FeatureFinder, a_bar_that_is_narrower_than_a_foot_is_no_ground_that_ends_in_a_drop) {
-    // It stands on a slope of 45 deg. One can walk to the slope before it, not to its top.
+    // It stands on a slope of 45 deg. The slope before it can be walked to, its top cannot.
     for (const double width_m : {0.05, 0.1}) {
         const TestMap map(
             [&](double x_m, double) {
@@ -187,7 +187,7 @@ TEST(FeatureFinder, a_bar_that_is_narrower_than_a_foot_is_no_ground_that_ends_in
         EXPECT_FALSE(found.edges.empty()) << width_m;
         EXPECT_TRUE(found.drops.empty()) << width_m;
     }
-    // What is behind a low sill goes down after all.
+    // The ground behind a low sill is a drop after all.
     const TestMap sill(
         [](double x_m, double) { return x_m < 0.5    ? 0.0
                                         : x_m < 0.55 ? 0.06
@@ -235,7 +235,7 @@ struct Spiral {
     }
 };
 
-// Goings are those of the middle of the edges: the walking line.
+// Goings are measured at the middle of the edges, the walking line.
 TEST(FeatureFinder, the_steps_of_a_spiral_turn) {
     const Spiral spiral{.steps = 6};
     for (const double yaw_deg : {0.0, 40.0}) {
@@ -351,7 +351,7 @@ TEST(FeatureFinder, nothing_sensible_gives_nothing) {
     TestMap noise = flat;
     noise.add_noise(0.1, 7);
     expect_nothing(noise.terrain(), "noise");
-    noise.var_m2.fill(0.0F);  // and sure of it
+    noise.var_m2.fill(0.0F);  // the map states a variance of zero
     EXPECT_TRUE(find(noise.terrain()).flights.empty());
     TestMap nowhere = flat;
     Terrain terrain = nowhere.terrain();
@@ -372,7 +372,7 @@ TEST(FeatureFinder, a_riser_at_the_border_of_the_map_does_not_invent_a_flight) {
     for (const Flight& f : find(map.terrain()).flights) EXPECT_EQ(f.steps, 1);
 }
 
-/// 1 m above the place, 32 deg down, as the ZED of the REX.
+/// A camera 1 m above the position, pitched 32 deg down, like the ZED of the REX.
 View view_from(const TestMap& map, double x_m, double yaw_rad) {
     const Eigen::Vector2d p_m = map.to_map({x_m, 0.0});
     const double pitch_rad = 32.0 * kRadPerDeg;
@@ -397,7 +397,7 @@ TEST(FeatureFinder, ground_that_ends_in_sight_is_a_drop_whose_bottom_is_not_seen
     for (std::size_t i = 0; i < map.height_m.size(); ++i)
         if (map.height_m.data()[i] < -1.0F) map.height_m.data()[i] = kNanF;
     Terrain terrain = map.terrain({0.0, 0.0});
-    EXPECT_TRUE(find(terrain).drops.empty());  // who knows where the camera looked?
+    EXPECT_TRUE(find(terrain).drops.empty());  // without a view, ground that ends is no drop
     terrain.view = view_from(map, 0.0, 0.6);
     const TerrainFeatures found = find(terrain);
     ASSERT_EQ(found.drops.size(), 1U);
@@ -412,7 +412,7 @@ TEST(FeatureFinder, points_on_a_riser_place_its_edge_where_cells_before_it_hold_
     const TestFlight flight{.steps = 3, .riser_m = 0.18, .going_m = 0.31};
     const double yaw_rad = 0.3;
     TestMap map(ground_of(flight), yaw_rad, {0.0, 0.0});
-    // Depth noise puts points of each riser into the two cells before it and behind it.
+    // Depth noise puts points of each riser into the two cells before and behind it.
     grid::Layer density(map.geometry.nx, map.geometry.ny, 0.7F);
     for (int iy = 0; iy < map.geometry.ny; ++iy) {
         for (int ix = 0; ix < map.geometry.nx; ++ix) {
@@ -436,7 +436,7 @@ TEST(FeatureFinder, points_on_a_riser_place_its_edge_where_cells_before_it_hold_
 }
 
 TEST(FeatureFinder, a_last_step_unlike_the_others_joins_their_flight) {
-    // Of three alike steps that are placed together and of a lower one, whose tread soon ends.
+    // A flight of three equal steps that are placed together, and a lower step with a short tread.
     const TestFlight flight{.steps = 3, .riser_m = 0.18, .going_m = 0.31};
     const auto ground = [&](double x_m, double y_m) {
         if (std::abs(y_m) > 0.6 || x_m < 3 * 0.31) return flight.at(x_m, y_m);
@@ -455,7 +455,7 @@ TEST(FeatureFinder, a_step_whose_face_is_seen_raggedly_between_two_others_is_one
     const TestFlight flight{.steps = 5, .riser_m = 0.18, .going_m = 0.31};
     constexpr double kRaggedStep_m = 2 * 0.31;
     const auto ground = [&](double x_m, double y_m) {
-        // To one side its face is found too near, to the other too far.
+        // On one side its face is measured too near, on the other too far.
         const bool near = std::abs(x_m - kRaggedStep_m) < 0.12;
         const double way = std::abs(y_m) < 0.12 ? 0.0 : y_m > 0.0 ? 0.11 : -0.11;
         return flight.at(near ? x_m + way : x_m, y_m);

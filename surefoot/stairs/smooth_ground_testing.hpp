@@ -11,9 +11,9 @@
 
 namespace surefoot::stairs::testing {
 
-/// Ground without a step, drawn by a seed: a slope from a floor on, up or down, with a sharp crease
-/// or a rounded one, and perhaps a landing behind it; a plane; a hill or a dip; waves. Nowhere is
-/// it steeper than `slope`, which is up to 35 deg.
+/// Random ground without a step, defined by a seed: a ramp with a sharp or rounded crease and an
+/// optional landing, a plane, a hill or dip, or waves. No point is steeper than `slope_deg`, which
+/// is at most 35 deg.
 class SmoothGround {
   public:
     enum class Kind { ramp, plane, hill, waves };
@@ -68,8 +68,8 @@ class SmoothGround {
     Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
 };
 
-/// Errors of the heights of `cells` x `cells` cells. Those of neighbouring cells are independent,
-/// or hang together as means over squares of `correlation_m` do.
+/// Height errors of `cells` x `cells` cells. They are independent, or correlated like means over
+/// squares of side `correlation_m` (0 = independent).
 inline grid::Layer height_errors(
     int cells, double cell_m, double sigma_m, double correlation_m, std::uint64_t seed) {
     grid::Layer errors_m(cells, cells, 0.0F);
@@ -94,8 +94,8 @@ inline grid::Layer height_errors(
     return errors_m;
 }
 
-/// A map of 6 x 6 m about the origin, of the heights at the middles of its cells of 25 mm, with
-/// errors. One stands at the origin.
+/// A map of 6 x 6 m about the origin, cells of 25 mm: the heights at the cell centres plus errors.
+/// The stance is at the origin.
 class SmoothMap {
   public:
     SmoothMap(const SmoothGround& ground,

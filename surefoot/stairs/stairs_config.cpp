@@ -7,27 +7,29 @@ namespace surefoot::stairs {
 
 void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("min_height_m", min_height_m, 0.005, 1.0, "lowest edge that is reported");
-    visitor.number("sigma_factor", sigma_factor, 1.0, 10.0, "an edge stands out of the noise by");
+    visitor.number("sigma_factor", sigma_factor, 1.0, 10.0, "an edge exceeds the noise by");
     visitor.number("smear_m", smear_m, 0.01, 0.5, "an edge may be spread over");
     visitor.number("min_length_m", min_length_m, 0.05, 5.0, "shortest edge");
-    visitor.number(
-        "fit_tolerance_m", fit_tolerance_m, 0.002, 0.2, "an edge's points lie about it within");
-    visitor.number(
-        "max_gap_m", max_gap_m, 0.0, 2.0, "within one edge, where nothing is known of it");
+    visitor.number("fit_tolerance_m",
+                   fit_tolerance_m,
+                   0.002,
+                   0.2,
+                   "largest distance of a point from its edge");
+    visitor.number("max_gap_m", max_gap_m, 0.0, 2.0, "largest unknown gap within one edge");
     visitor.number("shadow_per_height",
                    shadow_per_height,
                    0.0,
                    20.0,
-                   "longest shadow behind an edge for each metre of its height");
+                   "deepest occluded region behind an edge, per metre of its height");
     visitor.number("cell_reach",
                    cell_reach,
                    0.0,
                    1.0,
                    "0: cells take the height at their centre, 1: the highest anywhere in them");
     visitor.number(
-        "min_riser_m", min_riser_m, 0.01, 1.0, "lowest step of a flight, but for its first");
+        "min_riser_m", min_riser_m, 0.01, 1.0, "lowest step of a flight, except the first");
     visitor.number("max_riser_m", max_riser_m, 0.02, 1.0, "highest step of a flight");
-    visitor.number("min_going_m", min_going_m, 0.05, 2.0, "shortest tread, from nose to nose");
+    visitor.number("min_going_m", min_going_m, 0.05, 2.0, "shortest tread, from nosing to nosing");
     visitor.number("max_going_m", max_going_m, 0.1, 5.0, "deepest tread; more is a landing");
     visitor.number("min_width_m", min_width_m, 0.1, 5.0, "narrowest flight");
     visitor.number(
@@ -36,26 +38,23 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    max_facing_deg,
                    10.0,
                    90.0,
-                   "single steps seen more from the side are no flights");
+                   "a single step seen at a larger angle is no flight");
     visitor.number(
         "walk_step_m",
         walk_step_m,
         0.01,
         0.5,
-        "ground on which no neighbouring cells differ by more is walked on without steps");
+        "neighbouring cells that differ by no more than this are walked over without a step");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
-    visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
+    visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that is lower by more than this is a drop");
     visitor.number("step_ratio",
                    step_ratio,
                    0.0,
                    1e12,
-                   "likelihood ratio, step over smooth ground, from which an edge is a step; "
-                   "0: each edge is");
-    visitor.number("drop_ratio",
-                   drop_ratio,
-                   0.0,
-                   1e12,
-                   "the same, from which an edge that goes down is a drop");
+                   "likelihood ratio of step over smooth ground that makes an edge a step; "
+                   "0: every edge");
+    visitor.number(
+        "drop_ratio", drop_ratio, 0.0, 1e12, "the same ratio that makes an edge down a drop");
     visitor.number("evidence_shared_m",
                    evidence_shared_m,
                    0.0001,

@@ -12,41 +12,41 @@
 
 namespace surefoot::stairs {
 
-/// What counts as an edge, a step, a kerb. Lengths are those of building codes (NZ D1/AS1 Table 6,
-/// ADA 504: docs of the scenes) with some room around them.
+/// Definition of an edge, a step, a kerb and a drop. Lengths follow building codes (NZ D1/AS1 Table
+/// 6, ADA 504) with a margin.
 struct StairsConfig {
-    double min_height_m = 0.04;  ///< of an edge: a kerb of 75 mm with 3.4 sigma of 10 mm
-    double sigma_factor = 3.4;   ///< an edge stands out of the noise of both its sides, 3e-4
-    /// A matcher spreads a kerb over up to five cells of 25 mm.
+    double min_height_m = 0.04;  ///< least edge height: a 75 mm kerb less 3.4 sigma of 10 mm
+    double sigma_factor = 3.4;   ///< an edge exceeds the noise of both sides; error 3e-4
+    /// A matcher spreads a kerb over up to five cells of 25 mm, which is about 0.15 m.
     double smear_m = 0.15;
-    double min_length_m = 0.30;  ///< of an edge: 12 cells
+    double min_length_m = 0.30;  ///< least length of an edge: 12 cells of 25 mm
     double fit_tolerance_m = 0.03;
-    double max_gap_m = 0.20;  ///< within one edge, where nothing is known of it
-    /// A shadow behind an edge is at most so many times as long as the edge is high: 2.5 m away
-    /// from a camera 1 m above the ground.
+    double max_gap_m = 0.20;  ///< largest unknown gap within one edge
+    /// Largest depth of the occluded region behind an edge, as a multiple of the edge's height.
+    /// Value: 2.5 m away from a camera 1 m above the ground.
     double shadow_per_height = 2.5;
-    /// 1: cells hold the highest of all that they touch; 0: what is at their middle.
+    /// 1: a cell holds the highest point of its area. 0: a cell holds the height at its centre.
     double cell_reach = 1.0;
 
     double min_riser_m = 0.08;
     double max_riser_m = 0.23;
     double min_going_m = 0.15;
     double max_going_m = 0.55;
-    double min_width_m = 0.45;     ///< of a flight
-    double max_turn_deg = 40.0;    ///< from one edge to the next; more than 10 is a spiral
-    double max_facing_deg = 60.0;  ///< of a single step: one walks towards it, not along it
-    double walk_step_m = 0.03;     ///< what one walks over without taking a step
+    double min_width_m = 0.45;     ///< least width of a flight
+    double max_turn_deg = 40.0;    ///< between neighbouring edges; a flight above 10 is a spiral
+    double max_facing_deg = 60.0;  ///< of a single step: angle between its normal and the path
+    double walk_step_m = 0.03;     ///< height differences up to this are walked over without a step
     double kerb_m = 0.20;          ///< highest kerb
-    double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
+    double drop_m = 0.05;          ///< a fall by more than this is a drop (the limit of the gate)
 
-    /// So many times more likely a step than smooth ground (StepEvidenceFinder) must the heights of
-    /// an edge be for a flight or a kerb. A map has some thirty lines that might be one, and at
-    /// most one map in thirty may invent one.
+    /// Likelihood ratio "step" over "smooth ground" that a flight or a kerb needs
+    /// (StepEvidenceFinder). A map has about thirty candidate lines, and at most one map in thirty
+    /// may invent a step.
     double step_ratio = 1000.0;
-    /// The same for a drop: one that is not told costs more than one too many. A drop whose ground
-    /// is not seen is not asked.
+    /// The same for a drop. It is low, because a missed drop costs more than a false one. A drop
+    /// whose lower ground is not seen is not tested.
     double drop_ratio = 0.01;
-    /// One sigma of errors that cells within 0.1 m share: 3 mm, what a matcher errs by 1 m away.
+    /// One sigma of errors that cells within 0.1 m share: 3 mm, the matcher's error at 1 m.
     double evidence_shared_m = 0.003;
 
     DoorConfig doors;
@@ -55,7 +55,7 @@ struct StairsConfig {
     TrackingConfig tracking;
 
     void describe(ConfigVisitor& visitor);
-    /// First reason why this cannot be used, or nothing.
+    /// The first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

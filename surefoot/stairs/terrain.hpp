@@ -11,7 +11,7 @@
 
 namespace surefoot::stairs {
 
-/// The camera that sees the ground now: rectified left eye of a pair.
+/// The camera that sees the ground now: the rectified left camera of the stereo pair.
 struct View {
     Pose T_map_camera;  ///< optical frame: z forward, x right, y down
     double width_px = 0.0;
@@ -21,44 +21,44 @@ struct View {
     double cx_px = 0.0;
     double cy_px = 0.0;
     double baseline_m = 0.0;
-    /// So near to where nothing is matched pixels are not mapped (elevation.pixels.reach_px).
+    /// Pixels so close to unmatched pixels are not mapped (elevation.pixels.reach_px).
     double unmapped_px = 0.0;
 
-    /// Both eyes see the place, if nothing is in between, and not at the border of their images.
+    /// True if both cameras image the point inside their image borders. Ignores occlusion.
     [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
-    /// What an error of the disparity makes of the range to a place.
+    /// Error of the range to a point that a disparity error of `error_px` causes.
     [[nodiscard]] double range_error_m(double error_px,
                                        const Eigen::Vector2d& p_map_m,
                                        double z_map_m) const;
-    /// How many pixels show level ground at a place, for each square metre of it; 0 behind or above
-    /// the camera. As elevation::ExpectedPoints.
+    /// Number of pixels that show level ground at a point, per square metre of ground; 0 behind or
+    /// above the camera. Same formula as elevation::ExpectedPoints.
     [[nodiscard]] double pixels_per_m2(const Eigen::Vector3d& p_map_m) const;
-    /// How far level ground goes on, along `way`, beyond the last place of it that is mapped [m]:
-    /// `unmapped_px` on the ground. `way`: unit vector that leads away from the camera.
+    /// How far level ground continues beyond its last mapped point [m]: `unmapped_px` projected
+    /// onto the ground along `way`, a unit vector that leads away from the camera.
     [[nodiscard]] double unmapped_m(const Eigen::Vector3d& p_map_m,
                                     const Eigen::Vector2d& way) const;
 };
 
-/// What is known of the ground; all layers have the size of `geometry`, row iy, column ix. Lengths
-/// and places are those of the map's frame (odom, z up).
+/// The known ground of one map. All layers have the size of `geometry` (row iy, column ix). Lengths
+/// and positions are in the map frame (odom, z up).
 struct Terrain {
     grid::GridGeometry geometry;
     ImageView<const float> height_m;       ///< highest surface of the cell; NaN = unknown
     ImageView<const float> height_var_m2;  ///< empty = 0
-    /// Of unknown cells: lines of sight passed at this height, ground there lies lower. Empty or
-    /// NaN = nothing is known.
+    /// For unknown cells: a ray passed at this height, so the ground lies lower. Empty layer or NaN
+    /// = no bound.
     ImageView<const float> free_above_m;
     ImageView<const float> clearance_m;  ///< free height above the cell; empty or NaN = open
-    /// Points seen over points that level ground would show: vertical faces show many times more.
-    /// Empty or NaN = nothing is known.
+    /// Number of measured points over the number that level ground would give; vertical faces give
+    /// a multiple. Empty layer or NaN = unknown.
     ImageView<const float> density_ratio;
-    /// Looks that agree on the height; empty = more than one.
+    /// Number of observations that agree on the height; an empty layer means more than one.
     ImageView<const std::uint32_t> observations;
-    /// Where the machine stands: what goes down from there is a drop, what goes up is not.
+    /// Position of the machine. Ground that falls away from here is a drop.
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    /// Where ground that goes on would be seen; without it nothing is said of ground that ends.
+    /// Needed to decide whether ground ends within the camera's view; empty = no such decision.
     std::optional<View> view;
-    /// What that camera sees now, also what the map leaves out; NaN = no match, empty = nothing.
+    /// Disparities of the current frame, with pixels that the map omits; NaN = no match.
     ImageView<const float> disparity_px;
 
     [[nodiscard]] bool known(int ix, int iy) const {

@@ -12,17 +12,17 @@
 
 namespace surefoot::stairs::testing {
 
-/// Height of the ground at a place of the world; NaN where there is none.
+/// Height of the ground at a point of the world; NaN = no ground.
 using Ground = std::function<double(double x_m, double y_m)>;
 
-/// Steps along +x between y = -width/2 and width/2, the first edge at x = 0, the floor before it at
-/// z = 0. Beside them the floor goes on (up), or the upper ground does (down: a well).
+/// Steps along +x between y = -width/2 and width/2. The first edge is at x = 0, the floor before it
+/// at z = 0. Beside the steps the ground stays at z = 0.
 struct TestFlight {
     int steps = 4;
-    double riser_m = 0.18;  ///< negative: down
+    double riser_m = 0.18;  ///< negative: steps down
     double going_m = 0.31;
     double width_m = 1.2;
-    double first_riser_m = 0.0;  ///< 0 = as the others
+    double first_riser_m = 0.0;  ///< 0 = like the other risers
 
     [[nodiscard]] double at(double x_m, double y_m) const {
         if (std::abs(y_m) > 0.5 * width_m || x_m < 0.0) return 0.0;
@@ -32,8 +32,8 @@ struct TestFlight {
     }
 };
 
-/// A map of the ground, turned about (0, 0) by `yaw_rad` and moved by `shift_m`: each cell holds
-/// the highest of what it touches.
+/// A map of `ground`, rotated about (0, 0) by `yaw_rad` and moved by `shift_m`. Each cell holds the
+/// highest point of its area.
 class TestMap {
   public:
     TestMap(const Ground& ground,
@@ -71,7 +71,7 @@ class TestMap {
             height_m.data()[i] += static_cast<float>(sigma_m * rng.normal());
         var_m2.fill(static_cast<float>(sigma_m * sigma_m));
     }
-    /// Takes away what a camera does not see over the ground before it.
+    /// Makes cells unknown that the ground before them hides from a camera.
     void hide_from(const Eigen::Vector3d& camera_world_m) {
         const Eigen::Vector2d camera_m = to_map(camera_world_m.head<2>());
         const grid::Layer seen = height_m;
@@ -101,7 +101,7 @@ class TestMap {
     [[nodiscard]] Eigen::Vector2d to_world(const Eigen::Vector2d& map_m) const {
         return Eigen::Rotation2Dd(-yaw_rad_) * (map_m - shift_m_);
     }
-    /// `stance_m` in the world.
+    /// `stance_m` is in the world frame.
     [[nodiscard]] Terrain terrain(const Eigen::Vector2d& stance_m = {-1.0, 0.0}) const {
         Terrain terrain;
         terrain.geometry = geometry;

@@ -120,7 +120,7 @@ const kWhyWords: Record<string, string> = {
   CONFIG: "the machine description is not valid",
   CLOCK: "the clock cannot be trusted",
   BAD_MESSAGE: "the message could not be read",
-  BAD_NUMBER: "the query holds a number that is no number or out of range",
+  BAD_NUMBER: "a number of the query is not finite or is out of range",
   FRAME_ID: "the query is in a frame that the gate does not know",
   SEQ: "the query is out of sequence",
   UNKNOWN_COMMAND: "the machine has no such movement",

@@ -349,7 +349,7 @@ const kNoRight =
   "not done: this needs the role operator, and this client is rider. Connect with ?token=TOKEN, or send " +
   '{"op":"auth","token":"TOKEN"}; the token stands in the service\'s token file';
 const kUnknownToken =
-  "this token is not known here, and nothing was changed. Take a token of the service's token file";
+  "this token is not known here, and nothing was changed. Take a token from the service's token file";
 
 export class FakeService {
   paused = false; ///< nothing is said any more, though every connection stays

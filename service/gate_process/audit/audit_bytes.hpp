@@ -11,13 +11,13 @@
 
 #include "surefoot/gate/reason.hpp"
 
-/// How the audit log stores fields: little-endian, one after the other, without gaps.
+/// Encoding of the audit log's fields: little-endian, consecutive, without padding.
 namespace surefoot::gate_process {
 
-// Layers are copied row by row as they lie in memory.
+// Layers are copied row by row in memory order.
 static_assert(std::endian::native == std::endian::little);
 
-/// The number that stands for a field: enums as their bytes, a set of reasons as its bits.
+/// The number stored for a field: the value of an enum, the bits of a set of reasons.
 template <typename T>
 [[nodiscard]] auto stored(const T& value) noexcept {
     if constexpr (std::is_same_v<T, bool>) {
@@ -46,7 +46,7 @@ class ByteCounter {
     std::size_t bytes_ = 0;
 };
 
-/// Writes fields to where there is room for them.
+/// Writes fields into a buffer that is large enough.
 class ByteWriter {
   public:
     explicit ByteWriter(char* at) noexcept : at_(at) {}
@@ -64,7 +64,7 @@ class ByteWriter {
     char* at_;
 };
 
-/// Reads what ByteWriter wrote. Too few bytes, or a yes/no that is neither, leave it not ok.
+/// Reads the bytes of ByteWriter. Not ok after too few bytes or a bool other than 0 and 1.
 class ByteReader {
   public:
     explicit ByteReader(std::string_view bytes) noexcept : rest_(bytes) {}

@@ -75,11 +75,11 @@ class FolderDisk final : public AuditDisk {
         if (file_ >= 0) ::close(file_);
         file_ = -1;
     }
-    /// A new name is lost with the power unless its folder is synced as well.
+    /// A power loss can remove a new file name unless its folder is synced too.
     [[nodiscard]] Status sync_folder() const {
         const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder < 0) return system_error(folder_, errno);
-        // Some file systems refuse to sync folders: the file is there all the same.
+        // Some file systems cannot sync folders; the file exists nevertheless.
         const bool failed = ::fsync(folder) != 0 && errno != EINVAL;
         const int error = errno;
         ::close(folder);

@@ -12,8 +12,8 @@
 
 namespace surefoot::gate_process {
 
-/// A folder that takes one growing file at a time: all that the audit log asks of a disk, so that
-/// tests can put a bad one in its place. Every call may fail and may take long. One thread.
+/// A folder with one growing file at a time: the audit log's interface to a disk, so that tests can
+/// replace it by a faulty one. Every call may fail or block. Use it from one thread.
 class AuditDisk {
   public:
     struct Entry {
@@ -21,7 +21,7 @@ class AuditDisk {
         std::uint64_t bytes = 0;
     };
     struct Written {
-        std::size_t bytes = 0;  ///< of those that were given; fewer is no error yet
+        std::size_t bytes = 0;  ///< bytes that were written; fewer than given is not an error
         int error = 0;          ///< errno; 0 = none
     };
 
@@ -30,25 +30,25 @@ class AuditDisk {
     AuditDisk& operator=(const AuditDisk&) = delete;
     virtual ~AuditDisk() = default;
 
-    /// Files of the folder, which is made when it is not there.
+    /// Lists the files of the folder. Creates the folder if it is missing.
     [[nodiscard]] virtual Result<std::vector<Entry>> list() = 0;
-    /// Begins a new file; fails where one of that name is.
+    /// Creates a new file; fails if a file of that name exists.
     [[nodiscard]] virtual Status create(const std::string& name) = 0;
-    /// Appends to the file that was begun last.
+    /// Appends to the file that was created last.
     [[nodiscard]] virtual Written write(std::string_view bytes) = 0;
-    /// Takes back what lies beyond `bytes` of it.
+    /// Truncates that file to `bytes` bytes.
     [[nodiscard]] virtual Status truncate(std::uint64_t bytes) = 0;
-    /// Returns when what was written survives a loss of power.
+    /// Returns when the written bytes are safe against a power loss.
     [[nodiscard]] virtual Status sync() = 0;
     virtual void close() = 0;
     [[nodiscard]] virtual Status remove(const std::string& name) = 0;
 };
 
-/// A folder of the system.
+/// A folder in the file system.
 [[nodiscard]] std::unique_ptr<AuditDisk> make_folder_disk(std::string folder);
 
-/// A number that no other process of this or another start of the computer has: of its boot id,
-/// the steady clock and the process.
+/// A number that is unique among all processes and boots of the computer: made from the boot id,
+/// the steady clock and the process id.
 [[nodiscard]] std::uint64_t new_run_id();
 
 }  // namespace surefoot::gate_process

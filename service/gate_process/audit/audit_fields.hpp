@@ -5,8 +5,8 @@
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/snapshot_fields.hpp"
 
-/// The fields of the audit log in the order of the file: one list each for writing, reading,
-/// comparing and naming. A change here is a new format version (docs/reference/audit_format.md).
+/// The fields of the audit log in file order. One list each serves writing, reading, comparing and
+/// naming. A change here needs a new format version (docs/reference/audit_format.md).
 namespace surefoot::gate_process {
 
 template <typename Box, typename Visit>
@@ -130,7 +130,7 @@ void for_each_verdict_field(Verdict& verdict, Visit& visit) {
     visit("valid_until_ns", verdict.valid_until_ns);
 }
 
-/// The header of a snapshot, but for its padding; its checksum stands for all cells of the map.
+/// The header of a snapshot without padding; its checksum covers all cells of the map.
 template <typename Snapshot, typename Visit>
 void for_each_snapshot_field(Snapshot& map, Visit& visit) {
     visit("magic", map.magic);

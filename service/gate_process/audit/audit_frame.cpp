@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kCheckedBytes = kFrameHeaderBytes - 4;
 
-/// Both halves of the hash: a check of the header alone, so that a wrong length is never followed.
+/// Both halves of the hash, combined: checks the header alone, so a wrong length is never used.
 std::uint32_t check_of(std::string_view header) noexcept {
     const std::uint64_t hash = fnv1a(header.substr(0, kCheckedBytes));
     return static_cast<std::uint32_t>(hash ^ hash >> 32U);
@@ -133,7 +133,7 @@ std::string format_gap(const AuditGap& gap) {
 Status parse_gap(std::string_view bytes, AuditGap& gap) {
     ByteReader reader(bytes);
     for_each_gap_field(gap, reader);
-    if (!reader.ok() || !reader.rest().empty()) return input_error("no sound gap");
+    if (!reader.ok() || !reader.rest().empty()) return input_error("the gap entry is invalid");
     return {};
 }
 
@@ -156,11 +156,12 @@ Status parse_act(std::string_view bytes, Act& act) {
     std::uint8_t text = 0;
     reader("text_bytes", text);
     if (!reader.ok() || reader.rest().size() != text || text > kMaxActText_bytes)
-        return input_error("no sound act");
+        return input_error("the act entry is invalid");
     if (act.kind < ActKind::connect || act.kind > ActKind::rearm ||
         act.outcome < ActOutcome::done || act.outcome > ActOutcome::no_right ||
         act.role > Role::operator_)
-        return input_error("an act that this program does not know");
+        return input_error(
+            "the act has an unknown kind; read the log with the program version that wrote it");
     act.text = reader.rest();
     return {};
 }

@@ -12,10 +12,10 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// What an entry of the ring begins with; the record follows.
+/// The begin of a ring entry; the record follows.
 struct EntryHead {
     std::int64_t now_ns = 0;
-    AuditGap before;  ///< what was lost since the entry before
+    AuditGap before;  ///< verdicts dropped since the previous entry
     FrameKind kind = FrameKind::verdict;
 };
 
@@ -85,7 +85,7 @@ void AuditLog::push(const Act& act) noexcept {
     ring_->commit();
 }
 
-/// Room for an entry behind its head, which is written; nullptr, and counted, where there is none.
+/// Reserves an entry and writes its head. If there is no room, counts the loss and returns nullptr.
 char* AuditLog::reserve(FrameKind kind, std::size_t bytes, std::int64_t now_ns) noexcept {
     char* at = ring_ == nullptr ? nullptr : ring_->reserve(sizeof(EntryHead) + bytes);
     if (at == nullptr) {
@@ -128,7 +128,7 @@ AuditReport AuditLog::report() const {
     return {written_.load(), lost_.load(), failing_.load(), last_error_};
 }
 
-/// True when the log is to stop.
+/// Waits. Returns true if the log must stop.
 bool AuditLog::wait(std::int64_t time_ns) {
     std::unique_lock lock(mutex_);
     return wake_.wait_for(lock, std::chrono::nanoseconds(time_ns), [this] { return stopping_; });
@@ -148,8 +148,8 @@ void AuditLog::run() {
 }
 
 bool AuditLog::write_all_that_waits() {
-    // A disk that failed is asked again even when nothing waits: `failing` must not outlive the
-    // fault. There is no open file then, so that this is a try to write.
+    // Retries a failed disk even if no entry waits, so that `failing` ends with the fault. No file
+    // is open then, so this is an attempt to write.
     const bool idle = ring_->front().empty();
     if (idle && failing_.load(std::memory_order_relaxed) && !succeeded(writer_.open()))
         return false;
@@ -181,7 +181,8 @@ bool AuditLog::succeeded(const Status& status) {
     return status.ok();
 }
 
-/// What was lost after the last entry, and what no disk took. The thread has ended.
+/// Writes the gap after the last entry, including entries that no disk accepted. The thread has
+/// ended.
 void AuditLog::write_last_gap() {
     AuditGap gap;
     const auto add = [&gap](std::uint64_t verdicts, std::int64_t first_ns, std::int64_t last_ns) {

@@ -20,53 +20,53 @@ namespace surefoot::gate_process {
 
 struct AuditConfig {
     AuditFiles files;
-    std::size_t memory_bytes = 8U << 20U;  ///< what may wait for the disk: some 250 verdicts
-    std::int64_t behind_after_ns = 1'000'000'000;  ///< a verdict that waits longer is behind
-    std::int64_t poll_ns = 10'000'000;     ///< the thread looks so often whether something waits
-    std::int64_t retry_ns = 200'000'000;   ///< after a failure
-    std::int64_t sync_ns = 1'000'000'000;  ///< a loss of power costs no more than so much
+    std::size_t memory_bytes = 8U << 20U;  ///< memory for waiting entries: about 250 verdicts
+    std::int64_t behind_after_ns = 1'000'000'000;  ///< longer waiting makes the log `behind`
+    std::int64_t poll_ns = 10'000'000;     ///< the thread checks this often for waiting entries
+    std::int64_t retry_ns = 200'000'000;   ///< wait after a failure
+    std::int64_t sync_ns = 1'000'000'000;  ///< a power loss costs at most the entries of this time
 
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
 enum class AuditState : std::uint8_t {
-    ok,       ///< every verdict is with the system, or will be at once
-    behind,   ///< one waits for too long, or verdicts were lost and that is not in the log yet
-    failing,  ///< the last try to write failed
+    ok,       ///< every verdict is written to the system, or will be at once
+    behind,   ///< a verdict waits too long, or the log does not have the gap of lost verdicts yet
+    failing,  ///< the last attempt to write failed
 };
-/// "ok".
+/// The name of a state, for example "ok".
 [[nodiscard]] const char* to_string(AuditState state) noexcept;
 
 struct AuditReport {
-    std::uint64_t written = 0;  ///< verdicts and acts that are in the log
-    std::uint64_t lost = 0;     ///< verdicts and acts that never will be
+    std::uint64_t written = 0;  ///< verdicts and acts in the log
+    std::uint64_t lost = 0;     ///< verdicts and acts that were dropped
     bool failing = false;
-    std::string last_error;  ///< empty = none yet
+    std::string last_error;  ///< empty = no error yet
 };
 
-/// Every verdict of a gate with all that it was made from, on disk. `push` copies and returns; a
-/// thread of the log's own does the rest, so that no disk delays a verdict. What waits is kept as
-/// long as the memory holds it; then verdicts are lost, counted, and the gap is in the log where
-/// they would be. Machine and memory are fixed at `start`.
+/// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate
+/// thread writes, so a disk never delays a verdict. Waiting entries stay in memory. If the memory
+/// is full, verdicts are dropped and counted, and the log gets a gap entry at their position.
+/// Machine and memory size are fixed at `start`.
 ///
-/// One thread calls start, push, state and stop; `report` any. The bytes on disk: audit_format.md.
+/// One thread calls start, push, state and stop; any calls `report`. Format: audit_format.md.
 class AuditLog {
   public:
     AuditLog(const Machine& machine, std::unique_ptr<AuditDisk> disk, const AuditConfig& config);
-    ~AuditLog();  ///< stops
+    ~AuditLog();  ///< calls stop()
     AuditLog(const AuditLog&) = delete;
     AuditLog& operator=(const AuditLog&) = delete;
 
-    /// Takes the memory and starts the thread. A bad disk is no error here: `state` tells of it.
+    /// Allocates the memory and starts the thread. A faulty disk shows in `state`, not here.
     [[nodiscard]] Status start();
-    /// Never blocks, allocates, locks or calls the system; some microseconds for the copy.
+    /// Never blocks, allocates, locks or makes a system call; the copy takes microseconds.
     void push(const AuditedVerdict& audited) noexcept;
-    /// An act, in its order between the verdicts. One that finds no room is lost like a verdict.
+    /// Adds an act in order between the verdicts. It is dropped like a verdict if memory is full.
     void push(const Act& act) noexcept;
-    /// For a service that gives no OK without a log (Reason::audit). `now_ns` as in the verdicts.
+    /// State of the log; an assured service gives no OK without it. `now_ns` as in the verdicts.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
-    /// Writes what waits, tries a failing disk once more, and ends the thread: returns when the
-    /// disk does.
+    /// Writes the waiting entries, retries a failing disk once and ends the thread. Blocks until
+    /// the disk returns.
     void stop();
     [[nodiscard]] AuditReport report() const;
 
@@ -84,13 +84,13 @@ class AuditLog {
     AuditConfig config_;
     AuditWriter writer_;
     std::unique_ptr<ByteRing> ring_;
-    AuditGap missed_;           ///< since the last entry; of the pushing thread
-    bool gap_written_ = false;  ///< the gap before the first entry that waits
+    AuditGap missed_;           ///< dropped since the last entry; used by the pushing thread
+    bool gap_written_ = false;  ///< the gap before the first waiting entry is in the log
     std::atomic<bool> failing_{false};
     std::atomic<std::uint64_t> written_{0};
     std::atomic<std::uint64_t> lost_{0};
 
-    mutable std::mutex mutex_;  ///< of what follows; never taken by push or state
+    mutable std::mutex mutex_;  ///< guards the members below; push and state never lock it
     std::condition_variable wake_;
     bool stopping_ = false;
     std::string last_error_;

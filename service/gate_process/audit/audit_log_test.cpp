@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verdict waits for no disk, and what the disk did not get is counted where it would be.
+// No verdict waits for a disk, and dropped verdicts are counted at their position in the log.
 #include "service/gate_process/audit/audit_log.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ AuditConfig small_config() {
     return config;
 }
 
-/// Counts verdicts that come out of their records again.
+/// Counts the verdicts that their records reproduce.
 AuditReader::OnVerdict count_equal(std::uint64_t& equal) {
     return [&equal](const AuditedAt& at) {
         if (differences(at.record.verdict, replay(at.machine, at.record)).empty()) ++equal;
@@ -105,12 +105,12 @@ TEST(AuditLog, acts_stand_between_the_verdicts_in_their_order) {
 
 TEST(AuditLog, a_disk_that_hangs_delays_nothing_and_the_gap_is_in_the_log) {
     Bench bench;
-    bench.cases.resize(1);  // records of one size: where one did not fit, no other does
+    bench.cases.resize(1);  // records of one size: if one does not fit, no other fits
     bench.hang();
     ASSERT_TRUE(bench.log.start());
     EXPECT_EQ(bench.log.state(kNowNs), AuditState::ok);
     constexpr int kPushed = 500;
-    bench.push(kPushed);  // returns, or this test never ends: the disk has not taken a byte
+    bench.push(kPushed);  // must return although the disk has not taken a byte
     const std::uint64_t lost = bench.log.report().lost;
     EXPECT_GT(lost, 100U);
     EXPECT_LT(lost, static_cast<std::uint64_t>(kPushed) - 20U);
@@ -130,7 +130,7 @@ TEST(AuditLog, a_disk_that_hangs_delays_nothing_and_the_gap_is_in_the_log) {
 
 TEST(AuditLog, a_gap_is_written_once_though_the_verdict_after_it_had_to_wait) {
     Bench bench;
-    bench.cases.resize(1);  // records of one size: where one did not fit, no other does
+    bench.cases.resize(1);  // records of one size: if one does not fit, no other fits
     bench.hang();
     ASSERT_TRUE(bench.log.start());
     bench.push(500);
@@ -151,7 +151,7 @@ TEST(AuditLog, a_gap_is_written_once_though_the_verdict_after_it_had_to_wait) {
 
 TEST(AuditLog, a_gap_at_the_end_is_written_when_the_log_stops) {
     Bench bench;
-    bench.cases.resize(1);  // records of one size: where one did not fit, no other does
+    bench.cases.resize(1);  // records of one size: if one does not fit, no other fits
     bench.hang();
     ASSERT_TRUE(bench.log.start());
     bench.push(500);
@@ -263,7 +263,7 @@ TEST(AuditLog, push_allocates_nothing) {
     bench.release();
 }
 
-/// A folder of the system that takes no more than so many bytes a file.
+/// A folder of the file system with a size limit per file.
 class SystemLimit {
   public:
     explicit SystemLimit(rlim_t bytes) {

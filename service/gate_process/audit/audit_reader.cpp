@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Far above what the writer makes; a larger file is an error, not a full memory.
+/// Far above the writer's limit; a larger file is an error and must not fill the memory.
 constexpr std::uintmax_t kMaxFileBytes = 256ULL << 20U;
 
 bool is_zero(std::string_view bytes) noexcept {
     return bytes.find_first_not_of('\0') == bytes.npos;
 }
 
-/// Whether bytes that are too few for a header begin like one.
+/// True if bytes that are too short for a header begin like one.
 bool begins_like_a_frame(std::string_view bytes) noexcept {
     constexpr std::string_view kStart = "SFA";
     const std::size_t size = std::min(bytes.size(), kStart.size());
@@ -61,9 +61,9 @@ void AuditReader::read(std::string_view bytes, const std::string& file) {
     }
 }
 
-/// Nothing at the end of the file, and at damage, which is noted.
+/// Returns nothing at the end of the file and at damage; notes the damage.
 std::optional<AuditReader::Frame> AuditReader::next_frame(std::string_view rest) {
-    if (is_zero(rest)) {  // room that was given to the file, but never written
+    if (is_zero(rest)) {  // space that was allocated for the file but never written
         end_unfinished(rest.size(), "are zero");
         return std::nullopt;
     }
@@ -110,7 +110,10 @@ bool AuditReader::unpack(const FrameHeader& header, std::string_view stored, Fra
                damaged("the two lengths of a plain frame differ", header.sequence);
     }
     if (header.encoding != FrameEncoding::zstd)
-        return damaged("packed in a way that this program does not know", header.sequence);
+        return damaged(
+            "the encoding of the frame is unknown; read the log with the program version that "
+            "wrote it",
+            header.sequence);
     plain_.resize(header.plain_bytes);
     const std::size_t bytes =
         ZSTD_decompress(plain_.data(), plain_.size(), stored.data(), stored.size());
@@ -132,7 +135,9 @@ bool AuditReader::take(const Frame& frame) {
         case FrameKind::gap: return follows(frame.header, link_) && take_gap(frame);
         case FrameKind::act: return follows(frame.header, link_) && take_act(frame);
     }
-    return damaged("a kind of frame that this program does not know", frame.header.sequence);
+    return damaged(
+        "the kind of the frame is unknown; read the log with the program version that wrote it",
+        frame.header.sequence);
 }
 
 bool AuditReader::follows(const FrameHeader& header, const Link& link) {
@@ -142,11 +147,11 @@ bool AuditReader::follows(const FrameHeader& header, const Link& link) {
                                    link.sequence),
                        header.sequence);
     if (header.previous_hash != link.previous_hash)
-        return damaged("it follows another frame than the one before it", header.sequence);
+        return damaged("its stored hash of the previous frame is wrong", header.sequence);
     return true;
 }
 
-/// The first file may begin anywhere: those before it were removed when they were too many.
+/// The first file may begin anywhere in the chain, because old files are removed.
 bool AuditReader::take_file_head(const Frame& frame) {
     FileHead head;
     if (const Status status = parse_file_head(frame.payload, head); !status)
@@ -172,7 +177,8 @@ bool AuditReader::take_verdict(const Frame& frame) {
     if (const Status status = parse_record(frame.payload, record_, frame.header.version); !status)
         return damaged(status.error().message, frame.header.sequence);
     if (record_.machine_hash != head_->machine_hash)
-        return damaged("a verdict about another machine than the file's", frame.header.sequence);
+        return damaged("the verdict belongs to another machine than the file",
+                       frame.header.sequence);
     ++summary_.verdicts;
     if (on_verdict_) on_verdict_({file_, offset_, frame.header.sequence, head_->machine, record_});
     return true;
@@ -199,7 +205,7 @@ bool AuditReader::take_act(const Frame& frame) {
 void AuditReader::end_unfinished(std::size_t bytes, const char* how) {
     summary_.unfinished.push_back(
         fmt::format("{}: its last {} bytes {}: writing ended there", file_, bytes, how));
-    // A file that never got its head has a number all the same.
+    // A file without a head still has a number.
     std::uint64_t number = 0;
     if (offset_ == 0 && head_ && parse_audit_file_name(fs::path(file_).filename().string(), number))
         head_->number = number;

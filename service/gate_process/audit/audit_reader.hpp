@@ -13,32 +13,32 @@
 
 namespace surefoot::gate_process {
 
-/// The first thing in a log that cannot be right. Nothing after it was read.
+/// The first invalid position of a log. Nothing after it was read.
 struct AuditDamage {
     std::string file;
-    std::uint64_t offset = 0;               ///< where the frame begins [bytes]
-    std::optional<std::uint64_t> sequence;  ///< of the frame, where its header can be read
+    std::uint64_t offset = 0;               ///< begin of the frame [bytes]
+    std::optional<std::uint64_t> sequence;  ///< of the frame, if its header is readable
     std::string what;
 
     [[nodiscard]] std::string text() const;
 };
 
-/// What a log holds, up to its end or to its damage.
+/// Content of a log up to its end or its first damage.
 struct AuditSummary {
     std::uint64_t files = 0;
     std::uint64_t bytes = 0;
     std::uint64_t runs = 0;
     std::uint64_t verdicts = 0;
     std::uint64_t gaps = 0;
-    std::uint64_t lost = 0;  ///< verdicts in the gaps
+    std::uint64_t lost = 0;  ///< number of verdicts in gaps
     std::uint64_t acts = 0;
-    /// Sentences about files that end within a frame, as after a loss of power: no damage, and
-    /// where the run goes on in another file, no loss.
+    /// Messages about files that end within a frame, for example after a power loss. This is no
+    /// damage, and no loss if the run continues in another file.
     std::vector<std::string> unfinished;
     std::optional<AuditDamage> damage;
 };
 
-/// A verdict of the log and where it stands.
+/// A verdict of the log and its position.
 struct AuditedAt {
     const std::string& file;
     std::uint64_t offset;
@@ -47,14 +47,14 @@ struct AuditedAt {
     const AuditRecord& record;
 };
 
-/// Follows the chain of frames through the files of a folder, in their order. Any bytes may come.
+/// Checks the chain of frames through the files of a folder, in order. Accepts any bytes.
 class AuditReader {
   public:
     using OnVerdict = std::function<void(const AuditedAt&)>;
     using OnAct = std::function<void(const Act&)>;
     explicit AuditReader(OnVerdict on_verdict, OnAct on_act = {});
 
-    /// The next file. Does nothing once there is damage.
+    /// Reads the next file. Does nothing after damage was found.
     void read(std::string_view bytes, const std::string& file);
     [[nodiscard]] const AuditSummary& summary() const noexcept { return summary_; }
 
@@ -64,9 +64,9 @@ class AuditReader {
         std::string_view payload;  ///< unpacked
         std::uint64_t hash = 0;
     };
-    /// Where the chain stands.
+    /// State of the chain.
     struct Link {
-        std::uint64_t sequence = 0;  ///< of the next frame
+        std::uint64_t sequence = 0;  ///< expected in the next frame
         std::uint64_t previous_hash = 0;
     };
 
@@ -79,7 +79,7 @@ class AuditReader {
     [[nodiscard]] bool take_act(const Frame& frame);
     [[nodiscard]] bool follows(const FrameHeader& header, const Link& link);
     void end_unfinished(std::size_t bytes, const char* how);
-    /// Always false: "this frame is not taken".
+    /// Records the damage. Always returns false, which means "frame rejected".
     bool damaged(std::string what, std::optional<std::uint64_t> sequence = {});
 
     OnVerdict on_verdict_;
@@ -87,15 +87,15 @@ class AuditReader {
     AuditSummary summary_;
     std::string file_;
     std::uint64_t offset_ = 0;
-    std::optional<FileHead> head_;  ///< of the last file that had one
+    std::optional<FileHead> head_;  ///< of the last file with a head
     Link link_;
     std::string plain_;
     AuditRecord record_;
 };
 
-/// The log files of a folder in their order, or the one file that is named.
+/// The log files of a folder in order, or the single given file.
 [[nodiscard]] Result<std::vector<std::string>> audit_files_of(const std::string& path);
-/// All of them. An error where a file cannot be read; damage is no error but in the summary.
+/// Reads all of them. Error only if a file is unreadable; damage is in the summary.
 [[nodiscard]] Result<AuditSummary> read_audit(const std::string& path,
                                               AuditReader::OnVerdict on_verdict,
                                               AuditReader::OnAct on_act = {});

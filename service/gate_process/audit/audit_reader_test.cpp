@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader tells where a log is damaged, and takes an unfinished end for what it is.
+// The reader reports where a log is damaged, and accepts an unfinished end.
 #include "service/gate_process/audit/audit_reader.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct Log {
         }
         for (const auto& [name, content] : platter->files) names.push_back(name);
     }
-    /// As when the disk fails: the chain goes on in another file.
+    /// Simulates a disk failure: the chain continues in another file.
     void leave_file(AuditWriter& writer) const {
         platter->fails_sync = true;
         EXPECT_FALSE(writer.sync());
@@ -133,7 +133,7 @@ TEST(AuditReader, frames_that_were_taken_out_or_exchanged_are_missed) {
     EXPECT_TRUE(contains(log.damage(), "frame 1 is expected here")) << log.damage();
     log.file(0) = whole.substr(0, frames[2]) + frame(1) + whole.substr(frames[2]);
     EXPECT_TRUE(contains(log.damage(), "frame 2 is expected here")) << log.damage();
-    log.file(0) = whole.substr(0, frames.back());  // the last one of a file that is not the last
+    log.file(0) = whole.substr(0, frames.back());  // in a file that is not the last one
     EXPECT_TRUE(contains(log.damage(), "is expected here")) << log.damage();
     EXPECT_TRUE(contains(log.damage(), log.names[1])) << log.damage();
 }
@@ -151,9 +151,9 @@ TEST(AuditReader, a_frame_that_was_written_anew_breaks_the_chain) {
     header.encoding = FrameEncoding::plain;
     header.stored_bytes = header.plain_bytes = static_cast<std::uint32_t>(other.size());
     std::string forged = whole.substr(0, frames[1]);
-    append_frame(forged, header, other);  // sound in itself
+    append_frame(forged, header, other);  // valid in itself
     log.file(0) = forged + whole.substr(frames[2]);
-    EXPECT_TRUE(contains(log.damage(), "follows another frame")) << log.damage();
+    EXPECT_TRUE(contains(log.damage(), "hash of the previous frame")) << log.damage();
 }
 
 TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
@@ -181,7 +181,7 @@ TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
     }
 }
 
-/// Frames that are sound as frames, and nonsense inside.
+/// Frames with a valid frame header and invalid content.
 TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     Rng rng(27);
     const std::string record = record_of(random_case(rng));
@@ -217,10 +217,11 @@ TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1), "two lengths"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, FrameEncoding::zstd, record, size), "unpacked"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, static_cast<FrameEncoding>(9), record, size),
-                         "packed in a way"));
-    EXPECT_TRUE(contains(read(static_cast<FrameKind>(9), plain, record, size), "kind of frame"));
+                         "encoding of the frame is unknown"));
+    EXPECT_TRUE(contains(read(static_cast<FrameKind>(9), plain, record, size),
+                         "kind of the frame is unknown"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, "", 0), "too short"));
-    EXPECT_TRUE(contains(read(FrameKind::gap, plain, "x", 1), "no sound gap"));
+    EXPECT_TRUE(contains(read(FrameKind::gap, plain, "x", 1), "gap entry is invalid"));
     EXPECT_TRUE(
         contains(read(FrameKind::file, plain, head, static_cast<std::uint32_t>(head.size())),
                  "second head"));
@@ -243,7 +244,7 @@ TEST(AuditReader, another_version_is_named) {
     EXPECT_TRUE(contains(log.damage(), "version 4")) << log.damage();
 }
 
-/// The same log as a program of an earlier version wrote it: version, checks and chain.
+/// The same log in an earlier format version, with version, checks and chain.
 std::string as_version(const std::string& file, char version, std::uint64_t& previous_hash) {
     constexpr std::size_t kVersionAt = 3;
     constexpr std::size_t kPreviousAt = 24;

@@ -20,7 +20,7 @@ std::size_t edges_of(const MapSnapshot& map) noexcept {
     return sound ? static_cast<std::size_t>(map.edge_count) : 0;
 }
 
-/// Edges and cells of a record.
+/// Size of the edges and cells of a record.
 std::size_t bytes_of_ground(const MapSnapshot& map, const CellBox& zone) noexcept {
     std::size_t bytes = edges_of(map) * sizeof(SnapshotEdge);
     grid::for_each_snapshot_layer(map, [&](const auto& layer) {
@@ -34,7 +34,7 @@ std::size_t first_cell_of(const CellBox& zone, const MapSnapshot& map) noexcept 
            static_cast<std::size_t>(zone.x);
 }
 
-/// copy(first cell, bytes) of every row of the zone in one layer.
+/// Calls copy(first cell, bytes) for every row of the zone in one layer.
 template <typename Layer, typename Copy>
 void for_each_row(Layer& layer, const MapSnapshot& map, const CellBox& zone, Copy&& copy) {
     constexpr std::size_t kCellBytes = sizeof(typename std::decay_t<Layer>::value_type);
@@ -45,11 +45,11 @@ void for_each_row(Layer& layer, const MapSnapshot& map, const CellBox& zone, Cop
     }
 }
 
-/// The first version of the format whose snapshots hold the uncertainty of the vertical.
+/// The first format version whose snapshots contain the uncertainty of the vertical.
 constexpr std::uint32_t kTiltVersion = 3;
-constexpr std::uint32_t kLayoutWithoutTilt = 4;  ///< MapSnapshot::kLayout of that time
+constexpr std::uint32_t kLayoutWithoutTilt = 4;  ///< MapSnapshot::kLayout of the older versions
 
-/// Reads the fields that a version of the format has.
+/// Reads the fields that exist in a format version.
 class FieldReader {
   public:
     FieldReader(ByteReader& reader, std::uint32_t version) : reader_(reader), version_(version) {}
@@ -67,7 +67,7 @@ class FieldReader {
     std::uint32_t version_;
 };
 
-/// Everything of a record but edges and cells.
+/// Visits all fields of a record except edges and cells.
 template <typename Record, typename Map, typename Visit>
 void for_each_record_field(Record& record, Map& map, Visit& visit) {
     visit("machine_hash", record.machine_hash);
@@ -81,7 +81,7 @@ void for_each_record_field(Record& record, Map& map, Visit& visit) {
     for_each_zone_field(record.zone, visit);
 }
 
-/// The fields of AuditRecord where they lie.
+/// References to the fields of an AuditRecord.
 struct RecordView {
     std::uint64_t machine_hash;
     const gate::Query& query;
@@ -93,8 +93,8 @@ struct RecordView {
     const CellBox& zone;
 };
 
-/// The ground was looked at, and its cells were not those that had been sealed: the only verdict
-/// that says so without having counted a cell.
+/// True if the decision read the ground and found cells that differ from the sealed ones. Only this
+/// verdict lacks the proof without having counted a cell.
 bool found_damaged_cells(const gate::Verdict& verdict) {
     const gate::Evidence& e = verdict.evidence;
     return verdict.reasons == gate::ReasonSet(gate::Reason::internal) && e.cells == 0 &&
@@ -113,7 +113,7 @@ RecordView view_of(std::uint64_t machine_hash, const AuditedVerdict& a, const Ce
             zone};
 }
 
-/// Whatever lies outside of the zone was not kept: unknown, as the map has it before it sees.
+/// Sets all cells to unknown, because cells outside the zone are not recorded.
 void forget_ground(MapSnapshot& map) {
     map.padding = {};
     map.height_tenth_mm.fill(MapSnapshot::kUnknownHeight);
@@ -126,7 +126,7 @@ void forget_ground(MapSnapshot& map) {
     map.edges.fill({});
 }
 
-/// The numbers of a verdict, by name.
+/// A number of a verdict with its name.
 struct NamedNumber {
     std::string name;
     std::uint64_t bits = 0;
@@ -190,7 +190,8 @@ Status parse_record(std::string_view bytes, AuditRecord& record, std::uint32_t v
     for_each_record_field(record, map, fields);
     if (version < kTiltVersion && map.layout == kLayoutWithoutTilt)
         map.layout = MapSnapshot::kLayout;
-    if (!reader.ok()) return input_error("the record is too short, or a yes/no in it is neither");
+    if (!reader.ok())
+        return input_error("the record is too short, or a yes/no value is neither 0 nor 1");
     const CellBox& zone = record.zone;
     if (zone != CellBox{} && !is_inside(zone, map))
         return input_error(fmt::format("a zone of {} x {} cells from ({}, {}) in a map of {} x {}",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A record alone gives the verdict again, bit for bit.
+// A record alone reproduces the verdict, bit by bit.
 #include "service/gate_process/audit/audit_record.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace surefoot::gate_process::testing {
 namespace {
 
-/// Writes, reads, decides again; the differences to the verdict of the whole snapshot.
+/// Writes, reads and decides again. Returns the differences to the verdict of the whole snapshot.
 std::vector<FieldDifference> through_a_record(const Case& c) {
     AuditRecord record;
     if (const Status read = parse_record(record_of(c), record); !read)
@@ -32,7 +32,7 @@ TEST(AuditRecord, the_zone_alone_gives_every_verdict_again) {
                                    << gate::testing::words(c.verdict);
         (c.verdict.decision == gate::Decision::ok ? allowed : refused) += 1;
     }
-    EXPECT_GT(allowed, 25);  // or the rounds prove nothing
+    EXPECT_GT(allowed, 25);  // else the rounds prove nothing
     EXPECT_GT(refused, 100);
 }
 
@@ -40,7 +40,7 @@ TEST(AuditRecord, a_record_of_the_version_before_gives_its_verdict_again) {
     Rng rng(26);
     for (int round = 0; round < 50; ++round) {
         Case c = random_case(rng);
-        c.map->tilt_sigma_urad = 0;  // what a program of that version decided by
+        c.map->tilt_sigma_urad = 0;  // the input of a program of that version
         seal(*c.map);
         c.decide();
         AuditRecord record;
@@ -169,8 +169,8 @@ TEST(AuditRecord, every_single_bit_of_a_verdict_counts) {
     EXPECT_EQ(differences(other, changed).size(), 1U);
 }
 
-/// What docs/reference/audit_format.md says. Another size is another version of the format; and
-/// whoever adds a field to one of these values has to add it to audit_fields.hpp.
+/// The sizes of docs/reference/audit_format.md. Another size needs another format version. A new
+/// field in one of these types must be added to audit_fields.hpp.
 TEST(AuditRecord, holds_every_field_of_its_version) {
     Case c;
     c.map = std::make_unique<grid::MapSnapshot>();
@@ -183,7 +183,7 @@ TEST(AuditRecord, holds_every_field_of_its_version) {
     EXPECT_EQ(sizeof(Machine), 1456U);
 }
 
-/// A record that was written for another answer is noticed when it is decided again.
+/// A record with a changed answer is detected when it is decided again.
 TEST(AuditRecord, a_verdict_that_the_gate_would_not_give_is_a_difference) {
     Rng rng(27);
     Case c = random_case(rng);

@@ -10,7 +10,7 @@
 #include "surefoot/core/unknown.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
-/// Random ground and questions for the tests of the audit log.
+/// Random ground and queries for the tests of the audit log.
 namespace surefoot::gate_process::testing {
 
 using gate::testing::kNowNs;
@@ -18,7 +18,7 @@ using gate::testing::kReady;
 using gate::testing::rex;
 using gate::testing::seal;
 
-/// A verdict with all that it was made from.
+/// A verdict with all its inputs.
 struct Case {
     Machine machine = rex();
     gate::Query query;
@@ -34,7 +34,7 @@ struct Case {
     }
 };
 
-/// A floor with noise, things, holes, unseen ground and evidence of drops.
+/// A floor with noise, objects, holes, unknown cells and drop evidence.
 inline std::unique_ptr<grid::MapSnapshot> random_ground(Rng& rng) {
     gate::testing::Terrain terrain;
     const double tilt_x = rng.uniform(-0.03, 0.03);
@@ -67,7 +67,7 @@ inline std::unique_ptr<grid::MapSnapshot> random_ground(Rng& rng) {
     return terrain.snapshot();
 }
 
-/// A question from anywhere on that ground, its border included, with and without a vouched area.
+/// A query anywhere on that ground or at its border, with or without an attested area.
 inline gate::Query random_query(Rng& rng) {
     const double yaw_rad = rng.uniform(-4.0, 4.0);
     const double reach_m = rng.below(4) == 0 ? 3.4 : 1.5;
@@ -93,7 +93,7 @@ inline gate::Query random_query(Rng& rng) {
     return query;
 }
 
-/// What a camera does not see: the ground around base_link.
+/// Makes the cells around base_link unknown, like ground that the camera cannot see.
 inline void blind(grid::MapSnapshot& map, const gate::Query& query, std::int64_t radius_tenth_mm) {
     for (std::int32_t iy = 0; iy < map.ny; ++iy) {
         for (std::int32_t ix = 0; ix < map.nx; ++ix) {
@@ -108,7 +108,7 @@ inline void blind(grid::MapSnapshot& map, const gate::Query& query, std::int64_t
     seal(map);
 }
 
-/// The REX with other feet, bands, margins and bodies: one of them reaches farthest.
+/// The REX with random feet, bands, margins and bodies, so that different regions reach farthest.
 inline Machine random_machine(Rng& rng) {
     const auto between = [&rng](int low, int high) {
         return low + static_cast<std::int32_t>(rng.below(static_cast<std::uint64_t>(high - low)));
@@ -138,7 +138,7 @@ inline Case random_case(Rng& rng, const Machine& machine = rex()) {
     return c;
 }
 
-/// The record of a case as the log would have it.
+/// The log record of a case.
 inline std::string record_of(const Case& c) {
     const CellBox zone = c.zone();
     std::string bytes(record_bytes(c.audited(), zone), '\0');
@@ -146,8 +146,8 @@ inline std::string record_of(const Case& c) {
     return bytes;
 }
 
-/// The same as version 2 of the format had it: without the uncertainty of the vertical, in a
-/// snapshot of the layout of that time.
+/// The same record in format version 2: without the uncertainty of the vertical, with the snapshot
+/// layout of version 2.
 inline std::string record_of_version_2(const Case& c) {
     constexpr std::uint32_t kLayoutOfVersion2 = 4;
     const auto copy = std::make_unique<grid::MapSnapshot>(*c.map);
@@ -161,7 +161,7 @@ inline std::string record_of_version_2(const Case& c) {
         write_record(hash_of(c.machine), audited, zone, bytes.data());
         return bytes;
     };
-    // The field lies where records of two values differ.
+    // The field is at the position where records with two values differ.
     const std::string bytes = written(0);
     const std::string other = written(0xffffffff);
     const auto at = std::mismatch(bytes.begin(), bytes.end(), other.begin()).first - bytes.begin();

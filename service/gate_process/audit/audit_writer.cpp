@@ -10,8 +10,7 @@
 
 namespace surefoot::gate_process {
 
-/// zstd at its fastest level: cells of a floor shrink tenfold, and the rest of the machine needs
-/// the processor more.
+/// zstd at its fastest level: floor cells shrink tenfold, and the processor is needed elsewhere.
 struct AuditWriter::Packer {
     static constexpr int kLevel = 1;
     ZSTD_CCtx* context = ZSTD_createCCtx();
@@ -22,7 +21,7 @@ struct AuditWriter::Packer {
     Packer& operator=(const Packer&) = delete;
     ~Packer() { ZSTD_freeCCtx(context); }
 
-    /// The payload packed, or as it is where that is shorter.
+    /// The packed payload, or the plain one if it is shorter.
     std::string_view pack(std::string_view plain, FrameEncoding& encoding) {
         const std::size_t bytes = ZSTD_compressCCtx(
             context, packed.data(), packed.size(), plain.data(), plain.size(), kLevel);
@@ -48,7 +47,7 @@ Status AuditWriter::open() {
 
 Status AuditWriter::write(FrameKind kind, std::string_view payload) {
     const std::uint64_t grown = logs_.empty() ? 0 : logs_.back().bytes + payload.size();
-    // As if it did not shrink: the limit is kept without packing twice.
+    // Uses the plain size, so that the limit holds without packing twice.
     if (is_open_ && grown > files_.file_bytes) {
         if (auto status = sync(); !status) return status;
         leave_file();
@@ -60,13 +59,13 @@ Status AuditWriter::write(FrameKind kind, std::string_view payload) {
 Status AuditWriter::sync() {
     if (!is_open_ || synced_) return {};
     Status status = disk_->sync();
-    // Whether the system still has what it failed to write nobody knows: another file is begun.
+    // After a failed write the content of the file is uncertain: continue in a new file.
     if (!status) leave_file();
     synced_ = true;
     return status;
 }
 
-/// Numbers go on where the folder's last file ended, whoever wrote it.
+/// Opens the file with the number after the folder's last file, from any process.
 Status AuditWriter::begin_file() {
     if (!listed_) {
         auto entries = disk_->list();
@@ -90,7 +89,7 @@ Status AuditWriter::begin_file() {
     logs_.push_back({name, head_.number, 0});
     is_open_ = true;
     if (auto status = append(FrameKind::file, format_file_head(head_)); !status) {
-        // An empty file says nothing: its number is used again.
+        // An empty file holds no data: reuse its number.
         disk_->close();
         is_open_ = false;
         if (disk_->remove(name)) logs_.pop_back();
@@ -117,7 +116,7 @@ Status AuditWriter::append(FrameKind kind, std::string_view payload) {
     return {};
 }
 
-/// All bytes, or none of them.
+/// Writes all bytes or none.
 Status AuditWriter::put(std::string_view bytes) {
     Log& log = logs_.back();
     std::size_t done = 0;
@@ -126,11 +125,11 @@ Status AuditWriter::put(std::string_view bytes) {
         const AuditDisk::Written written = disk_->write(bytes.substr(done));
         done += written.bytes;
         idle = written.bytes == 0 ? idle + 1 : 0;
-        constexpr int kMostIdle = 16;  // interrupted, or a system that takes nothing
+        constexpr int kMostIdle = 16;  // interrupted, or no bytes accepted
         if (written.error == 0 && idle < kMostIdle) continue;
         const Error error =
             output_error(log.name + ": " +
-                         (written.error == 0 ? "nothing is taken"
+                         (written.error == 0 ? "the disk accepts no bytes"
                                              : std::generic_category().message(written.error)));
         if (done > 0 && !disk_->truncate(log.bytes)) leave_file();
         return error;
@@ -151,7 +150,7 @@ std::uint64_t AuditWriter::folder_bytes() const noexcept {
     return bytes;
 }
 
-/// Room for the file that was just begun. What cannot be removed is tried again with the next file.
+/// Makes room for the new file. Files that cannot be removed are retried with the next file.
 void AuditWriter::remove_oldest() {
     while (logs_.size() > 1 && folder_bytes() + files_.file_bytes > files_.total_bytes) {
         if (!disk_->remove(logs_.front().name)) return;

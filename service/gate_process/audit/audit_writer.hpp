@@ -13,15 +13,15 @@
 namespace surefoot::gate_process {
 
 struct AuditFiles {
-    std::uint64_t run_id = 0;  ///< of this process; names its files
+    std::uint64_t run_id = 0;  ///< id of this process; part of the file names
     std::uint64_t file_bytes = 16ULL
                                << 20U;  ///< a file that would grow beyond gives way to a new one
-    std::uint64_t total_bytes = 1ULL << 30U;  ///< of the folder's logs; the oldest go first
+    std::uint64_t total_bytes = 1ULL << 30U;  ///< limit for the folder; the oldest logs go first
 };
 
-/// Frames to files, in a chain that goes on over them. A frame is written whole or taken back, and
-/// where it cannot be taken back its file is left and the chain goes on in a new one. One thread;
-/// every call may take as long as the disk does.
+/// Writes frames to files, in one chain across files. A frame is written completely or removed. If
+/// it cannot be removed, the file is abandoned and the chain continues in a new one. Use it from
+/// one thread; every call may block as long as the disk does.
 class AuditWriter {
   public:
     AuditWriter(const Machine& machine, std::unique_ptr<AuditDisk> disk, const AuditFiles& files);
@@ -29,11 +29,11 @@ class AuditWriter {
     AuditWriter(const AuditWriter&) = delete;
     AuditWriter& operator=(const AuditWriter&) = delete;
 
-    /// Begins a file where none is open.
+    /// Opens a file if none is open.
     [[nodiscard]] Status open();
-    /// After an error nothing of the frame counts as written; it may be tried again.
+    /// Writes one frame. After an error nothing of the frame counts as written; retry it.
     [[nodiscard]] Status write(FrameKind kind, std::string_view payload);
-    /// What was written survives a loss of power. After an error the file is left.
+    /// Makes the written frames safe against a power loss. After an error the file is abandoned.
     [[nodiscard]] Status sync();
     [[nodiscard]] bool is_synced() const noexcept { return synced_; }
 
@@ -57,7 +57,7 @@ class AuditWriter {
     std::unique_ptr<AuditDisk> disk_;
     AuditFiles files_;
     std::unique_ptr<Packer> packer_;
-    std::vector<Log> logs_;  ///< oldest first; the last one is open when `is_open_`
+    std::vector<Log> logs_;  ///< oldest first; the last one is open if `is_open_`
     bool listed_ = false;
     bool is_open_ = false;
     bool synced_ = true;

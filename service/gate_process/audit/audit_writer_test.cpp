@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever the disk does, the files are a chain that the reader follows without damage.
+// Whatever the disk does, the files form a chain that the reader follows without damage.
 #include "service/gate_process/audit/audit_writer.hpp"
 
 #include <gtest/gtest.h>

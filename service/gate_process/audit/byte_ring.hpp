@@ -9,28 +9,28 @@
 
 namespace surefoot::gate_process {
 
-/// Entries of any length from one thread to one other, without a lock and without allocating: what
-/// has no room is refused. The writing thread calls `reserve`, `commit` and `oldest`, the reading
-/// one `front` and `pop`.
+/// A queue of entries of any length between two threads, without lock or allocation. An entry
+/// without room is rejected. The writing thread calls `reserve`, `commit` and `oldest`; the reading
+/// thread calls `front` and `pop`.
 class ByteRing {
   public:
-    /// All memory is taken, and touched, here. Room for entries of up to half of it.
+    /// Allocates and touches all memory. The largest entry takes half of it.
     explicit ByteRing(std::size_t bytes);
 
-    /// Where an entry of `bytes` bytes may be written; nullptr when there is no room.
+    /// Memory for an entry of `bytes` bytes; nullptr = no room.
     [[nodiscard]] char* reserve(std::size_t bytes) noexcept;
-    /// Hands over the entry that was reserved last.
+    /// Publishes the entry that was reserved last.
     void commit() noexcept;
-    /// The entry that waits longest, as the writing thread sees it: perhaps it is being read, and
-    /// only the next `reserve` may overwrite it. Empty when none waits.
+    /// The oldest entry, for the writing thread. The reader may be reading it, and only the next
+    /// `reserve` may overwrite it. Empty if no entry waits.
     [[nodiscard]] std::string_view oldest() const noexcept;
 
-    /// The entry that waits longest; empty when none does.
+    /// The oldest entry; empty if no entry waits.
     [[nodiscard]] std::string_view front() const noexcept;
     void pop() noexcept;
 
   private:
-    /// Each entry is its length and its bytes, rounded up to 8; positions only grow.
+    /// An entry is its length and its bytes, rounded up to 8. Positions only increase.
     struct Place {
         std::uint64_t position = 0;
         std::uint64_t length = 0;

@@ -17,22 +17,22 @@
 
 namespace surefoot::gate_process::testing {
 
-/// A folder in memory that can be full, broken, slow or stubborn. Test and log look at it together.
+/// A folder in memory that can be full, broken, slow or blocked; shared by test and log.
 struct Platter {
     std::mutex mutex;
     std::condition_variable changed;
     std::map<std::string, std::string> files;
-    std::uint64_t room = std::numeric_limits<std::uint64_t>::max();  ///< beyond it: ENOSPC
+    std::uint64_t room = std::numeric_limits<std::uint64_t>::max();  ///< limit; beyond it: ENOSPC
     std::size_t most_per_write = std::numeric_limits<std::size_t>::max();
     int write_error = 0;
     bool fails_create = false;
     bool fails_truncate = false;
     bool fails_sync = false;
     bool fails_remove = false;
-    bool hangs = false;  ///< writing does not return
-    int waiting = 0;     ///< writes that hang
+    bool hangs = false;  ///< writes do not return
+    int waiting = 0;     ///< number of writes that hang
     int syncs = 0;
-    int creates = 0;  ///< tries
+    int creates = 0;  ///< attempts to create a file
 
     template <typename Change>
     void set(Change change) {
@@ -50,7 +50,7 @@ struct Platter {
         for (const auto& [name, content] : files) bytes += content.size();
         return bytes;
     }
-    /// The files in their order, as the reader gets them.
+    /// Reads the files in order, like AuditReader.
     [[nodiscard]] AuditSummary read(AuditReader::OnVerdict on_verdict = {},
                                     AuditReader::OnAct on_act = {}) {
         const std::lock_guard lock(mutex);

@@ -14,7 +14,7 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// A pipe of this name must not make the caller wait.
+/// O_NONBLOCK: a pipe with this name must not block the caller.
 constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
 
 std::string system_words() {
@@ -25,7 +25,7 @@ bool is_regular(int file, struct stat& info) noexcept {
     return ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/// Who writes: "process 1234 (surefoot)".
+/// The lock holder for messages: "process 1234 (surefoot)".
 std::string owner_words(const ChannelFile& file) {
     ChannelBegin begin;
     if (!file.read(&begin, sizeof(begin), 0) || begin.owner == 0) return "another process";
@@ -61,7 +61,7 @@ Result<ChannelFile> ChannelFile::open(const std::string& path) {
 }
 
 Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t magic) {
-    // The owner before may delete the file between our opening and our lock: then once more.
+    // The previous owner may delete the file between open and lock: then retry.
     constexpr int kAttempts = 10;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         ChannelFile file(::open(path.c_str(), kFlags | O_CREAT, 0600));
@@ -83,11 +83,11 @@ Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t mag
         if (info.st_size > 0 &&
             (!file.read(&begin, sizeof(begin), 0) || (begin.magic != magic && begin.magic != 0)))
             return channel_error(
-                path, "it is a file of another kind; delete it, or name another file (--channel)");
+                path, "it is not a snapshot channel; delete it, or name another file (--channel)");
         if ((info.st_mode & 0777U) != 0600U && ::fchmod(file.file_, 0600) != 0)
             return channel_error(path, "its rights cannot be set: " + system_words());
         begin.owner = static_cast<std::uint64_t>(::getpid());
-        file.write(&begin, sizeof(begin), 0);  // a full disk is found when the file gets its size
+        file.write(&begin, sizeof(begin), 0);  // resize() detects a full disk
         return file;
     }
     return channel_error(path, "other processes keep deleting it");
@@ -121,10 +121,11 @@ bool ChannelFile::write(const void* in, std::size_t bytes, std::size_t offset) c
 
 Status ChannelFile::resize(std::size_t bytes) const {
     const auto size = static_cast<off_t>(bytes);
-    if (::ftruncate(file_, size) != 0) return input_error("no size: " + system_words());
+    if (::ftruncate(file_, size) != 0)
+        return input_error("the file size cannot be set: " + system_words());
     if (const int error = ::posix_fallocate(file_, 0, size); error != 0)
         return input_error(std::to_string(bytes) +
-                           " bytes are not to be had: " + std::generic_category().message(error));
+                           " bytes cannot be allocated: " + std::generic_category().message(error));
     return {};
 }
 

@@ -11,14 +11,14 @@
 
 namespace surefoot::gate_process {
 
-/// How every channel begins.
+/// The first bytes of every channel file.
 struct ChannelBegin {
-    std::uint64_t magic = 0;  ///< of the kind of file; 0 while the file is new
-    std::uint64_t owner = 0;  ///< process that holds the lock, or held it last
+    std::uint64_t magic = 0;  ///< identifies the kind of file; 0 in a new file
+    std::uint64_t owner = 0;  ///< id of the process that holds the lock, or held it last
 };
 
-/// The open file of a snapshot channel, read and written by system calls: a file that another
-/// process cuts off gives a short read, where a mapped file would end the process (SIGBUS).
+/// The open file of a snapshot channel. Uses system calls, because a truncated file then gives a
+/// short read; a mapped file would end the process (SIGBUS).
 class ChannelFile {
   public:
     ChannelFile() = default;
@@ -26,24 +26,24 @@ class ChannelFile {
     ChannelFile& operator=(ChannelFile&& other) noexcept;
     ~ChannelFile();
 
-    /// For a reader: an existing regular file.
+    /// Opens an existing regular file for reading.
     [[nodiscard]] static Result<ChannelFile> open(const std::string& path);
-    /// For the one writer: makes the file (rights 0600) where it is missing and locks it. The lock
-    /// ends with the process, however it ends, and the file keeps the process's number. Errors:
-    /// another process holds the lock (named); the file is no regular file, another user's, or not
-    /// empty and does not begin with `magic`.
+    /// Opens the file for the only writer: creates it (rights 0600) if it is missing, and locks it.
+    /// The lock ends with the process; the file keeps the process id. Errors: another process holds
+    /// the lock (the message names it), or the file is not regular, belongs to another user, or is
+    /// not empty and does not begin with `magic`.
     [[nodiscard]] static Result<ChannelFile> lock(const std::string& path, std::uint64_t magic);
 
-    /// Whether all of the bytes were there.
+    /// Returns true if all bytes were read.
     [[nodiscard]] bool read(void* out, std::size_t bytes, std::size_t offset) const noexcept;
-    /// Whether all of the bytes were taken.
+    /// Returns true if all bytes were written.
     bool write(const void* in, std::size_t bytes, std::size_t offset) const noexcept;
-    /// Gives the file this size, with memory behind it: later writes do not fail for want of room.
+    /// Sets the file size and allocates its memory, so that later writes do not lack space.
     [[nodiscard]] Status resize(std::size_t bytes) const;
 
-    /// 0 where the system does not say it.
+    /// 0 if the system call fails.
     [[nodiscard]] std::size_t size() const noexcept;
-    /// Whether this path names this file.
+    /// True if this path still refers to this file.
     [[nodiscard]] bool is_at(const std::string& path) const noexcept;
 
   private:
@@ -52,7 +52,7 @@ class ChannelFile {
     int file_ = -1;
 };
 
-/// An error of a channel.
+/// Makes an error message about a channel.
 [[nodiscard]] Error channel_error(const std::string& path, const std::string& what);
 
 }  // namespace surefoot::gate_process

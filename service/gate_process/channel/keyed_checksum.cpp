@@ -43,7 +43,7 @@ Error key_error(const std::string& path, const std::string& what) {
     return usage_error("key file " + path + ": " + what);
 }
 
-/// A key has 32 digits; a file that is longer than this is something else.
+/// Reads at most a few bytes: a key has 32 digits, so a longer file is no key file.
 Result<std::string> read_small_file(const std::string& path) {
     constexpr std::size_t kMost_bytes = 64;
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

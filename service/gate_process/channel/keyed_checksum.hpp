@@ -18,27 +18,27 @@ struct ChecksumKey {
     friend bool operator==(const ChecksumKey&, const ChecksumKey&) = default;
 };
 
-/// A new key from the random numbers of the system.
+/// Makes a key from the random numbers of the system.
 [[nodiscard]] Result<ChecksumKey> new_checksum_key();
-/// Reads a key from a file: 32 hexadecimal digits, white space around them. An error names the file
-/// and says why: not a regular file, readable by other users, or not 32 digits.
+/// Reads a key file: 32 hexadecimal digits, optionally with white space around them. An error names
+/// the file and the cause: not regular, readable by other users, not 32 digits.
 [[nodiscard]] Result<ChecksumKey> read_checksum_key(const std::string& path);
-/// The key as 16 bytes, as the processes hand it on.
+/// The key as 16 bytes, for passing it between the processes.
 [[nodiscard]] std::string bytes_of(const ChecksumKey& key);
-/// The key of the first 16 of `bytes`. Precondition: there are as many.
+/// The key from the first 16 of `bytes`. Precondition: `bytes` has at least 16.
 [[nodiscard]] ChecksumKey key_of(std::string_view bytes) noexcept;
 
-/// A checksum that nobody can make without the key: SipHash-2-4 (Aumasson, Bernstein: "SipHash: a
-/// fast short-input PRF", INDOCRYPT 2012). 64 bits: a forger without the key succeeds once in 2^64
-/// attempts. About 1 ms for 3 MB.
+/// A checksum that cannot be forged without the key: SipHash-2-4 (Aumasson, Bernstein: "SipHash: a
+/// fast short-input PRF", INDOCRYPT 2012). 64 bits: an attempt without the key succeeds with
+/// probability 2^-64. About 1 ms for 3 MB.
 class KeyedChecksum {
   public:
     explicit KeyedChecksum(const ChecksumKey& key) noexcept;
 
     void add(std::uint64_t word) noexcept;
-    /// Whole words; what is left of them, up to 7 bytes, must be the end of the message.
+    /// Adds bytes in whole words; only the end of the message may have 1 to 7 bytes more.
     void add(std::span<const unsigned char> bytes) noexcept;
-    /// Once, at the end.
+    /// Returns the checksum. Call it once, at the end.
     [[nodiscard]] std::uint64_t finish() noexcept;
 
   private:
@@ -48,8 +48,8 @@ class KeyedChecksum {
     std::uint64_t v1_;
     std::uint64_t v2_;
     std::uint64_t v3_;
-    std::uint64_t tail_ = 0;    ///< the bytes of the last, broken word
-    std::uint64_t length_ = 0;  ///< bytes so far
+    std::uint64_t tail_ = 0;    ///< the bytes of the last, incomplete word
+    std::uint64_t length_ = 0;  ///< number of bytes so far
 };
 
 }  // namespace surefoot::gate_process

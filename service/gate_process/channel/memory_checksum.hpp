@@ -9,13 +9,13 @@
 
 namespace surefoot::gate_process {
 
-/// A keyed checksum of a large piece of memory, several times as fast as KeyedChecksum alone: each
-/// block of 1024 bytes is hashed to 16 bytes with secret numbers (NH with words of 64 bits: Black,
-/// Halevi, Krawczyk, Krovetz, Rogaway: "UMAC: fast and secure message authentication", CRYPTO 1999,
-/// section 4), and KeyedChecksum takes the labels, the length and these hashes. Two different
-/// messages of one length have the same hashes with a probability of at most 2^-64, whoever chose
-/// them, because the secret numbers never show. `labels`: what the memory belongs to; always as
-/// many.
+/// A keyed checksum of a large memory block, several times as fast as KeyedChecksum alone. NH
+/// hashes each block of 1024 bytes to 16 bytes with secret 64-bit words (Black, Halevi, Krawczyk,
+/// Krovetz, Rogaway: "UMAC: fast and secure message authentication", CRYPTO 1999, section 4).
+/// KeyedChecksum then hashes the labels, the length and these hashes. Two different messages of
+/// one length collide with a probability of at most 2^-64, for any choice of messages, because
+/// the secret words are never visible. `labels`: identify the memory; their number must be
+/// constant.
 [[nodiscard]] std::uint64_t memory_checksum(const ChecksumKey& key,
                                             std::initializer_list<std::uint64_t> labels,
                                             std::span<const unsigned char> bytes) noexcept;

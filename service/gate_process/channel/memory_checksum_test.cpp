@@ -36,7 +36,7 @@ std::pair<std::uint64_t, std::uint64_t> product(std::uint64_t a, std::uint64_t b
             other << 32U | (low & mask)};
 }
 
-/// The definition, byte by byte.
+/// The definition in plain code, byte by byte.
 std::uint64_t plain_checksum(std::initializer_list<std::uint64_t> labels,
                              const std::vector<unsigned char>& message) {
     std::vector<unsigned char> padded = message;

@@ -21,20 +21,20 @@ constexpr std::uint32_t kLayout = 3;
 constexpr std::uint64_t kSlots = 3;
 constexpr std::size_t kPage = 4096;
 
-/// The file begins with it; each number is read and written by itself.
+/// The first bytes of the file. Each number is read and written atomically.
 struct Head {
     ChannelBegin begin;
     std::uint32_t layout = kLayout;
     std::uint32_t snapshot_bytes = sizeof(grid::MapSnapshot);
-    std::uint64_t writer = 0;          ///< number of the present writer, 0 while it begins
+    std::uint64_t writer = 0;          ///< number of the present writer; 0 while it starts
     std::uint64_t published = 0;       ///< snapshots so far; the newest is in slot published % 3
-    std::uint64_t restart_wanted = 0;  ///< number of the writer that shall begin anew
+    std::uint64_t restart_wanted = 0;  ///< number of the writer that must restart
     std::uint64_t faults = 0;          ///< of the gate, until an operator re-arms it; 0 = none
     std::uint64_t faults_checksum = 0;
 };
 static_assert(sizeof(Head) <= kPage && std::is_trivially_copyable_v<Head>);
 
-/// A slot is a snapshot and then its checksum.
+/// A slot holds a snapshot, followed by its checksum.
 constexpr std::size_t kSlotBytes =
     (sizeof(grid::MapSnapshot) + sizeof(std::uint64_t) + kPage - 1) / kPage * kPage;
 constexpr std::size_t kFileBytes = kPage + kSlots * kSlotBytes;
@@ -43,14 +43,14 @@ constexpr std::size_t slot_at(std::uint64_t published) noexcept {
     return kPage + static_cast<std::size_t>(published % kSlots) * kSlotBytes;
 }
 
-/// Never 0, and hardly ever the same twice.
+/// A random number; never 0, and practically never repeated.
 Result<std::uint64_t> new_number() {
     const auto random = new_checksum_key();
     if (!random) return random.error();
     return random->low | 1U;
 }
 
-/// Checksums of a channel say what they belong to.
+/// The checksums of a channel include the kind of their data.
 enum class Kind : std::uint64_t { snapshot = 1, faults = 2 };
 
 std::uint64_t checksum_of(const ChecksumKey& key,
@@ -79,7 +79,7 @@ bool is_channel(const Head& head) noexcept {
 }
 
 bool write_number(const ChannelFile& file, std::size_t offset, std::uint64_t number) noexcept {
-    // What was written before is seen before.
+    // Orders the earlier writes before the following reads.
     std::atomic_thread_fence(std::memory_order_seq_cst);
     return file.write(&number, sizeof(number), offset);
 }
@@ -97,18 +97,18 @@ struct SnapshotWriter::State {
         head.published = shown;
         return head;
     }
-    /// What is wrong with the file; nothing when it is as it should be.
+    /// The damage of the file, or nothing if it is intact.
     [[nodiscard]] std::optional<std::string> damage() const;
-    /// The file as it should be, and what the gate keeps there.
+    /// Rewrites the file with the stored faults of the gate.
     [[nodiscard]] Status restore(const Head& kept);
 
     const ChannelAddress address;
-    std::mutex mutex;  ///< `publish` and `mend` are called by two threads
+    std::mutex mutex;  ///< `publish` and `mend` run on two threads
     ChannelFile file;
     std::uint64_t writer = 0;
     std::uint64_t published = 0;
-    std::uint64_t shown = 0;  ///< as in the head: `published`, or 0 while the slots are empty
-    bool failed = false;      ///< a snapshot was not taken whole
+    std::uint64_t shown = 0;  ///< as in the head: `published`, or 0 if the slots are empty
+    bool failed = false;      ///< a snapshot was not written completely
 };
 
 std::optional<std::string> SnapshotWriter::State::damage() const {
@@ -127,7 +127,7 @@ std::optional<std::string> SnapshotWriter::State::damage() const {
 Status SnapshotWriter::State::restore(const Head& kept) {
     if (auto sized = file.resize(kFileBytes); !sized)
         return channel_error(address.path, sized.error().message);
-    shown = 0;  // what was cut off is lost
+    shown = 0;  // data that was cut off is lost
     Head head = own_head();
     head.restart_wanted = kept.restart_wanted;
     head.faults = kept.faults;
@@ -149,7 +149,7 @@ Result<SnapshotWriter> SnapshotWriter::create(ChannelAddress address) {
     const auto number = new_number();
     if (!number) return number.error();
     state->writer = *number;
-    Head head;  // the gate's faults end with a new start of perception
+    Head head;  // a new start of perception clears the faults of the gate
     head.faults_checksum = checksum_of_faults(state->address.key, 0);
     if (auto restored = state->restore(head); !restored) return restored.error();
     return SnapshotWriter(std::move(state));
@@ -158,8 +158,8 @@ Result<SnapshotWriter> SnapshotWriter::create(ChannelAddress address) {
 void SnapshotWriter::begin_anew() noexcept {
     const std::scoped_lock lock(state_->mutex);
     State& s = *state_;
-    write_number(s.file, offsetof(Head, writer), 0);  // nobody believes the slots meanwhile
-    // The number only has to be another one: without random numbers it is the next.
+    write_number(s.file, offsetof(Head, writer), 0);  // readers reject the slots during the restart
+    // The number only needs to differ: without random numbers use the next one.
     const auto number = new_number();
     s.writer = number ? *number : s.writer + 2;
     s.published = s.shown = 0;
@@ -217,7 +217,7 @@ Result<SnapshotReader> SnapshotReader::open(ChannelAddress address) {
     Head head;
     if (reader.file_.size() < kFileBytes || !read_head(reader.file_, head) || !is_channel(head))
         return channel_error(reader.address_.path,
-                             "it is no channel of this version; restart both programs");
+                             "it is not a channel of this program version; restart both programs");
     return reader;
 }
 
@@ -260,8 +260,8 @@ SnapshotReader::Read SnapshotReader::read(grid::MapSnapshot& out) noexcept {
             seen_ = head.published;
             return Read::fresh;
         }
-        // The writer comes back to this slot two publications later: while the numbers stay, only
-        // another process changes it.
+        // The writer returns to this slot after two more publications. If the numbers are
+        // unchanged, only another process can have changed the slot.
         std::atomic_thread_fence(std::memory_order_seq_cst);
         Head after;
         if (!is_whole() || !read_head(file_, after)) return Read::lost;

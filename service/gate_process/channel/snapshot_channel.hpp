@@ -14,41 +14,41 @@
 
 namespace surefoot::gate_process {
 
-/// Where a channel is, and the key of its checksums. Who has the key can publish maps.
+/// Path of a channel and the key of its checksums. A process with the key can publish maps.
 struct ChannelAddress {
     std::string path;
     ChecksumKey key;
 };
 
-/// Map snapshots from perception to the gate process, through a file in shared memory (a tmpfs):
-/// three slots, so that neither side ever waits for the other. The reader gets a whole snapshot or
-/// none. Each snapshot has a checksum with the key of both processes, over its writer and its
-/// number too: what another process writes, copies or brings back is found. One writer, any number
-/// of readers.
+/// Sends map snapshots from perception to the gate process through a file in shared memory
+/// (tmpfs). Three slots: no side waits for the other. The reader gets a complete snapshot or
+/// nothing. Each snapshot has a keyed checksum that also covers its writer and its number, so the
+/// reader detects a snapshot that another process writes, copies or replays. One writer, any
+/// number of readers.
 ///
-/// The writer gives itself a number at every start, so that the gate knows when another map and
-/// another odom begin.
+/// The writer takes a new number at every start. A new number tells the gate that map and odom are
+/// new.
 class SnapshotWriter {
   public:
-    /// Takes over the file that an earlier writer left. Fails while another process writes into it.
+    /// Takes over the file of an earlier writer. Fails while another process holds its lock.
     [[nodiscard]] static Result<SnapshotWriter> create(ChannelAddress address);
     SnapshotWriter(SnapshotWriter&& other) noexcept;
     SnapshotWriter& operator=(SnapshotWriter&&) = delete;
     ~SnapshotWriter();
 
-    /// Waits for nobody but `mend`, allocates nothing; about 0.5 ms.
+    /// Waits only for `mend`; allocates nothing; about 0.5 ms.
     void publish(const grid::MapSnapshot& map) noexcept;
-    /// An operator re-armed the gate after a fault: map and odom shall begin anew. Answered by
-    /// `begin_anew`.
+    /// True if an operator re-armed the gate after a fault: map and odom must restart. Answer it
+    /// with `begin_anew`.
     [[nodiscard]] bool restart_wanted() const noexcept;
-    /// Empties the slots; a new number.
+    /// Empties the slots and takes a new number.
     void begin_anew() noexcept;
-    /// To be called a few times a second, from any thread: when the file was deleted, replaced, cut
-    /// off or changed by another process, or a snapshot did not fit, makes the file whole again and
-    /// returns what had happened. The faults that the gate keeps there stay. Fails when another
-    /// process has taken the name.
+    /// Call it a few times a second, from any thread. Repairs the file if another process deleted,
+    /// replaced, truncated or changed it, or if a snapshot did not fit. Returns the cause, or
+    /// nothing if the file is intact. Faults that the gate stored in the file stay. Fails if
+    /// another process has taken the name.
     [[nodiscard]] Result<std::optional<std::string>> mend();
-    /// Deletes the file, if its name is still ours.
+    /// Deletes the file if its name still refers to this file.
     void remove() noexcept;
 
   private:
@@ -63,41 +63,41 @@ class SnapshotReader {
     [[nodiscard]] static Result<SnapshotReader> open(ChannelAddress address);
 
     enum class Read : std::uint8_t {
-        nothing,  ///< none was published by this writer
-        same,     ///< none since the last fresh one; `out` is untouched
-        fresh,    ///< `out` is the newest
-        torn,     ///< it was overwritten while it was copied, three times; `out` is of no use
-        forged,   ///< not made by who has the key, or older than the last one; `out` is of no use
-        lost      ///< the file was deleted, replaced or cut off: `reopen`
+        nothing,  ///< this writer has not published a snapshot
+        same,     ///< nothing new since the last fresh one; `out` is unchanged
+        fresh,    ///< `out` is the newest snapshot
+        torn,     ///< overwritten during the copy, three times; `out` is invalid
+        forged,   ///< made without the key, or older than the last one; `out` is invalid
+        lost      ///< the file was deleted, replaced or truncated: call `reopen`
     };
     [[nodiscard]] Read read(grid::MapSnapshot& out) noexcept;
-    /// Whether `read` would give something fresh.
+    /// True if `read` would return a new snapshot.
     [[nodiscard]] bool has_fresh() const noexcept;
-    /// Opens the file that has the name now. What was read before stays known: nothing older comes.
+    /// Opens the file that now has the name. Snapshots older than the last read one stay rejected.
     [[nodiscard]] Status reopen();
-    /// Number of the writer at the last `read`; 0 = there was none yet.
+    /// Number of the writer at the last `read`; 0 = no writer yet.
     [[nodiscard]] std::uint64_t writer() const noexcept { return writer_; }
-    /// Asks the present writer to begin anew.
+    /// Asks the present writer to restart map and odom (see `restart_wanted`).
     void want_restart() noexcept;
-    /// What has to outlive the gate's process: bits that mean something to the gate, 0 = nothing.
-    /// They stay until they are set anew or perception is started again.
+    /// Stores bits that must survive the gate process (0 = none). Only the gate gives them a
+    /// meaning. They stay until the next call or the next start of perception.
     void keep_faults(std::uint64_t bits) noexcept;
-    /// The highest bit alone, where what is kept was not written by who has the key.
+    /// The stored bits; only the highest bit if they were not written with the key.
     [[nodiscard]] std::uint64_t kept_faults() const noexcept;
 
   private:
     SnapshotReader(ChannelAddress address, ChannelFile file)
         : address_(std::move(address)), file_(std::move(file)) {}
-    /// Still under its name, and not cut off.
+    /// True if the file has its name and its full size.
     [[nodiscard]] bool is_whole() const noexcept;
-    /// Copies the snapshot; whether it is that publication of the writer.
+    /// Copies the snapshot. True if it is the given publication of the writer.
     [[nodiscard]] bool is_genuine(std::uint64_t published, grid::MapSnapshot& out) const noexcept;
 
     ChannelAddress address_;
     ChannelFile file_;
     std::uint64_t writer_ = 0;
-    std::uint64_t seen_ = 0;    ///< publication that was read last
-    std::uint64_t forged_ = 0;  ///< publication of this writer that was found forged; 0 = none
+    std::uint64_t seen_ = 0;    ///< the publication that was read last
+    std::uint64_t forged_ = 0;  ///< a forged publication of this writer; 0 = none
 };
 
 }  // namespace surefoot::gate_process

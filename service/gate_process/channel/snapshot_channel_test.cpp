@@ -33,7 +33,7 @@ class SnapshotChannel : public ::testing::Test {
     }
     ~SnapshotChannel() override { std::filesystem::remove_all(folder_); }
 
-    /// A snapshot whose every cell says its version, sealed.
+    /// Writes the version into every cell of a snapshot and seals it.
     static void fill(grid::MapSnapshot& map, std::uint64_t version) {
         map.version = version;
         map.resolution_tenth_mm = 250;
@@ -48,7 +48,7 @@ class SnapshotChannel : public ::testing::Test {
         return map;
     }
 
-    /// As another process would.
+    /// Changes the file like another process.
     void change(std::size_t offset, const std::string& bytes) const {
         std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
         file.seekp(static_cast<std::streamoff>(offset));
@@ -161,7 +161,7 @@ TEST_F(SnapshotChannel, what_is_no_channel_is_refused_in_words) {
     { std::ofstream(path_) << "something else of mine"; }
     EXPECT_FALSE(SnapshotReader::open(address_).ok());
     EXPECT_FALSE(SnapshotReader::open({folder_.string(), {}}).ok());
-    // Of the right size, and still none.
+    // Of the right size, but not a channel.
     std::filesystem::remove(path_);
     ASSERT_TRUE(SnapshotWriter::create(address_).ok());
     change(16, "x");  // its layout
@@ -176,7 +176,7 @@ TEST_F(SnapshotChannel, a_writer_destroys_no_file_of_another_kind) {
     { std::ofstream(path_) << "something else of mine"; }
     const auto refused = SnapshotWriter::create(address_);
     ASSERT_FALSE(refused.ok());
-    EXPECT_NE(refused.error().message.find("a file of another kind"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("not a snapshot channel"), std::string::npos);
     EXPECT_EQ(std::filesystem::file_size(path_), 22U);
     std::filesystem::remove(path_);
     ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
@@ -210,7 +210,7 @@ TEST_F(SnapshotChannel, of_a_killed_writer_is_taken_over) {
     if (child == 0) {
         const auto writer = SnapshotWriter::create(address_);
         std::ignore = ::write(ends[1], writer.ok() ? "+" : "-", 1);
-        ::alarm(60);  // not for ever, whatever becomes of the test
+        ::alarm(60);  // limits the duration of a test that hangs
         ::pause();
         ::_exit(1);
     }
@@ -241,7 +241,7 @@ TEST_F(SnapshotChannel, is_removed_by_its_owner_alone) {
     EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
-// Each of them is found by both sides, mended by the writer, and the next map arrives.
+// Both sides detect each kind of damage, the writer repairs it, and the next map arrives.
 TEST_F(SnapshotChannel, that_is_lost_is_mended) {
     auto writer = SnapshotWriter::create(address_);
     auto reader = SnapshotReader::open(address_);
@@ -310,7 +310,7 @@ TEST_F(SnapshotChannel, that_another_process_took_is_not_fought_over) {
     EXPECT_NE(mended.error().message.find("writes into it"), std::string::npos);
 }
 
-// What a process of the same user can write without the key.
+// Everything that a process of the same user can write without the key.
 class Forgery : public SnapshotChannel {
   protected:
     void SetUp() override {
@@ -323,7 +323,7 @@ class Forgery : public SnapshotChannel {
         ASSERT_EQ(reader_->read(*out_), Read::fresh);
         writer_->publish(*filled(2));
     }
-    /// Where the newest snapshot is in the file.
+    /// Offset of the newest snapshot in the file.
     std::size_t newest() {
         const auto map = filled(2);
         std::ifstream file(path_, std::ios::binary);
@@ -361,7 +361,7 @@ TEST_F(Forgery, one_flipped_bit_is_found) {
 
 TEST_F(Forgery, a_map_with_the_right_checksum_of_a_map_is_found) {
     auto map = filled(2);
-    map->height_tenth_mm.fill(-7);  // a floor where there is none
+    map->height_tenth_mm.fill(-7);  // a floor that does not exist
     grid::seal(*map);
     ASSERT_TRUE(grid::is_intact(*map));
     change(newest(), std::string(reinterpret_cast<const char*>(map.get()), sizeof(*map)));
@@ -402,7 +402,7 @@ TEST_F(Forgery, kept_faults_cannot_be_cleared_without_the_key) {
     EXPECT_EQ(reader_->kept_faults(), std::uint64_t{1} << 63U);
 }
 
-// A writer that never pauses: whatever is read is one snapshot, never parts of two.
+// A writer that never pauses: every read snapshot is complete, never a mix of two.
 TEST_F(SnapshotChannel, snapshots_are_never_torn) {
     auto writer = SnapshotWriter::create(address_);
     auto reader = SnapshotReader::open(address_);
@@ -418,7 +418,7 @@ TEST_F(SnapshotChannel, snapshots_are_never_torn) {
     });
     int fresh = 0;
     int broken = 0;
-    while (fresh < 500) {  // the writer never pauses: there is always another one
+    while (fresh < 500) {  // the writer never pauses, so there is always a next snapshot
         if (reader->read(*out_) != Read::fresh) continue;
         ++fresh;
         if (!grid::is_intact(*out_)) ++broken;
@@ -428,7 +428,7 @@ TEST_F(SnapshotChannel, snapshots_are_never_torn) {
     EXPECT_EQ(broken, 0);
 }
 
-// Killed in the middle of a write, over and over: the next writer is understood all the same.
+// Kills the writer during a write, repeatedly: the next writer always works.
 TEST_F(SnapshotChannel, a_writer_that_is_killed_while_writing_harms_nobody) {
     { ASSERT_TRUE(SnapshotWriter::create(address_).ok()); }
     auto reader = SnapshotReader::open(address_);

@@ -13,7 +13,7 @@ const Json* member(const Json& object, const char* name) {
     return found == object.end() ? nullptr : &*found;
 }
 
-/// A whole number from `least` to `most`, written as one.
+/// A JSON integer from `least` to `most`.
 std::optional<std::uint64_t> whole_number(const Json& value,
                                           std::uint64_t least,
                                           std::uint64_t most) {
@@ -23,7 +23,7 @@ std::optional<std::uint64_t> whole_number(const Json& value,
     return number;
 }
 
-/// The number of that name, or NaN.
+/// The number with that name, or NaN.
 double number_member(const Json& object, const char* name) {
     const Json* value = member(object, name);
     if (value == nullptr || !value->is_number()) return std::nan("");
@@ -63,7 +63,7 @@ StepRequest read_step_request(const Json& args) {
     }
     const Json* direction = argument(args, "direction", 0);
     if (direction == nullptr)
-        return refuse(request, gate::Reason::bad_message, "direction is missing");
+        return refuse(request, gate::Reason::bad_message, "the argument direction is missing");
     const auto command = whole_number(*direction, 0, kMaxCommand);
     if (!command)
         return refuse(request, gate::Reason::bad_number, "direction: a whole number from 0 to 255");
@@ -96,9 +96,9 @@ Result<GoalQuestion> read_goal(const Json& message) {
     const double w = number_member(*rotation, "w");
     const double norm_sq = x * x + y * y + z * z + w * w;
     if (!std::isfinite(goal.x_m) || !std::isfinite(goal.y_m) || !std::isfinite(z_m))
-        return input_error("goal: a coordinate of the position is no number");
+        return input_error("goal: a coordinate of pose.position is not a finite number");
     if (!(std::abs(norm_sq - 1.0) <= kUnitTolerance))  // NaN included
-        return input_error("goal: the orientation is no unit quaternion");
+        return input_error("goal: pose.orientation is not a unit quaternion");
     goal.yaw_rad = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
     return goal;
 }

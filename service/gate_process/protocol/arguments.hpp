@@ -9,36 +9,36 @@
 #include "service/gate_process/step_gate.hpp"
 #include "surefoot/gate/reason.hpp"
 
-/// Foreign values into typed ones. Nothing is guessed: a number in quotes, a fraction where a whole
-/// number belongs, null and true are no numbers.
+/// Converts untrusted JSON values to types without guessing: a number in quotes, null, true, or a
+/// fraction for an integer is an error.
 namespace surefoot::gate_process {
 
-/// 2^53 - 1: the largest whole number that every JSON reader keeps exactly.
+/// 2^53 - 1: the largest integer that every JSON reader represents exactly.
 inline constexpr std::uint64_t kMaxExact = (std::uint64_t{1} << 53U) - 1;
 
-/// The argument of a call: a member of an object, or the place in a list (rosbridge allows both);
-/// nullptr where it is missing.
+/// An argument of a call: the member `name` of an object, or element `place` of a list (rosbridge
+/// allows both). nullptr if it is missing.
 [[nodiscard]] const Json* argument(const Json& args, const char* name, std::size_t place);
-/// The first argument as text, or an empty one.
+/// The first argument as text; empty if it is missing or not text.
 [[nodiscard]] std::string text_argument(const Json& args, const char* name);
-/// A member of an object as text, or an empty one.
+/// A member of an object as text; empty if it is missing or not text.
 [[nodiscard]] std::string text_member(const Json& object, const char* name);
 
-/// What a client wants to know of a step; `problem` is none when it could be read.
+/// A client's question about a step; `problem` is none if it is valid.
 struct StepRequest {
     std::uint8_t command = 0;
     std::optional<std::uint64_t> sequence;
     gate::Reason problem = gate::Reason::none;
-    std::string text;  ///< of the problem
+    std::string text;  ///< message about the problem
 };
 /// {direction, sequence?} or [direction, sequence?].
 [[nodiscard]] StepRequest read_step_request(const Json& args);
 
-/// A finite number, in m.
+/// Reads a finite number in m.
 [[nodiscard]] Result<double> read_radius(const Json& args);
 
-/// A geometry_msgs/PoseStamped: position and a unit quaternion, of which the yaw counts. The
-/// connection is left for the caller.
+/// Reads a geometry_msgs/PoseStamped: position and unit quaternion (only its yaw is used). Leaves
+/// `connection` to the caller.
 [[nodiscard]] Result<GoalQuestion> read_goal(const Json& message);
 
 }  // namespace surefoot::gate_process

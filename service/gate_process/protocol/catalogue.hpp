@@ -7,14 +7,14 @@
 
 namespace surefoot::gate_process {
 
-/// Everything that has a name on the wire. Closed: a name that is not here is not served.
+/// Everything with a name in the protocol. A name that is not in this list is not served.
 enum class Topic : std::uint8_t { verdict, health, diagnostics, outlook, goal_marker, goal };
 
 struct TopicEntry {
     Topic topic;
     std::string_view name;
     std::string_view type;
-    bool from_client;  ///< clients publish it; all others are for them to subscribe to
+    bool from_client;  ///< true: clients publish it; false: clients subscribe to it
 };
 
 inline constexpr std::array<TopicEntry, 6> kTopics{{
@@ -84,11 +84,11 @@ inline constexpr std::array<ServiceEntry, 23> kServices{{
     {Service::has_param, "/rosapi/has_param", "rosapi/HasParam"},
 }};
 
-/// The entry of that name, with or without the leading slash, or nullptr.
+/// The entry of a topic name, with or without leading slash; nullptr if unknown.
 [[nodiscard]] const TopicEntry* find_topic(std::string_view name) noexcept;
 [[nodiscard]] const ServiceEntry* find_service(std::string_view name) noexcept;
 
-/// Do the two name one type? "pkg/Name" and "pkg/msg/Name" do.
+/// True if both names mean one type: "pkg/Name" equals "pkg/msg/Name".
 [[nodiscard]] bool same_type(std::string_view ours, std::string_view theirs) noexcept;
 
 }  // namespace surefoot::gate_process

@@ -9,8 +9,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Reads a text without keeping it, and stops at the first thing that is not allowed. The names are
-/// those that nlohmann-json calls.
+/// Checks a text without storing it and stops at the first forbidden element. The function names
+/// are required by nlohmann-json.
 class Guard {
   public:
     explicit Guard(const JsonLimits& limits) : limits_(limits) {}
@@ -68,7 +68,7 @@ class Guard {
     }
 
     const JsonLimits& limits_;
-    std::vector<std::set<std::string>> keys_;  // of the objects and arrays that are open
+    std::vector<std::set<std::string>> keys_;  // keys of the open objects and arrays
     std::string problem_;
 };
 

@@ -10,24 +10,24 @@
 
 namespace surefoot::gate_process {
 
-/// Keys keep the order in which they are written: the same answer gives the same bytes.
+/// JSON whose keys keep their order of insertion: equal answers have equal bytes.
 using Json = nlohmann::ordered_json;
 
-/// What a foreign text may be at most.
+/// Limits for text from a client.
 struct JsonLimits {
     std::size_t max_bytes = 64 * 1024;
-    int max_depth = 12;  ///< a stamped pose in a publish message is four deep
+    int max_depth = 12;  ///< a stamped pose in a publish message has depth four
     std::size_t max_string_bytes = 1024;
 };
 
-/// One whole JSON value in valid UTF-8, within the limits, no key twice in an object, every number
-/// finite; else the first problem in words.
+/// Parses one complete JSON value: valid UTF-8, within the limits, no duplicate key, finite numbers
+/// only. Else the error names the first problem.
 [[nodiscard]] Result<Json> parse_json(std::string_view text, const JsonLimits& limits);
 
-/// Null where it is none: JSON has no infinity and no NaN.
+/// The number, or null if it is infinite or NaN, because JSON has neither.
 [[nodiscard]] Json number(double value);
 
-/// On one line. Bytes that are no UTF-8 become U+FFFD: an answer is never lost for its text.
+/// Serialises on one line. Invalid UTF-8 becomes U+FFFD, so that no answer is lost.
 [[nodiscard]] std::string dump(const Json& json);
 
 }  // namespace surefoot::gate_process

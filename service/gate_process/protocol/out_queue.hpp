@@ -8,17 +8,17 @@
 
 namespace surefoot::gate_process {
 
-/// Texts that wait for a socket. Replies leave before messages of topics, each kind in order.
+/// Texts that wait for a socket. Replies come before topic messages; each kind keeps its order.
 class OutQueue {
   public:
     explicit OutQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-    /// False, and nothing kept, when there is no room: the client does not read.
+    /// Returns false and keeps nothing if the queue is full: the client does not read.
     [[nodiscard]] bool push_reply(std::string text) { return push(replies_, std::move(text)); }
     [[nodiscard]] bool push_topic(std::string text) { return push(topics_, std::move(text)); }
 
     [[nodiscard]] bool empty() const noexcept { return replies_.empty() && topics_.empty(); }
-    /// The text to send next. Not when empty.
+    /// Removes and returns the next text. Precondition: not empty.
     [[nodiscard]] std::string pop() {
         auto& from = replies_.empty() ? topics_ : replies_;
         std::string text = std::move(from.front());

@@ -26,7 +26,7 @@ Json names_of(const Entries& entries) {
     return names;
 }
 
-/// Names of the entries of a type. roslib names a type as "pkg/Name" or "pkg/msg/Name".
+/// The names of the entries of a type. roslib writes a type as "pkg/Name" or "pkg/msg/Name".
 template <typename Entries>
 Json names_of_type(const Entries& entries, std::string_view type) {
     Json names = Json::array();
@@ -36,7 +36,7 @@ Json names_of_type(const Entries& entries, std::string_view type) {
     return names;
 }
 
-/// Topics that clients publish, or all others.
+/// The topics that clients publish, or all others.
 Json topics_from(bool from_client) {
     Json names = Json::array();
     for (const auto& entry : kTopics) {
@@ -45,7 +45,7 @@ Json topics_from(bool from_client) {
     return names;
 }
 
-/// The one node, where it has something to do with what was asked for.
+/// The list of nodes: the only node if `involved`, else empty.
 Json node_if(bool involved) {
     return involved ? Json::array({kNode}) : Json::array();
 }

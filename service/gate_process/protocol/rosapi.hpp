@@ -6,10 +6,10 @@
 
 namespace surefoot::gate_process {
 
-/// Answers of the services of rosapi about what is in the catalogue, as roslib reads them. An
-/// unknown topic or service has the type ""; an unknown parameter is {value: "null", successful:
-/// false, reason}. A value of get_param is JSON within a string.
-/// `service` is one of list_topics ... has_param; `args` an object, a list or null.
+/// Answers the rosapi services from the catalogue, in the format that roslib reads. An unknown
+/// topic or service has the type "". An unknown parameter gives {value: "null", successful: false,
+/// reason}. The value of get_param is JSON in a string. `service`: one of list_topics ...
+/// has_param; `args`: an object, a list or null.
 [[nodiscard]] Json rosapi_answer(Service service, const Json& args);
 
 }  // namespace surefoot::gate_process

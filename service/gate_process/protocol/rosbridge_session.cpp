@@ -13,24 +13,24 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// `step_forward` asks for the joystick's outer ring, ahead (machines/rex.yaml: N).
+/// Command of `step_forward`: the joystick's outer ring, ahead (machines/rex.yaml: N).
 constexpr std::uint8_t kForwardCode = 9;
 
-/// An id as rosbridge clients send it. Anything else is not repeated.
+/// The id of a message in the form that rosbridge clients send; any other form is dropped.
 Json id_of(const Json& message) {
     const auto id = message.find("id");
     if (id == message.end() || !(id->is_string() || id->is_number_integer())) return nullptr;
     return *id;
 }
 
-/// Calls without arguments leave them out, or send null.
+/// The arguments of a call. Clients omit them or send null if there are none.
 const Json& args_of(const Json& message) {
     static const Json empty = Json::object();
     const auto args = message.find("args");
     return args == message.end() || args->is_null() ? empty : *args;
 }
 
-/// A whole number from 0, at most `most`; nothing where it is none. Missing or null is 0.
+/// An integer from 0 to `most`; empty if invalid. Missing or null counts as 0.
 std::optional<std::int64_t> limited_member(const Json& message, const char* name, int most) {
     const auto value = message.find(name);
     if (value == message.end() || value->is_null()) return 0;
@@ -45,7 +45,7 @@ TopicMessage topic_message(Topic topic, const Json& body) {
 
 }  // namespace
 
-/// One message while it is handled.
+/// The state while one message is handled.
 struct RosbridgeSession::Call {
     const Json& message;
     std::int64_t now_ns;
@@ -100,13 +100,14 @@ std::vector<std::string> RosbridgeSession::due(std::int64_t now_ns) {
 void RosbridgeSession::handle(const Call& call) {
     const std::string op = text_member(call.message, "op");
     if (op == "call_service") return call_service(call);
-    if (call.overloaded) return status(call, Level::error, "too many messages: not done");
+    if (call.overloaded)
+        return status(call, Level::error, "too many messages a second: request not executed");
     if (op == "subscribe") return subscribe(call);
     if (op == "unsubscribe") return unsubscribe(call);
     if (op == "advertise") return advertise(call);
     if (op == "publish") return publish(call);
     if (op == "set_level") return set_level(call);
-    if (op == "unadvertise" || op == "status") return;  // nothing of it is kept
+    if (op == "unadvertise" || op == "status") return;  // accepted and ignored
     if (op == "auth") return auth(call);
     status(call, Level::error, "op '" + op + "' is not served here");
 }
@@ -238,7 +239,8 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
         case Service::step_with_reasons: return serve_step(entry, call, args);
         default: break;
     }
-    if (call.overloaded) return respond(call, "too many messages: not done", false);
+    if (call.overloaded)
+        return respond(call, "too many messages a second: request not executed", false);
     switch (entry.service) {
         case Service::authenticate: return authenticate_by_service(call, args);
         case Service::rearm: return rearm(call);
@@ -263,11 +265,11 @@ void RosbridgeSession::serve_step(const ServiceEntry& entry, const Call& call, c
     const Json verdict = verdict_object(answer.verdict, answer.text);
     switch (entry.service) {
         case Service::step_with_reasons: respond(call, verdict, readable); break;
-        // An Empty response has no member: whoever knows no other reads `result`.
+        // The type Empty has no member, so such clients read only `result`.
         case Service::step_forward: respond(call, {{"resultCode", code}}, code == 0); break;
         default: respond(call, {{"resultCode", code}}, readable);
     }
-    // Not what came too fast: a flood of one client would reach all.
+    // Verdicts on messages that came too fast are not published: a flood would reach all clients.
     if (!call.overloaded) call.out.published.push_back(topic_message(Topic::verdict, verdict));
 }
 
@@ -279,12 +281,13 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
         return refusal(call, question, request.problem, request.text);
     question.sequence = request.sequence.value_or(last_sequence_ + 1);
     if (question.sequence > kMaxExact)
-        return refusal(call, question, gate::Reason::seq, "no number is left: reconnect");
+        return refusal(
+            call, question, gate::Reason::seq, "all sequence numbers are used: reconnect");
     last_sequence_ = std::max(last_sequence_, question.sequence);
     return ask(call, question);
 }
 
-/// The gate's answer, unless it is not about this question or already void.
+/// The gate's answer. An answer to another question or an expired answer becomes an ERROR.
 Answer RosbridgeSession::ask(const Call& call, const StepQuestion& question) {
     Answer answer = gate_.ask_step(question, call.now_ns);
     const gate::Verdict& verdict = answer.verdict;
@@ -350,7 +353,7 @@ std::string RosbridgeSession::no_right_text(Role least) const {
            "in the service's token file";
 }
 
-/// roslib has a method for the op whose first argument becomes `mac`.
+/// The method of roslib for this op calls its first argument `mac`.
 void RosbridgeSession::auth(const Call& call) {
     std::string token = text_member(call.message, "token");
     if (token.empty()) token = text_member(call.message, "mac");
@@ -376,8 +379,8 @@ Status RosbridgeSession::authenticate(const Call& call, std::string_view token) 
     gate_.note(act);
     if (!role)
         return usage_error(
-            "this token is not known here, and nothing was changed. Take a token of the service's "
-            "token file");
+            "this token is not known here, and nothing was changed. Take a token from the "
+            "service's token file");
     role_ = *role;
     return {};
 }

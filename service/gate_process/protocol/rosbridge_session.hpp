@@ -17,51 +17,51 @@ namespace surefoot::gate_process {
 struct ServiceEntry;
 struct StepRequest;
 
-/// What one connection may do.
+/// Limits of one connection.
 struct SessionLimits {
     JsonLimits json;
-    RateLimit messages{200, 200};  ///< beyond it a question is answered ERROR / OVERLOAD
-    RateLimit refusals{100, 400};  ///< messages beyond that rate, before the connection is dropped
-    RateLimit faults{2, 20};       ///< messages that cannot be read, before it is dropped
+    RateLimit messages{200, 200};  ///< a question beyond this rate gets ERROR / OVERLOAD
+    RateLimit refusals{100, 400};  ///< extra messages before disconnection
+    RateLimit faults{2, 20};       ///< unreadable messages that are allowed before disconnection
     std::size_t max_subscriptions = 32;
 };
 
-/// What the client of a session may do.
+/// Permissions of the client of a session.
 struct SessionRights {
-    Role role = Role::none;          ///< at the beginning
+    Role role = Role::none;          ///< role at the start
     const Access* access = nullptr;  ///< tokens that may change it; nullptr: none can. Lives on
 };
 
-/// What a message brought about.
+/// The effects of one message.
 struct Reaction {
-    std::vector<std::string> replies;     ///< to this connection, before everything else
+    std::vector<std::string> replies;     ///< to this connection, before all other texts
     std::vector<TopicMessage> published;  ///< to the subscribers of all connections
-    bool drop = false;                    ///< the client had its chances
+    bool drop = false;                    ///< disconnect: the client exceeded its limits
 };
 
-/// One client of the rosbridge protocol, version 2: a text in, texts out. No socket, no clock, no
-/// thread. Every question about a step goes to the gate exactly once, and nothing but the gate's
-/// own OK to this connection and sequence is answered as one; what cannot be read or comes too fast
-/// is an ERROR. Texts that are no JSON, or no message, get a status and change nothing. What the
-/// role of the client does not allow is refused with a sentence, noted for the audit log, and never
+/// The server side of one rosbridge client (protocol version 2): one text in, texts out. No
+/// socket, clock or thread. Every step question is passed to the gate exactly once. Only the
+/// gate's own OK to this connection and sequence is returned as OK; unreadable or too frequent
+/// questions are ERRORs. Text that is not JSON or not a message gets a status and has no effect. A
+/// request beyond the client's role is refused with a message, noted in the audit log, and never
 /// reaches the gate.
 class RosbridgeSession {
   public:
-    /// `connection` is never 0 and never used again. The gate outlives the session.
+    /// `connection` is never 0 and never reused. The gate must outlive the session.
     RosbridgeSession(std::uint64_t connection,
                      StepGate& gate,
                      const SessionLimits& limits,
                      const SessionRights& rights);
     RosbridgeSession(const RosbridgeSession&) = delete;
     RosbridgeSession& operator=(const RosbridgeSession&) = delete;
-    /// The gate forgets the connection.
+    /// Makes the gate forget the connection.
     ~RosbridgeSession();
 
     [[nodiscard]] Reaction on_message(std::string_view text, std::int64_t now_ns);
-    /// What this client gets of a topic's message now. Cheap where it did not subscribe.
+    /// The texts for this client from a topic message. Cheap without a subscription.
     [[nodiscard]] std::vector<std::string> on_topic(const TopicMessage& message,
                                                     std::int64_t now_ns);
-    /// Messages whose throttle time has passed. Call it every few milliseconds.
+    /// Returns messages whose throttle time has passed. Call it every few milliseconds.
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
 
     [[nodiscard]] bool wants(Topic topic) const noexcept { return subscriptions_.wants(topic); }
@@ -86,7 +86,7 @@ class RosbridgeSession {
     void judge_goal(const Call& call);
     void auth(const Call& call);
     [[nodiscard]] Status authenticate(const Call& call, std::string_view token);
-    /// False, and noted, when the role of the client is below `least`.
+    /// False if the client's role is below `least`; also notes the refusal.
     [[nodiscard]] bool has_right(const Call& call, Role least, ActKind kind);
     [[nodiscard]] std::string no_right_text(Role least) const;
 

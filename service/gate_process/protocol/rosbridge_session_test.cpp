@@ -25,7 +25,7 @@ const char* const kAhead =
     R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})";
 const char* const kAheadPlain = R"({"op":"call_service","id":"q","service":"/step","args":[9]})";
 
-/// Everything that is expected is there, and equal; more may be there.
+/// True if `actual` contains everything of `expected` with equal values.
 bool holds(const Json& actual, const Json& expected) {
     if (!expected.is_object()) return actual == expected;
     if (!actual.is_object()) return false;

@@ -6,7 +6,7 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// The name is one of ours, so that nothing in it needs escaping.
+/// `name` is a name of the catalogue, so it needs no escaping.
 std::string publish_text(const std::string& name, const std::string& body) {
     return R"({"op":"publish","topic":")" + name + R"(","msg":)" + body + "}";
 }

@@ -13,35 +13,35 @@
 
 namespace surefoot::gate_process {
 
-/// A message of a topic. The JSON of its body is shared by all connections that it waits in.
+/// A message of a topic. All connections in which it waits share the JSON of its body.
 struct TopicMessage {
     Topic topic = Topic::health;
     std::shared_ptr<const std::string> body;
 };
 
-/// How often a client wants a topic. rosbridge's throttle_rate is a time in ms, its queue_length
-/// the number of messages kept while that time runs.
+/// The rate at which a client wants a topic, as in rosbridge: throttle_rate is a time in ms,
+/// queue_length is the number of messages kept during that time.
 struct SubscriptionWish {
     std::string id;  ///< may be empty
     std::int64_t interval_ns = 0;
     std::size_t queue_length = 0;
 };
 
-/// What one connection subscribed to. Several subscriptions to a topic are one stream, at the
-/// shortest interval and with the longest queue that was asked for. While the interval runs the
-/// newest messages are kept, one at least, so that a slow listener ends with the last state.
+/// The subscriptions of one connection. Several subscriptions to a topic form one stream with the
+/// shortest interval and the longest queue of them. During the interval the newest messages are
+/// kept (at least one), so a slow client receives the last state.
 class Subscriptions {
   public:
     explicit Subscriptions(std::size_t max_count) : max_count_(max_count) {}
 
-    /// `name` as the client spells it: that is what it listens to. A wish of the same id replaces
-    /// the one before. Fails beyond the limit.
+    /// `name`: in the client's spelling, which the messages repeat. A wish with the same id
+    /// replaces the earlier one. Returns an error beyond the limit.
     [[nodiscard]] Status add(Topic topic, std::string name, SubscriptionWish wish);
-    /// All wishes for the topic when the id is empty. False: there was none.
+    /// Removes one wish; with an empty id all wishes for the topic. False if there was none.
     bool remove(Topic topic, const std::string& id);
-    /// The whole text to send now, or nothing.
+    /// The complete texts to send now; may be empty.
     [[nodiscard]] std::vector<std::string> offer(const TopicMessage& message, std::int64_t now_ns);
-    /// What has waited for its interval.
+    /// The messages whose interval has passed.
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
     [[nodiscard]] bool wants(Topic topic) const noexcept;
     [[nodiscard]] std::size_t count() const noexcept;

@@ -13,8 +13,8 @@ namespace {
 constexpr double kTenthMmPerM = 1e4;
 constexpr std::int64_t kOpenTenthMm = 0xffff;  // of Evidence::min_clearance_tenth_mm
 
-// Divided, not multiplied by 1e-4: the quotient is the double that is nearest to the decimal
-// number, so that 0.2311 m is written as 0.2311.
+// Divides instead of multiplying by 1e-4: the quotient is the double nearest to the decimal number,
+// so 0.2311 m is written as 0.2311.
 double metres(std::int64_t tenth_mm) {
     return static_cast<double>(tenth_mm) / kTenthMmPerM;
 }

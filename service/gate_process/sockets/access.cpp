@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<Role, 3> kTokenRoles{Role::observer, Role::rider, Role::operator_};
 
-/// Characters that need no escape in a URL.
+/// True for a character that needs no escape in a URL.
 bool is_plain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_' || c == '.' || c == '~';
@@ -41,7 +41,7 @@ std::string& token_in(Access& access, Role role) {
     return role == Role::rider ? access.rider : access.operator_;
 }
 
-/// One line that is neither empty nor a comment; the mistake in words.
+/// Reads one line that is neither empty nor a comment. Returns the mistake as a message.
 std::optional<std::string> read_line(std::string_view line, Access& access) {
     const std::size_t blank = line.find_first_of(" \t");
     const auto role = role_named(line.substr(0, blank));

@@ -7,7 +7,7 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Any number may come from a client.
+/// A client may send any number.
 std::int32_t tenth_mm(double length_m) noexcept {
     constexpr double kMost_m = 100.0;
     if (std::isnan(length_m)) return 0;

@@ -9,30 +9,30 @@
 
 namespace surefoot::gate_process {
 
-// The numbers stand in audit logs (docs/reference/audit_format.md): never give one a new meaning.
+// The numbers are stored in audit logs (docs/reference/audit_format.md): never change them.
 enum class ActKind : std::uint8_t { connect = 1, authenticate, ask, attest, rearm };
 enum class ActOutcome : std::uint8_t {
     done = 1,
-    failed,   ///< whoever did it may do it, but the gate could not
+    failed,   ///< the role may do it, but the gate could not
     no_right  ///< the role may not do it, or the token is unknown
 };
-/// "connect", "done": for people.
+/// The name for people, for example "connect" or "done".
 [[nodiscard]] const char* to_string(ActKind kind) noexcept;
 [[nodiscard]] const char* to_string(ActOutcome outcome) noexcept;
 
-/// What somebody did at the service, or was refused. Verdicts have records of their own.
+/// An action of a client at the service, done or refused. Verdicts have their own records.
 struct Act {
     ActKind kind = ActKind::connect;
     ActOutcome outcome = ActOutcome::no_right;
-    Role role = Role::none;            ///< that the client had when it acted
-    std::uint64_t connection = 0;      ///< 0: whoever started the process, or a client at the door
-    std::int64_t time_ns = 0;          ///< steady
+    Role role = Role::none;            ///< role of the client at that time
+    std::uint64_t connection = 0;      ///< 0: starter of the process, or not yet admitted
+    std::int64_t time_ns = 0;          ///< steady clock
     std::int32_t radius_tenth_mm = 0;  ///< of an attestation
     std::uint32_t left_out = 0;        ///< refused acts before this one that are not in the log
-    std::string text;                  ///< why not, and from which computer
+    std::string text;                  ///< cause of a refusal, and the client's computer
 };
 
-/// An act that the role may do, and what became of it.
+/// Makes an act that the role may do, with its outcome.
 [[nodiscard]] Act act_of(ActKind kind,
                          Role role,
                          std::uint64_t connection,
@@ -40,7 +40,7 @@ struct Act {
                          std::int64_t time_ns,
                          double radius_m = 0.0);
 
-/// Longer texts are cut in the log.
+/// The log truncates longer texts.
 inline constexpr std::size_t kMaxActText_bytes = 200;
 
 }  // namespace surefoot::gate_process

@@ -13,38 +13,38 @@ namespace surefoot::gate_process {
 
 enum class Admission : std::uint8_t { welcome, wrong_token, wrong_origin };
 
-/// What the HTTP request of a client says about the client.
+/// The parts of a client's HTTP request that decide admission.
 struct Knock {
     std::string_view target;                        ///< "/?token=..."
-    std::optional<std::string_view> origin;         ///< of the web page that asks
+    std::optional<std::string_view> origin;         ///< of the requesting web page
     std::optional<std::string_view> authorization;  ///< "Bearer ..."
 };
 struct Entrance {
     Admission admission = Admission::wrong_token;
-    Role role = Role::none;  ///< where welcome
-    bool has_token = false;  ///< a token was shown, right or wrong
+    Role role = Role::none;  ///< valid if admitted
+    bool has_token = false;  ///< the client sent a token, right or wrong
 };
 
-/// Who may connect, and as what. A browser sends the Origin of the page that asks: pages of this
-/// machine and of the list are welcome, any other page that the user has open is not. A native
-/// client sends no Origin. The token stands in the query of the URL or in the header Authorization.
-/// A client without a token is a guest; a wrong token is refused even where guests are welcome.
+/// Decides whether a client may connect, and its role. A browser sends the Origin of the requesting
+/// page: pages of this machine and of the list are accepted, all other pages are refused. A native
+/// client sends no Origin. The token is in the URL query or in the header Authorization. A client
+/// without a token is a guest; a wrong token is always refused.
 [[nodiscard]] Entrance admit(const Access& access,
                              const std::vector<std::string>& origins,
                              const Knock& knock);
-/// A sentence for a client that is refused: what is wrong, and what to do now.
+/// The message to a refused client: the cause, and how to fix it.
 [[nodiscard]] std::string refusal_text(const Entrance& entrance, const Knock& knock);
 
-/// The same for a service with one token for everybody; with an empty one no token is needed.
+/// The same for a service with one shared token; an empty token disables the check.
 [[nodiscard]] Admission admit(const std::string& token,
                               const std::vector<std::string>& origins,
                               std::string_view target,
                               std::optional<std::string_view> origin);
 
-/// "/health" of "/health?token=x".
+/// The path of a target, for example "/health" of "/health?token=x".
 [[nodiscard]] std::string_view path_of(std::string_view target) noexcept;
-/// The value of a name in the query, not unescaped; empty where it is missing.
+/// The value of a name in the query, without unescaping; empty if it is missing.
 [[nodiscard]] std::string_view query_value(std::string_view target, std::string_view name) noexcept;
-/// http://localhost, 127.0.0.1 or [::1], at any port, or https.
+/// True for http or https with localhost, 127.0.0.1 or [::1], at any port.
 [[nodiscard]] bool is_loopback_origin(std::string_view origin) noexcept;
 }  // namespace surefoot::gate_process

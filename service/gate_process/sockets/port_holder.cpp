@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number, when all of the text is one.
+/// Parses the whole text as a number.
 std::optional<int> number_of(std::string_view text, int base = 10) {
     int number = 0;
     const char* const end = text.data() + text.size();
@@ -23,12 +23,12 @@ std::optional<int> number_of(std::string_view text, int base = 10) {
     return number;
 }
 
-/// As a link of /proc/PID/fd names a socket: "socket:[12345]". Of those that listen at the port
+/// Adds the sockets that listen on the port, named like the links in /proc/PID/fd: "socket:[12345]"
 /// (proc_net_tcp: fields 1 = address:port in hexadecimal, 3 = state, 9 = inode).
 void add_listeners(const char* table, std::uint16_t port, std::set<std::string>& sockets) {
     std::ifstream file(table);
     std::string line;
-    std::getline(file, line);  // the names of the fields
+    std::getline(file, line);  // skip the field names
     while (std::getline(file, line)) {
         std::istringstream words(line);
         std::vector<std::string> fields;

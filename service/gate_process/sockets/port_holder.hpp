@@ -7,17 +7,17 @@
 
 namespace surefoot::gate_process {
 
-/// A process that listens at a TCP port.
+/// The process that listens on a TCP port.
 struct PortHolder {
     int process = 0;
-    int parent = 0;    ///< 1 = the process that started it has ended
-    std::string name;  ///< of the program, at most 15 characters
+    int parent = 0;    ///< 1 = its parent process has ended
+    std::string name;  ///< program name, at most 15 characters
 };
 
-/// Who listens at this port of this machine; nothing where nobody does, or where the system does
-/// not tell (a process of another user). Reads /proc: milliseconds.
+/// The process that listens on this port of this computer. Empty if there is none, or if the system
+/// hides it (a process of another user). Reads /proc: takes milliseconds.
 [[nodiscard]] std::optional<PortHolder> holder_of_port(std::uint16_t port);
-/// "process 1234 (surefoot-gate)".
+/// For messages: "process 1234 (surefoot-gate)".
 [[nodiscard]] std::string words_of(const PortHolder& holder);
 
 }  // namespace surefoot::gate_process

@@ -13,7 +13,7 @@ namespace {
 
 using AddressBytes = std::array<std::uint8_t, sizeof(in6_addr)>;
 
-/// Whether the whole text is an address of the family, and its bytes. inet_pton reads up to a NUL.
+/// Parses an address of the family. Rejects text after a NUL, which inet_pton would ignore.
 bool parse_address(int family, const std::string& text, AddressBytes& bytes) {
     return text.find('\0') == std::string::npos &&
            inet_pton(family, text.c_str(), bytes.data()) == 1;

@@ -14,53 +14,53 @@
 
 namespace surefoot::gate_process {
 
-/// Whoever serves a network without TLS must give this sentence word by word.
+/// To serve a network without TLS, the user must give exactly this sentence.
 inline constexpr const char* kInsecureSentence =
     "I understand that everybody on this network can read and change what is sent";
 
-/// Where the service listens, to whom, and what it lets them do.
+/// Address, permissions and limits of the service.
 struct ServerConfig {
-    /// An IP address. Another than loopback needs tokens for everybody, and TLS.
+    /// An IP address. Any address except loopback requires a token from every client, and TLS.
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = 9090;           ///< rosbridge's; 0 = any free one
+    std::uint16_t port = 9090;           ///< the rosbridge port; 0 = any free port
     Access access;                       ///< tokens and roles
-    TlsFiles tls;                        ///< empty: no TLS
-    std::string insecure;                ///< kInsecureSentence: no TLS beyond loopback
-    std::vector<std::string> origins;    ///< of web pages, besides those of this machine
+    TlsFiles tls;                        ///< empty = no TLS
+    std::string insecure;                ///< kInsecureSentence: allows no TLS beyond loopback
+    std::vector<std::string> origins;    ///< allowed web pages, besides those of this machine
     std::uint64_t first_connection = 1;  ///< number of the first client; never 0
 
     SlotLimits slots;
-    int accepts_per_tick = 16;  ///< so that a crowd at the door disturbs nobody inside
-    int tick_ms = 5;            ///< the owner's hook, topics and deadlines
-    /// Processor time between two ticks for all clients without the token of a rider or an operator
-    /// together, new WebSockets included; those who have used least come first, and what is left
-    /// of their messages waits.
+    int accepts_per_tick = 16;  ///< bounds the delay that new connections cause
+    int tick_ms = 5;            ///< interval of the owner's hook, topics and deadlines
+    /// Processor time between two ticks for all clients below a rider's or operator's token, new
+    /// WebSockets included. The client with the least use is served first; messages beyond the
+    /// limit wait.
     int guest_work_us = 1500;
-    int door_work_us = 750;                 ///< the same for accepting and reading a request
-    int handshake_ms = 2000;                ///< to ask for the WebSocket, wholly
-    int idle_ms = 10000;                    ///< without a sign of life; asked by a ping at half
-    int message_ms = 2000;                  ///< from the first byte of a message to its last
-    int write_ms = 2000;                    ///< for one text to leave
-    std::size_t max_queue_bytes = 1 << 20;  ///< waiting for a client that does not read
+    int door_work_us = 750;                 ///< the same for accepting and reading requests
+    int handshake_ms = 2000;                ///< time limit for the complete WebSocket handshake
+    int idle_ms = 10000;                    ///< without data from the client; a ping at half of it
+    int message_ms = 2000;                  ///< from the first to the last byte of a message
+    int write_ms = 2000;                    ///< for sending one text
+    std::size_t max_queue_bytes = 1 << 20;  ///< texts waiting for a client that does not read
     std::size_t max_read_bytes_per_s = 1 << 20;
-    RateLimit control_frames{5, 10};  ///< pings and pongs of a client, before it is dropped
+    RateLimit control_frames{5, 10};  ///< of one client, before it is disconnected
     SessionLimits session;
 
-    /// The first problem in words.
+    /// The first problem, as a message.
     [[nodiscard]] std::optional<std::string> problem() const;
 
   private:
     [[nodiscard]] std::optional<std::string> problem_of_address() const;
 };
 
-/// What is missing for serving at an address, in words: a service of this machine needs nothing,
-/// any other needs a token from everybody, and TLS or the sentence above. For gate and page.
+/// The missing requirement for serving at an address, as a message. Loopback needs nothing. Other
+/// addresses need a token from every client, and TLS or kInsecureSentence. For gate and page.
 [[nodiscard]] std::optional<std::string> problem_of_exposure(const std::string& bind_address,
                                                              const Access& access,
                                                              bool has_tls,
                                                              const std::string& insecure);
 
-/// An IP address that nothing outside of this machine reaches.
+/// True for an IP address that only this computer can reach.
 [[nodiscard]] bool is_loopback_address(const std::string& address);
 
 }  // namespace surefoot::gate_process

@@ -8,16 +8,16 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kForgetHalf_ns = 1'000'000'000;
-/// A question costs 0.15 ms: so much is left of a rider who goes on asking 15 times a second.
+/// A question costs 0.15 ms. A rider that asks 15 times a second reaches this decayed cost.
 constexpr std::int64_t kHeavy_ns = 5'000'000;
 
-/// Nothing older than a minute is left of a cost.
+/// Costs decay completely within a minute.
 std::int64_t remaining(std::int64_t cost_ns, std::int64_t age_ns) noexcept {
     constexpr std::int64_t kMostHalves = 62;
     return cost_ns >> std::clamp<std::int64_t>(age_ns / kForgetHalf_ns, 0, kMostHalves);
 }
 
-/// Places in the order in which clients of low rank are ended.
+/// The order in which clients of low rank are closed.
 enum Order : int { order_silent, order_idle, order_heavy, order_listener, order_useful };
 
 }  // namespace
@@ -40,7 +40,7 @@ std::optional<Slots::Id> Slots::arrive(Id id, std::string_view peer, std::int64_
     return ended;
 }
 
-/// Ids grow, so that the first one found of a peer is its oldest.
+/// Ids increase, so the first match of a peer is its oldest.
 std::optional<Slots::Id> Slots::fullest_door() const {
     struct Door {
         std::size_t count = 0;
@@ -94,7 +94,7 @@ void Slots::served(Id id, std::int64_t now_ns, std::int64_t cost_ns) noexcept {
     Held& held = found->second;
     const std::int64_t age_ns = now_ns - held.cost_at_ns;
     held.cost_ns = cost_ns + remaining(held.cost_ns, age_ns);
-    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within a second add up
+    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within a second are added
     held.was_served = true;
     held.since_ns = now_ns;
 }

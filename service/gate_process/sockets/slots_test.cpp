@@ -21,7 +21,7 @@ SlotLimits small() {
 
 class SlotsTest : public ::testing::Test {
   protected:
-    /// A connection that is a client at once, if there is a slot.
+    /// Adds a connection that becomes a client at once, if a slot exists.
     Slots::Entry come(Slots::Id id, Rank rank = Rank::low, const char* peer = kThisMachine) {
         now_ns_ += kMs;
         EXPECT_EQ(slots_.arrive(id, peer, now_ns_), std::nullopt);
@@ -147,7 +147,7 @@ TEST_F(SlotsTest, AClientWithATokenReplacesAnyWithoutOneAndIsNeverReplaced) {
 TEST_F(SlotsTest, ATokenThatIsShownLaterCounts) {
     for (Slots::Id id = 1; id <= 3; ++id) (void)come(id);
     slots_.promote(1);
-    EXPECT_TRUE(come(4).granted);  // two of low rank are left
+    EXPECT_TRUE(come(4).granted);  // two slots of low rank are left
     EXPECT_EQ(come(5).ended, std::optional<Slots::Id>(2));
 }
 

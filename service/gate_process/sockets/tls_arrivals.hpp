@@ -13,7 +13,7 @@
 
 namespace surefoot::gate_process {
 
-/// A TLS door whose connections arrive on the thread of `io`, which outlives it.
+/// A TLS door that hands its connections to the thread of `io`. `io` must outlive the door.
 [[nodiscard]] inline Result<std::unique_ptr<TlsDoor>> open_tls_door(
     const std::string& bind_address,
     std::uint16_t port,

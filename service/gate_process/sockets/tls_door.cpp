@@ -38,15 +38,16 @@ constexpr std::size_t kBlock_bytes = 16 * 1024;  // one TLS record
 constexpr unsigned char kTlsHandshake = 22;      // first byte of a ClientHello (RFC 8446, 5.1)
 constexpr const char* kUseTls =
     "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
-    "TLS is spoken here: connect to wss:// or https://\n";
+    "This port uses TLS: connect to wss:// or https://\n";
 
-/// A key that others can read is not private any more.
+/// Returns an error if other users can read the private key.
 Status check_key_file(const std::string& file) {
     struct stat about {};
     if (::stat(file.c_str(), &about) != 0)
         return usage_error(
             file + ": the private key cannot be read: " + std::generic_category().message(errno));
-    if (!S_ISREG(about.st_mode)) return usage_error(file + ": a private key is a regular file");
+    if (!S_ISREG(about.st_mode))
+        return usage_error(file + ": the private key must be a regular file");
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0)
         return usage_error(file + ": other users may read this private key; run chmod 600 " + file);
     return {};
@@ -54,7 +55,7 @@ Status check_key_file(const std::string& file) {
 
 }  // namespace
 
-/// Listens and keeps the connections. Everything but `stop` runs on the door's thread.
+/// Listens and owns the connections. Everything except `stop` runs on the door's thread.
 class TlsListener {
   public:
     TlsListener(TlsDoorConfig its_config, TlsDoor::OnArrival its_arrival)
@@ -94,7 +95,7 @@ class TlsListener {
     std::thread thread_;
 };
 
-/// One client: first its handshake, then bytes in both directions until one side ends.
+/// One client: first its TLS handshake, then bytes in both directions until one side closes.
 class TlsListener::Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(TlsListener& listener, tcp::socket socket, Slots::Id id, std::string peer)
@@ -202,7 +203,8 @@ class TlsListener::Connection : public std::enable_shared_from_this<Connection> 
                              self->read_inner();
                          });
     }
-    /// The service closed: the client hears that nothing was cut off, within a second.
+    /// The service closed: sends close_notify within a second, so the client knows that no data was
+    /// cut.
     void say_goodbye() {
         deadline_.expires_after(std::chrono::seconds(1));
         deadline_.async_wait([self = shared_from_this()](error_code) { self->end(); });
@@ -276,7 +278,7 @@ void TlsListener::accept() {
             take(std::move(socket));
             return accept();
         }
-        // No handles are left: trying again at once would keep a core busy.
+        // No file handles are left: an immediate retry would keep a core busy.
         retry_.expires_after(std::chrono::milliseconds(20));
         retry_.async_wait([this](error_code cancelled) {
             if (!cancelled) accept();
@@ -285,7 +287,7 @@ void TlsListener::accept() {
 }
 
 void TlsListener::take(tcp::socket socket) {
-    if (connections_.size() >= config.max_connections) return;  // its socket is closed
+    if (connections_.size() >= config.max_connections) return;  // closes its socket
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const std::string peer = peer_of(socket);

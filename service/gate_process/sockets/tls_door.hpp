@@ -14,7 +14,7 @@
 
 namespace surefoot::gate_process {
 
-/// Certificate chain and private key, both PEM.
+/// Certificate chain and private key as PEM files.
 struct TlsFiles {
     std::string certificate_file;
     std::string key_file;
@@ -25,14 +25,14 @@ struct TlsFiles {
 
 struct TlsDoorConfig {
     std::string bind_address;
-    std::uint16_t port = 0;  ///< 0 = any free one
+    std::uint16_t port = 0;  ///< 0 = any free port
     TlsFiles files;
-    std::size_t max_connections = 320;  ///< with those whose handshake is not done
-    std::size_t max_handshakes = 64;    ///< beyond it the fullest peer's oldest one is ended
+    std::size_t max_connections = 320;  ///< including unfinished handshakes
+    std::size_t max_handshakes = 64;    ///< beyond it the fullest peer's oldest is closed
     int handshake_ms = 5000;
 };
 
-/// Closes a socket that nobody took over.
+/// Owns a socket and closes it unless it was released.
 class OwnedHandle {
   public:
     explicit OwnedHandle(int handle) noexcept : handle_(handle) {}
@@ -49,33 +49,33 @@ class OwnedHandle {
 
 class TlsListener;
 
-/// TLS in front of a service that reads and writes plain bytes. The door listens, makes the TLS
-/// handshake (TLS 1.2 or newer), and hands the service a local socket with the plain bytes of each
-/// connection. All of that runs on a thread of the door's own: encryption and a flood of handshakes
-/// take no time from the thread that answers. A client of this same machine may speak plain bytes
-/// to the door: they leave no wire to listen on. A client of another machine that does is told to
-/// use TLS.
+/// TLS in front of a service that reads and writes plain bytes. The door listens, makes
+/// the TLS handshake (TLS 1.2 or newer), and gives the service a local socket with the
+/// plain bytes of each connection. It has its own thread, so encryption and handshake
+/// floods take no time from the answering thread. Clients of this machine may send plain
+/// bytes, because no network carries them. Other clients that send plain bytes get a
+/// message to use TLS.
 ///
-/// OpenSSL is included in tls_door.cpp and nowhere else.
+/// Only tls_door.cpp includes OpenSSL.
 class TlsDoor {
   public:
-    /// `socket`: of the service from now on, which closes it. `peer`: address of the other
-    /// computer, empty for this machine. Called on the door's thread.
+    /// `socket`: the service owns and closes it. `peer`: address of the other computer, empty for
+    /// this machine. Called on the door's thread.
     using OnArrival = std::function<void(int socket, const std::string& peer)>;
 
-    /// Listens, and serves nobody yet. Fails, and says why, where a file cannot be used, others may
-    /// read the key, or the address is taken.
+    /// Listens without serving yet. Returns an error with the cause if a file is unusable, if
+    /// others may read the key, or if the address is in use.
     [[nodiscard]] static Result<std::unique_ptr<TlsDoor>> open(const TlsDoorConfig& config,
                                                                OnArrival on_arrival);
     TlsDoor(const TlsDoor&) = delete;
     TlsDoor& operator=(const TlsDoor&) = delete;
-    /// Stops.
+    /// Calls stop().
     ~TlsDoor();
 
     [[nodiscard]] std::uint16_t port() const noexcept;
-    /// Starts the thread. Once.
+    /// Starts the thread. Call it once.
     void start();
-    /// Ends all connections and the thread. From any thread but the door's own.
+    /// Ends all connections and the thread. Call it from any thread except the door's.
     void stop();
 
   private:

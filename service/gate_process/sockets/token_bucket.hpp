@@ -8,17 +8,17 @@
 
 namespace surefoot::gate_process {
 
-/// How many things may happen: `burst` at once, `per_s` in the long run.
+/// Rate limit: `burst` events at once, `per_s` on average.
 struct RateLimit {
     std::int64_t per_s = 1;
     std::int64_t burst = 1;
 };
 
-/// A token bucket in whole nanoseconds: it keeps the time at which it would be full again, which
-/// every token moves on by one interval. What was refused costs nothing.
+/// A token bucket in whole nanoseconds. It stores the time at which it will be full; every token
+/// moves that time by one interval. A refused event takes no token.
 class TokenBucket {
   public:
-    /// Both numbers of the limit positive.
+    /// Precondition: both numbers of the limit are positive.
     explicit TokenBucket(RateLimit limit) noexcept
         : interval_ns_(std::max<std::int64_t>(1, kNanosecondsPerSecond / limit.per_s)),
           depth_ns_(interval_ns_ * limit.burst) {}

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxBytes = 4096;
 
-/// Closes the file.
+/// Owns a file descriptor and closes it.
 class Descriptor {
   public:
     Descriptor(const std::string& path, int flags)
@@ -43,7 +43,7 @@ std::string system_says() {
     return std::generic_category().message(errno);
 }
 
-/// 128 random bits in hexadecimal digits; empty where the system has none to give.
+/// 128 random bits as hexadecimal digits; empty if the system has no random numbers.
 std::string new_token() {
     std::array<std::uint8_t, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
@@ -55,7 +55,8 @@ std::string new_token() {
 Status check_owner(int file, const std::string& path) {
     struct stat about {};
     if (::fstat(file, &about) != 0) return usage_error(path + ": " + system_says());
-    if (!S_ISREG(about.st_mode)) return usage_error(path + ": a token file is a regular file");
+    if (!S_ISREG(about.st_mode))
+        return usage_error(path + ": the token file must be a regular file");
     if (about.st_uid != ::geteuid())
         return usage_error(path + ": this token file belongs to another user");
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0)
@@ -75,7 +76,7 @@ Result<Access> read_open_file(int file, const std::string& path) {
     if (bytes < 0) return usage_error(path + ": " + system_says());
     if (bytes > static_cast<ssize_t>(kMaxBytes))
         return usage_error(
-            fmt::format("{}: more than {} bytes are no token file", path, kMaxBytes));
+            fmt::format("{}: larger than {} bytes, so it is not a token file", path, kMaxBytes));
     text.resize(static_cast<std::size_t>(bytes));
     return parse_tokens(text, path);
 }
@@ -99,7 +100,7 @@ Status make_folder_of(const std::string& path) {
     if (!folder.empty()) fs::create_directories(folder, error);
     if (error)
         return input_error(folder.string() +
-                           ": the folder of the token file cannot be made: " + error.message());
+                           ": the folder of the token file cannot be created: " + error.message());
     return {};
 }
 
@@ -127,8 +128,8 @@ Result<TokenFile> read_or_make_tokens(const std::string& path) {
         if (auto made = make_folder_of(path); !made) return made.error();
         const Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
         if (file.number() >= 0) return make_tokens(file.number(), path);
-        if (errno != EEXIST)  // another start may have made it just now
-            return input_error(path + ": the token file cannot be made: " + system_says());
+        if (errno != EEXIST)  // another start may have created it just now
+            return input_error(path + ": the token file cannot be created: " + system_says());
     }
     auto access = read_tokens(path);
     if (!access) return access.error();

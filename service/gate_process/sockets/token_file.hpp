@@ -8,39 +8,39 @@
 
 namespace surefoot::gate_process {
 
-/// `$XDG_STATE_HOME/surefoot/tokens`, or `~/.local/state/surefoot/tokens`. Empty where neither
+/// `$XDG_STATE_HOME/surefoot/tokens`, or `~/.local/state/surefoot/tokens`. Empty if neither
 /// variable is set.
 [[nodiscard]] std::string default_token_file();
 
 struct TokenFile {
     Access access;
-    bool is_new = false;  ///< made in this call: show the tokens once
+    bool is_new = false;  ///< created by this call: show the tokens once
 };
 
-/// Reads the tokens of a service (parse_tokens). Makes the file, with rights 0600 and three
-/// random tokens, where it is missing. Errors name the file: it belongs to another user, others may
-/// read or write it, it is no regular file, or it cannot be read or made.
+/// Reads the tokens of a service (parse_tokens). If the file is missing, creates it with rights
+/// 0600 and three random tokens. Errors name the file and the cause: another owner, readable or
+/// writable by others, not a regular file, not readable, or not creatable.
 [[nodiscard]] Result<TokenFile> read_or_make_tokens(const std::string& path);
 
-/// Reads the tokens of a file that must be there.
+/// Reads the tokens of an existing file.
 [[nodiscard]] Result<Access> read_tokens(const std::string& path);
 
-/// What is shown once, when the file was made.
+/// The message shown once after the file was created.
 [[nodiscard]] std::string words_of_new_tokens(const Access& access, const std::string& path);
 
 struct LoadedAccess {
     Access access;
-    std::string news;  ///< lines to show: new tokens, or why there are none; empty: nothing is new
+    std::string news;  ///< lines to show: new tokens, or why there are none; may be empty
 };
-/// What a service starts with. `token_file` empty: the default file, and where that cannot be used
-/// the service goes on without tokens, so that nobody can attest or re-arm. `guests`: see
+/// The access settings at the start of a service. Empty `token_file`: the default file. If that is
+/// unusable, the service runs without tokens, so nobody can attest or re-arm. `guests`: see
 /// `guest_role`.
 [[nodiscard]] Result<LoadedAccess> load_access(const std::string& token_file,
                                                const std::string& guests,
                                                const std::string& bind_address);
 
-/// The role of a client without a token: as it was wished, or the rule of the service for an
-/// address: a rider on loopback, nobody beyond.
+/// The role of a client without a token: `wished`, or the default of the address (rider on
+/// loopback, none on any other address).
 [[nodiscard]] Role guest_role(const std::string& wished, const std::string& bind_address);
 
 }  // namespace surefoot::gate_process

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boost.Beast is included here and nowhere else: 25 seconds a translation unit.
+// Only this file includes Boost.Beast: each translation unit with it takes 25 s to compile.
 #include "service/gate_process/sockets/websocket_server.hpp"
 
 #include <unistd.h>
@@ -34,7 +34,7 @@ namespace net = boost::asio;
 namespace websocket = beast::websocket;
 using tcp = net::ip::tcp;
 using beast::error_code;
-/// Reads no more bytes in a second than the policy says.
+/// Reads at most as many bytes per second as the policy allows.
 using Stream = beast::basic_stream<tcp, tcp::socket::executor_type, beast::simple_rate_policy>;
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
@@ -45,8 +45,7 @@ std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// Processor time that some work may take between two ticks. What was overdrawn is taken from the
-/// next allowance.
+/// Processor time for some work between two ticks. An overdraft reduces the next allowance.
 class WorkBudget {
   public:
     explicit WorkBudget(int per_tick_us) : per_tick_ns_(per_tick_us * kNsPerUs) {}
@@ -54,7 +53,7 @@ class WorkBudget {
         left_ns_ = std::min(per_tick_ns_, left_ns_ + per_tick_ns_);
         ticks_spent_ = is_spent() ? ticks_spent_ + 1 : 0;
         if (ticks_spent_ < kMostTicks) return;
-        left_ns_ = 1;  // for one piece of work, whatever it costs: nobody waits for ever
+        left_ns_ = 1;  // enough for one piece of work of any cost, so that no client waits forever
         ticks_spent_ = 0;
     }
     void charge(std::int64_t cost_ns) noexcept {
@@ -74,7 +73,7 @@ class WorkBudget {
 
 class Connection;
 
-/// The listener, and all that is connected.
+/// The listener and all its connections.
 class SocketServer {
   public:
     SocketServer(const ServerConfig& its_config, StepGate& its_gate, WebsocketServer::Tick tick)
@@ -94,9 +93,9 @@ class SocketServer {
     void stop();
     void publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns);
     void leave(const Connection& connection);
-    /// Ends a connection for another one.
+    /// Closes a connection to make room for another one.
     void end_for_another(Slots::Id id);
-    /// With the next tick, in the order of what the clients have used.
+    /// Serves the connection in the next tick; clients with the least use come first.
     void wait_for_turn(std::shared_ptr<Connection> connection);
     [[nodiscard]] std::uint64_t new_connection() { return next_connection_++; }
     [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -108,7 +107,7 @@ class SocketServer {
     Slots slots;
     WorkBudget guest_work;
     WorkBudget door_work;
-    std::int64_t accounted_ns = 0;  ///< processor time since the last tick whose owner is known
+    std::int64_t accounted_ns = 0;  ///< processor time since the last tick, assigned to clients
 
   private:
     void begin();
@@ -122,17 +121,17 @@ class SocketServer {
     void on_tick();
     void look_ahead(std::int64_t now_ns);
 
-    net::io_context io_{1};  // one thread: no locks. Destroyed last, with all waiting handlers
+    net::io_context io_{1};  // one thread, so no locks. Destroyed last, with all waiting handlers
     tcp::acceptor acceptor_{io_};
     net::steady_timer timer_{io_};
     WebsocketServer::Tick tick_;
     PeriodicTopics topics_;
     OutlookRounds outlook_;
     std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
-    std::vector<std::shared_ptr<Connection>> waiting_;      // for their turn
+    std::vector<std::shared_ptr<Connection>> waiting_;      // clients that wait for their turn
     std::unique_ptr<TlsDoor> tls_door_;
     std::int64_t tick_ended_ns_ = 0;  // processor time
-    std::int64_t poll_ended_ns_ = 0;  // the same, where the owner has a loop of its own
+    std::int64_t poll_ended_ns_ = 0;  // the same, if the owner has its own loop
     Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
@@ -142,7 +141,7 @@ class SocketServer {
     bool begun_ = false;
 };
 
-/// One connection: first a HTTP request, then perhaps a WebSocket.
+/// One connection: first an HTTP request, then possibly a WebSocket.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(SocketServer& server, tcp::socket socket, Slots::Id slot, std::string peer)
@@ -154,20 +153,20 @@ class Connection : public std::enable_shared_from_this<Connection> {
           controls_(server.config.control_frames) {}
 
     void start();
-    /// Messages of topics for a client; nothing before it is one.
+    /// Passes a topic message to the client. Does nothing before it is a client.
     void offer(const TopicMessage& message, std::int64_t now_ns);
-    /// What waited for its time, and deadlines.
+    /// Sends the messages whose time has come and checks the deadlines.
     void on_tick(std::int64_t now_ns);
-    /// Ends it at once, whatever is on its way.
+    /// Closes the connection at once, whatever is in transit.
     void end();
-    /// The same, and a client is told why if it reads.
+    /// The same, and tells the client the reason if it reads.
     void end_for_another();
-    /// Goes on with what it waited for.
+    /// Continues the work that waited for a turn.
     void take_turn();
     [[nodiscard]] bool is_client() const { return session_.has_value(); }
     [[nodiscard]] Slots::Id slot() const { return slot_; }
     [[nodiscard]] bool wants(Topic topic) const;
-    /// Bytes of a client have come that are not read yet.
+    /// True if the client has sent bytes that are not read yet.
     [[nodiscard]] bool has_bytes();
 
   private:
@@ -206,17 +205,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
     http::response<http::string_body> response_;
     std::optional<Entrance> entrance_;  // of a WebSocket that waits for its turn
     Role role_ = Role::none;
-    bool has_token_ = false;  // a right one, in its request
+    bool has_token_ = false;  // the request had a valid token
     std::optional<RosbridgeSession> session_;
     OutQueue out_;
     TokenBucket controls_;
-    std::string writing_;                           // must stay while it is written
-    std::optional<std::int64_t> write_since_ns_;    // a text is on its way
-    std::optional<std::int64_t> message_since_ns_;  // a message has begun
-    bool has_message_ = false;                      // a whole one, in the buffer
-    bool dismissed_ = false;                        // it gets what is queued, then the door
-    std::optional<std::int64_t> leaves_at_ns_;      // it was told goodbye
-    bool flooded_ = false;                          // with control frames
+    std::string writing_;                           // must live until it is written
+    std::optional<std::int64_t> write_since_ns_;    // set while a text is being sent
+    std::optional<std::int64_t> message_since_ns_;  // set while a message is being received
+    bool has_message_ = false;                      // the buffer holds a complete message
+    bool dismissed_ = false;                        // gets the queued texts, then is disconnected
+    std::optional<std::int64_t> leaves_at_ns_;      // time limit after the close message
+    bool flooded_ = false;                          // sent too many control frames
     bool ended_ = false;
 };
 
@@ -224,7 +223,7 @@ void Connection::start() {
     error_code ignored;
     auto& socket = beast::get_lowest_layer(ws_).socket();
     socket.set_option(tcp::no_delay(true), ignored);
-    // What a sleeping client lets pile up shall lie in our queue, where it is counted.
+    // A client that does not read must fill our queue, where its bytes are counted.
     socket.set_option(net::socket_base::send_buffer_size(64 * 1024), ignored);
     auto& stream = ws_.next_layer();
     stream.rate_policy().read_limit(server_.config.max_read_bytes_per_s);
@@ -279,8 +278,8 @@ void Connection::answer_request() {
             http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
     }
     if (path_of(target) == "/")
-        return refuse(http::status::upgrade_required, "a WebSocket is here");
-    refuse(http::status::not_found, "here are a WebSocket and /health");
+        return refuse(http::status::upgrade_required, "this path is a WebSocket");
+    refuse(http::status::not_found, "this port serves a WebSocket and /health");
 }
 
 void Connection::note_refusal(const Entrance& entrance) {
@@ -327,11 +326,11 @@ void Connection::upgrade(const Entrance& entrance) {
     }
     role_ = entrance.role;
     has_token_ = entrance.has_token;
-    ws_.next_layer().expires_never();  // the WebSocket has a clock of its own
+    ws_.next_layer().expires_never();  // the WebSocket has its own timeouts
     ws_.set_option(
         websocket::stream_base::timeout{std::chrono::milliseconds(server_.config.handshake_ms),
                                         std::chrono::milliseconds(server_.config.idle_ms),
-                                        true});  // pings after half of it
+                                        true});  // pings after half of this time
     ws_.read_message_max(server_.config.session.json.max_bytes);
     ws_.text(true);
     ws_.control_callback([this](websocket::frame_type, beast::string_view) {
@@ -385,8 +384,8 @@ void Connection::on_read(error_code error) {
     go_on();
 }
 
-/// Handles what was read and reads on: now, or when it is this client's turn. What a client sends
-/// meanwhile stays in its socket.
+/// Handles the message that was read and continues to read, now or in this client's turn. Until
+/// then the client's data stays in its socket.
 void Connection::go_on() {
     const bool high = entrance_ ? is_high(*entrance_) : server_.slots.is_high(slot_);
     if (!high && server_.guest_work.is_spent()) return server_.wait_for_turn(shared_from_this());
@@ -402,7 +401,7 @@ void Connection::go_on() {
         server_.slots.served(slot_, now_ns, cost_ns);
         charge(cost_ns);
     } else {
-        constexpr std::int64_t kPieceCost_ns = 20'000;  // of reading and unmasking a part
+        constexpr std::int64_t kPieceCost_ns = 20'000;  // processor time to read and unmask a part
         charge(kPieceCost_ns);
     }
     if (!ended_ && !dismissed_) read();
@@ -430,7 +429,7 @@ void Connection::on_message(std::int64_t now_ns) {
     bool room = true;
     for (auto& reply : reaction.replies) room = out_.push_reply(std::move(reply)) && room;
     if (!room) return drop();
-    write();  // the answer is on its way before others hear of it
+    write();  // sends the answer before other clients get the topic message
     server_.publish(reaction.published, now_ns);
     if (reaction.drop && !ended_) dismiss();
 }
@@ -491,8 +490,8 @@ void Connection::dismiss() {
     if (!write_since_ns_) close_politely();
 }
 
-/// Says why and leaves soon. Nothing more is read: waiting for the client's own goodbye would mean
-/// to read all that a flood brings before it.
+/// Sends the reason and disconnects soon. Reads nothing more, because waiting for the client's
+/// close frame would mean reading all data before it.
 void Connection::close_politely() {
     if (leaves_at_ns_) return;
     constexpr std::int64_t kLinger_ns = 100'000'000;
@@ -502,7 +501,7 @@ void Connection::close_politely() {
     leaves_at_ns_ = steady_ns() + kLinger_ns;
 }
 
-/// A whole close frame (RFC 6455), if there is room for it in the socket.
+/// Sends a complete close frame (RFC 6455) if the socket has room for it.
 void Connection::say_goodbye(std::string_view frame) {
     error_code ignored;
     auto& socket = beast::get_lowest_layer(ws_).socket();
@@ -515,7 +514,7 @@ void Connection::drop() {
     end();
 }
 
-/// A client that loses its slot is not waited for.
+/// Closes a client that loses its slot without waiting for it.
 void Connection::end_for_another() {
     if (session_) ++server_.totals.dropped;
     if (session_ && !write_since_ns_) say_goodbye("\x88\x1f\x03\xf0this slot went to another one");
@@ -525,7 +524,7 @@ void Connection::end_for_another() {
 void Connection::end() {
     if (ended_) return;
     ended_ = true;
-    session_.reset();  // the gate forgets it now, whatever handlers still wait
+    session_.reset();  // the gate forgets the client now, even if handlers still wait
     beast::get_lowest_layer(ws_).close();
     server_.leave(*this);
 }
@@ -573,7 +572,7 @@ void SocketServer::run() {
 void SocketServer::poll() {
     begin();
     const std::int64_t start_ns = thread_ns();
-    accounted_ns += start_ns - poll_ended_ns_;  // the owner's
+    accounted_ns += start_ns - poll_ended_ns_;  // time of the owner's own loop
     if (io_.poll() == 0) accounted_ns += thread_ns() - start_ns;
     poll_ended_ns_ = thread_ns();
 }
@@ -605,7 +604,7 @@ void SocketServer::accept() {
     --accepts_left_;
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
-        if (error) return;  // no handles left, or gone already: the next tick tries again
+        if (error) return;  // no file handles left, or already closed: the next tick retries
         const std::int64_t start_ns = thread_ns();
         const std::string peer = peer_of(socket);
         admit_to_door(std::move(socket), peer);
@@ -637,8 +636,8 @@ void SocketServer::wait_for_turn(std::shared_ptr<Connection> connection) {
     waiting_.push_back(std::move(connection));
 }
 
-/// A client that asks now and then is served before one that never stops; newcomers and clients
-/// take turns, so that neither crowd shuts out the other.
+/// Serves waiting connections. Clients with little use come first; newcomers and clients take
+/// turns, so that neither group blocks the other.
 void SocketServer::take_turns(std::int64_t now_ns) {
     guest_work.refill();
     door_work.refill();
@@ -650,10 +649,10 @@ void SocketServer::take_turns(std::int64_t now_ns) {
     });
     auto newcomer = turns.begin();
     auto client = clients;
-    newcomers_first_ = !newcomers_first_;  // where there is time for one alone
+    newcomers_first_ = !newcomers_first_;  // alternates who is first if there is time for one only
     for (bool newcomers_turn = newcomers_first_; newcomer != clients || client != turns.end();
          newcomers_turn = !newcomers_turn) {
-        // Whoever comes when nothing is left waits again.
+        // Connections that arrive when no time is left wait again.
         if (newcomers_turn && newcomer != clients) (*newcomer++)->take_turn();
         if (!newcomers_turn && client != turns.end()) (*client++)->take_turn();
     }
@@ -664,14 +663,14 @@ void SocketServer::wait_for_tick() {
         if (error) return;
         on_tick();
         const auto period = std::chrono::milliseconds(config.tick_ms);
-        // After a long pause the ticks that were missed are not made up for.
+        // After a long pause missed ticks are not repeated.
         timer_.expires_at(std::max(timer_.expiry() + period, net::steady_timer::clock_type::now()));
         wait_for_tick();
     });
 }
 
-/// What the thread did since the last tick and nobody accounted for (pongs, writing, closing) is
-/// taken from what guests may use: they cause nearly all of it.
+/// Processor time since the last tick that belongs to no client (pongs, writing, closing) is
+/// subtracted from the guests' budget, because guests cause nearly all of it.
 void SocketServer::on_tick() {
     guest_work.charge(thread_ns() - tick_ended_ns_ - accounted_ns);
     do_tick(steady_ns());
@@ -686,7 +685,7 @@ void SocketServer::do_tick(std::int64_t now_ns) {
     take_turns(now_ns);
     accepts_left_ = config.accepts_per_tick;
     accept();
-    // After a pause of the thread a question may have left its socket and not come to its handler.
+    // After a pause of the thread a question may have been read but not handled yet.
     net::post(io_, [this] {
         const std::int64_t start_ns = thread_ns();
         look_ahead(steady_ns());
@@ -708,7 +707,7 @@ void SocketServer::look_ahead(std::int64_t now_ns) {
 
 void SocketServer::publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns) {
     if (messages.empty()) return;
-    // A copy: whoever is too slow leaves the list while it is walked.
+    // Iterates over a copy, because a client that is too slow leaves the list meanwhile.
     for (const auto& connection : std::vector(connections_)) {
         for (const auto& message : messages) connection->offer(message, now_ns);
     }

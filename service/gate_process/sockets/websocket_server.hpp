@@ -12,27 +12,27 @@
 namespace surefoot::gate_process {
 
 struct ServerCounts {
-    std::size_t clients = 0;     ///< that speak rosbridge now
-    std::size_t handshakes = 0;  ///< that are still at the door
+    std::size_t clients = 0;     ///< clients that use rosbridge now
+    std::size_t handshakes = 0;  ///< connections without a complete request
     std::uint64_t accepted = 0;  ///< connections since the start
-    std::uint64_t refused = 0;   ///< of these turned away: token, origin, request, crowd
-    std::uint64_t dropped = 0;   ///< clients that were sent away: too slow, too much, nonsense,
-                                 ///< or of less use than another one
+    std::uint64_t refused = 0;   ///< of these refused: token, origin, request, too many
+    std::uint64_t dropped = 0;   ///< clients that were disconnected: slow, too many messages,
+                                 ///< invalid messages, or closed for another client
 };
 
 class SocketServer;
 
-/// The step gate on a socket: rosbridge over WebSocket, and GET /health. One thread, the caller's,
-/// asks the gate and serves all clients; TLS has a thread of its own. A client that misbehaves,
-/// sleeps or floods takes little from the others: clients with the token of a rider or of the
-/// operator are served at once and keep their slots, all others share a bounded part of the time.
+/// Serves the step gate on a socket: rosbridge over WebSocket, and GET /health. The caller's thread
+/// asks the gate and serves all clients; TLS has its own thread. A client that misbehaves, sleeps
+/// or floods costs the others little: riders and operators with a token are served at once and keep
+/// their slots, all others share a bounded part of the time.
 class WebsocketServer {
   public:
-    /// Called every `tick_ms` before topics are published.
+    /// Called every `tick_ms`, before topics are published.
     using Tick = std::function<void(std::int64_t now_ns)>;
 
-    /// Listens, with TLS where its files are given, and serves nobody yet. Fails where the
-    /// configuration is not valid or the address is taken. The gate outlives the server.
+    /// Listens without serving yet; uses TLS if its files are given. Returns an error if the
+    /// configuration is invalid or the address is in use. The gate must outlive the server.
     [[nodiscard]] static Result<std::unique_ptr<WebsocketServer>> open(const ServerConfig& config,
                                                                        StepGate& gate,
                                                                        Tick tick = {});
@@ -40,15 +40,15 @@ class WebsocketServer {
     WebsocketServer& operator=(const WebsocketServer&) = delete;
     ~WebsocketServer();
 
-    /// The one that it listens at.
+    /// The port on which the server listens.
     [[nodiscard]] std::uint16_t port() const noexcept;
-    /// Serves until stop(). Once.
+    /// Serves until stop(). Call it once.
     void run();
-    /// Serves what is ready now, for an owner with a loop of its own.
+    /// Serves what is ready now; for an owner with its own loop.
     void poll();
-    /// Ends run() and all connections. From any thread; not from a signal handler.
+    /// Ends run() and all connections. Thread-safe, but do not call it from a signal handler.
     void stop();
-    /// In `run`'s thread (from the tick), or when it has ended.
+    /// Call it on the thread of run() (for example in the tick), or after run() has returned.
     [[nodiscard]] ServerCounts counts() const;
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The service over real sockets of this machine. Nothing here is measured against a clock: a client
-// waits for what must come, and the deadlines of the server are set short.
+// The service over real sockets of this machine. No result depends on a clock: clients wait for the
+// expected messages, and the deadlines of the server are short.
 #include "service/gate_process/sockets/websocket_server.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ ServerConfig any_port() {
     return config;
 }
 
-/// A server on a thread of its own, with a gate that may be looked at when it has ended.
+/// A server on its own thread; its gate can be examined after it has ended.
 class Service {
   public:
     explicit Service(const ServerConfig& config = any_port())
@@ -62,12 +62,12 @@ class Service {
     [[nodiscard]] tcp::endpoint endpoint() const {
         return {net::ip::make_address("127.0.0.1"), server_->port()};
     }
-    /// As the last tick saw them.
+    /// The counts at the last tick.
     [[nodiscard]] ServerCounts counts() {
         const std::lock_guard lock(mutex_);
         return counts_;
     }
-    /// Waits until so many have come, nobody is at the door and so many clients are left.
+    /// Waits for this many accepted connections, no pending ones, and this many clients.
     void wait_for(std::uint64_t accepted, std::size_t clients) {
         for (ServerCounts now = counts();
              now.accepted != accepted || now.clients != clients || now.handshakes != 0;
@@ -91,7 +91,7 @@ class Service {
     std::thread thread_;
 };
 
-/// A well-behaved client, or one that is so until it writes to the bare socket.
+/// A client that follows the protocol until it writes to the bare socket.
 class Client {
   public:
     explicit Client(const Service& service) { socket().connect(service.endpoint()); }
@@ -107,7 +107,7 @@ class Client {
         }));
         ws_.handshake("127.0.0.1", target);
     }
-    /// Before `open`.
+    /// Call it before `open`.
     void authorize(const std::string& header) { authorization_ = header; }
     void send(const std::string& text) { ws_.write(net::buffer(text)); }
     Json receive() {
@@ -119,7 +119,7 @@ class Client {
         send(text);
         return receive();
     }
-    /// Reads until the connection ends, and says what came last: a close code, or 0.
+    /// Reads until the connection ends. Returns the close code, or 0.
     int end_of_reading() {
         error_code error;
         while (!error) {
@@ -128,7 +128,7 @@ class Client {
         }
         return error == websocket::error::closed ? ws_.reason().code : 0;
     }
-    /// The close code, also where the server did not wait for ours.
+    /// The close code, even if the server did not wait for the client's close frame.
     int goodbye() {
         (void)end_of_reading();
         return ws_.reason().code;
@@ -137,7 +137,7 @@ class Client {
         error_code ignored;
         net::write(socket(), net::buffer(bytes), ignored);
     }
-    /// Everything that still comes, without answering anything.
+    /// Reads everything that still arrives, without answering.
     std::string read_bytes() {
         std::string bytes;
         error_code error;
@@ -179,7 +179,7 @@ http::response<http::string_body> get(const Service& service,
     return answer_to(service, {verb, target, 11});
 }
 
-/// 101 where a WebSocket would open.
+/// The HTTP status; 101 if a WebSocket opens.
 unsigned status_of_upgrade(const Service& service,
                            const std::string& target,
                            const std::string& origin = "") {
@@ -305,8 +305,8 @@ TEST(WebsocketServer, SubscribersHearOfVerdictsAndHealth) {
     }
     listener.send(R"({"op":"unsubscribe","topic":"/surefoot/health"})");
     listener.send(R"({"op":"subscribe","topic":"/surefoot/verdict"})");
-    // The answer to a question of its own says that the subscription has been read. It comes first,
-    // though its verdict is a message to this client, too.
+    // The answer to its own question proves that the subscription was read. The answer comes first,
+    // although its verdict is also a message to this client.
     Json message = listener.ask(kStep);
     while (message["topic"] == "/surefoot/health") message = listener.receive();
     EXPECT_EQ(message["op"], "service_response");
@@ -335,7 +335,7 @@ TEST(WebsocketServer, TheOutlookComesToWhoSubscribesAndOnlyWhileTheyDo) {
     EXPECT_LE(looks, 9U) << "two rounds, and what was left of a third";
 }
 
-/// The server's end of a client's connection: both live in this process.
+/// The server's end of a client's connection; both are in this process.
 int server_end_of(const tcp::socket& client) {
     const tcp::endpoint wanted = client.local_endpoint();
     constexpr int kMostHandles = 1024;
@@ -347,8 +347,8 @@ int server_end_of(const tcp::socket& client) {
     return -1;
 }
 
-/// The tick's hook sends a question to the server that calls it: its bytes lie in the socket when
-/// the server's turn comes to look ahead.
+/// The tick's hook sends a question to the server that calls it: its bytes are in the socket when
+/// the server computes the outlook.
 TEST(WebsocketServer, AQuestionThatWaitsGoesBeforeTheOutlook) {
     ScriptedGate gate;
     std::function<void()> hook;
@@ -358,7 +358,7 @@ TEST(WebsocketServer, AQuestionThatWaitsGoesBeforeTheOutlook) {
     net::io_context io;
     websocket::stream<tcp::socket> ws(io);
     ws.next_layer().connect({net::ip::make_address("127.0.0.1"), server->port()});
-    ws.next_layer().set_option(tcp::no_delay(true));  // or a second message waits for an ACK
+    ws.next_layer().set_option(tcp::no_delay(true));  // else a second message waits for an ACK
     std::atomic<bool> done = false;
     std::thread thread([&] {
         ws.handshake("127.0.0.1", "/");
@@ -372,8 +372,8 @@ TEST(WebsocketServer, AQuestionThatWaitsGoesBeforeTheOutlook) {
     std::size_t looks = 0;
     bool its_turn = false;
     hook = [&] {
-        // In every second tick at most: who asks in each gets past the look only four times in
-        // five.
+        // Only in every second tick: a client that asks in each tick is served before the outlook
+        // only four times out of five.
         its_turn = !its_turn;
         if (!its_turn || asked != gate.questions.size()) return;
         looks = gate.looked_at.size();
@@ -410,7 +410,7 @@ TEST(WebsocketServer, AMessageThatIsTooLongEndsItsConnection) {
     Client client(service, "/", "");
     error_code ignored;
     client.ws().write(net::buffer(std::string(10'000'000, ' ')), ignored);
-    // The server does not read ten megabytes to be polite: the close frame may be lost.
+    // The server does not read ten megabytes first, so the close frame may be lost.
     const int code = client.end_of_reading();
     EXPECT_TRUE(code == websocket::close_code::too_big || code == 0) << code;
     expect_allowed(other);
@@ -440,7 +440,7 @@ TEST(WebsocketServer, HalfAFrameIsNotWaitedForForEver) {
     Service service(config);
     Client other(service, "/", "");
     Client client(service, "/", "");
-    // A masked text frame of 100 bytes of which two come.
+    // A masked text frame of 100 bytes; only two of them are sent.
     client.send_bytes(std::string("\x81\xe4\0\0\0\0ab", 8));
     (void)client.read_bytes();
     expect_allowed(other);
@@ -453,7 +453,7 @@ TEST(WebsocketServer, AMessageInPiecesHasATimeAsAWhole) {
     config.message_ms = 50;
     Service service(config);
     Client client(service, "/", "");
-    // Pieces of one message without an end, and pings between them: each is a sign of life.
+    // Endless pieces of one message with pings between them: each piece is a sign of life.
     error_code error;
     client.send_bytes(std::string("\x01\x81\0\0\0\0{", 7));
     while (!error && service.counts().dropped == 0) {
@@ -525,8 +525,8 @@ TEST(WebsocketServer, WhoAsksWithoutReadingIsLeft) {
     ServerConfig config = any_port();
     config.write_ms = 50;
     config.max_queue_bytes = 64 << 20;  // never full
-    // A client without room for what comes may lose the word that its own was received, and stops
-    // in the middle of a message: that is another deadline.
+    // Under load a client may miss the acknowledgement of its own data and stop in the middle of a
+    // message. Another deadline covers this case.
     config.message_ms = 60'000;
     config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
     Service service(config);
@@ -534,7 +534,7 @@ TEST(WebsocketServer, WhoAsksWithoutReadingIsLeft) {
     Client client(service);
     client.socket().set_option(net::socket_base::receive_buffer_size(4096));
     client.open();
-    // Answers of some megabytes: more than the sockets hold.
+    // Answers of some megabytes, more than the sockets can hold.
     const std::string question =
         R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})";
     error_code error;

@@ -6,14 +6,20 @@
 namespace surefoot::stairs {
 
 void ClassConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("headroom_m", headroom_m, 0.0, 10.0, "ground with less above it is a tunnel");
+    visitor.number(
+        "headroom_m", headroom_m, 0.0, 10.0, "ground with less free height above it is a tunnel");
     visitor.number("max_step_m", max_step_m, 0.01, 1.0, "highest step up or down onto ground");
     visitor.number("level_deg", level_deg, 0.1, 45.0, "steeper ground is a ramp");
-    visitor.number("ramp_deg", ramp_deg, 0.1, 60.0, "steeper ground is none to walk on");
-    visitor.number("min_table_m", min_table_m, 0.0, 5.0, "narrower things that stand are walls");
-    visitor.number("max_table_m", max_table_m, 0.1, 10.0, "higher things that stand are walls");
-    visitor.number("max_sigma_m", max_sigma_m, 0.001, 1.0, "cells known worse have no class");
-    visitor.number("reach_m", reach_m, 0.1, 10.0, "high and low are told from ground so near");
+    visitor.number("ramp_deg", ramp_deg, 0.1, 60.0, "steeper ground is not walked on");
+    visitor.number("min_table_m", min_table_m, 0.0, 5.0, "narrower raised objects are walls");
+    visitor.number("max_table_m", max_table_m, 0.1, 10.0, "higher raised objects are walls");
+    visitor.number(
+        "max_sigma_m", max_sigma_m, 0.001, 1.0, "cells with a larger sigma have no class");
+    visitor.number("reach_m",
+                   reach_m,
+                   0.1,
+                   10.0,
+                   "high and low cells are compared with ground within this distance");
 }
 
 std::optional<std::string> ClassConfig::problem() const {

@@ -19,11 +19,11 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kSigmas = 2.0;         ///< of a slope, before it is called level or steep
-constexpr double kUnseenDrop_m = 0.15;  ///< shown behind the border of ground that ends
-/// Treads lean and maps are bent by less, over the depth of a tread (flights.cpp).
+constexpr double kSigmas = 2.0;         ///< significance of a slope for the classes level and steep
+constexpr double kUnseenDrop_m = 0.15;  ///< depth of the marked drop behind ground that ends
+/// Tilt of treads and distortion of maps stay below this over a tread (see flights.cpp).
 constexpr double kTread_m = 0.035;
-constexpr double kLeastSigma_m = 0.001;  ///< no level of a map is known better
+constexpr double kLeastSigma_m = 0.001;  ///< no level of a map is more accurate
 constexpr std::size_t kLeastTreadCells = 12;
 
 double square(double value) {
@@ -46,7 +46,7 @@ bool can_stand(GroundClass name) {
     }
 }
 
-/// Cells [ix0, ix1) x [iy0, iy1) that hold all points, with a rim; those of the map.
+/// The cells [ix0, ix1) x [iy0, iy1) about all points, with a rim, clipped to the map.
 struct CellBox {
     int ix0 = 0, ix1 = 0, iy0 = 0, iy1 = 0;
 };
@@ -88,13 +88,13 @@ bool is_inside(const std::array<Vector2d, 4>& quad, const Vector2d& p_m) {
     return left == 0 || left == 4;
 }
 
-/// One height of many cells.
+/// The common height of many cells.
 struct TreadLevel {
     double height_m = 0.0;
     double sigma_m = 0.0;
 };
-/// Mean of the cells within 2.5 times their scatter of the median; one error in each square of
-/// kCorrelation_m. `sorted_m` is working memory.
+/// Mean of the cells within 2.5 times their scatter of the median. One independent error per square
+/// of kCorrelation_m. `sorted_m` is working memory.
 TreadLevel level_of(const std::vector<float>& heights_m,
                     std::vector<float>& sorted_m,
                     double var_m2,
@@ -218,7 +218,7 @@ void GroundClassifier::name_patches(const PatchMap& patches) {
     }
 }
 
-/// Of a cell whose height is not known.
+/// Class of a cell whose height is unknown.
 GroundClass GroundClassifier::unseen_class(const NearGround& ground, float free_above_m) const {
     if (!(free_above_m == free_above_m) || ground.distance_m == kFar) return GroundClass::unknown;
     return off_the_way_m(ground, static_cast<double>(free_above_m)) < -config_.drop_m
@@ -290,7 +290,7 @@ void GroundClassifier::name_treads(const Terrain& terrain,
     }
 }
 
-/// Level of the cells inside, and which of them lie on it.
+/// Fits the level of the cells inside the quad and marks the cells on that level.
 void GroundClassifier::name_tread(const Terrain& terrain,
                                   const Quad& quad,
                                   double told_m,
@@ -318,7 +318,7 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     for_inside([&](int ix, int iy) {
         GroundClass& name = out.of_cell.row(iy)[ix];
         if (!terrain.known(ix, iy)) {
-            // What the next tread hides lies no lower for that; a hole does.
+            // A hole shows free space below the tread; a part hidden by the next tread does not.
             const float free_m =
                 terrain.free_above_m.empty() ? kNanF : terrain.free_above_m.row(iy)[ix];
             const bool is_hole = static_cast<double>(free_m) < level.height_m - config_.drop_m;
@@ -340,7 +340,7 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     });
 }
 
-/// Known cells that the line crosses, and those near it between both levels.
+/// Names the known cells that the line crosses, and nearby cells between both levels.
 void GroundClassifier::name_edge(const Terrain& terrain,
                                  const Vector2d& from_m,
                                  const Vector2d& to_m,
@@ -362,7 +362,7 @@ void GroundClassifier::name_edge(const Terrain& terrain,
             const double off_m = std::abs(along.x() * to_cell_m.y() - along.y() * to_cell_m.x());
             if (t_m < 0.0 || t_m > length_m || off_m > std::max(beside_m, crossed_m)) continue;
             const auto z_m = static_cast<double>(terrain.height_m.row(iy)[ix]);
-            // Not what stands on the step, and not what is unknown.
+            // Skips objects on the step and unknown cells.
             if (!(z_m >= levels_m.first - kTread_m && z_m <= levels_m.second + kTread_m)) continue;
             const bool is_between =
                 z_m > levels_m.first + quarter_m && z_m < levels_m.second - quarter_m;
@@ -372,7 +372,7 @@ void GroundClassifier::name_edge(const Terrain& terrain,
     }
 }
 
-/// What stands up by half of its height, as far as a jamb is deep.
+/// Names cells that rise by at least half of the sill's height, over the depth of a jamb.
 void GroundClassifier::name_sill(const Terrain& terrain,
                                  const LineFeature& sill,
                                  GroundClasses& out) const {

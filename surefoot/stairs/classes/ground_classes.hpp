@@ -17,22 +17,22 @@
 
 namespace surefoot::stairs {
 
-/// What the ground is at a cell. "Walked to": from the stance over patches whose planes meet within
-/// `max_step_m`, or over the steps of a flight that was found.
+/// Class of the ground in a cell. "Reachable" means reachable from the stance over patches whose
+/// planes meet within `max_step_m`, or over the steps of a flight that was found.
 enum class GroundClass : std::uint8_t {
-    unknown,  ///< nothing is known, or nothing is sure
-    floor,    ///< level ground that can be walked to, landings and the tops of kerbs too
-    tread,    ///< between two neighbouring edges of a flight, on the level of its tread
-    riser,    ///< a cell that the edge of a step crosses, or beside it between both levels
-    ramp,     ///< a plane that can be walked to and is steeper than level ground
-    kerb,     ///< as a riser, of a single edge that is no higher than a kerb
-    sill,     ///< what stands up between the jambs of a door
-    drop,     ///< ground below ground that can be walked to, further than any ramp would lead, and
-              ///< not to be stepped down to; unknown ground that lines of sight show to be so low
-    wall,     ///< what stands higher than a step, and is steep, narrow or on no plane at all
-    table,    ///< a level plane that stands higher than a step and cannot be walked to: table
-              ///< tops, platforms seen from below
-    tunnel,   ///< one could stand there but for what hangs lower than `headroom_m` above it
+    unknown,  ///< not measured, or too uncertain
+    floor,    ///< level and reachable; includes landings and the tops of kerbs
+    tread,    ///< between two consecutive edges of a flight, at the level of the tread
+    riser,    ///< a cell on the edge of a step, or beside it at a height between both levels
+    ramp,     ///< a reachable plane that is steeper than level ground
+    kerb,     ///< like a riser, for a single edge that is no higher than a kerb
+    sill,     ///< a raised cell between the jambs of a door
+    drop,     ///< lower than any ramp from reachable ground leads, and too low to step down to;
+              ///< also unknown cells that rays prove to be so low
+    wall,     ///< higher than a step, and steep, narrow or on no plane
+    table,    ///< a level plane that is higher than a step and not reachable: table tops,
+              ///< platforms seen from below
+    tunnel,   ///< ground with an object lower than `headroom_m` above it
 };
 inline constexpr std::array<const char*, 11> kGroundClassNames{"unknown",
                                                                "floor",
@@ -46,36 +46,36 @@ inline constexpr std::array<const char*, 11> kGroundClassNames{"unknown",
                                                                "table",
                                                                "tunnel"};
 
-/// A class for every cell of a map, and its treads as a layer of their own: the heights that were
-/// measured stay as they are.
+/// The class of every cell, and the levels of the treads as separate layers. The measured heights
+/// stay unchanged.
 struct GroundClasses {
     Image<GroundClass> of_cell;
-    /// Level of the tread that a known cell belongs to: one height for all of its cells, fitted
-    /// over the tread; NaN where there is none. In the frame of the map.
+    /// Level of the tread that the cell belongs to, fitted over the whole tread; NaN = the cell is
+    /// on no tread. Map frame.
     grid::Layer tread_height_m;
-    grid::Layer tread_sigma_m;  ///< one sigma of that level; NaN likewise
+    grid::Layer tread_sigma_m;  ///< one sigma of that level; NaN = the cell is on no tread
 };
 
-/// Names the cells of a map. What is unsure is never floor: a patch whose slope is not sure to be
-/// level, a cell on no plane and one whose own sigma is large are unknown; single cells that lie
-/// low beside ground to walk on are drops.
+/// Assigns a class to each cell. Uncertain ground is never floor: a patch that may not be level, a
+/// cell on no plane and a cell with a large sigma become unknown. A single cell that lies low
+/// beside walkable ground becomes a drop.
 ///
-/// Holds the working memory: maps of one size and number of features allocate nothing after the
-/// first few. The same result for the same map.
+/// Owns the working memory: maps of one size and number of features allocate nothing after the
+/// first few calls. The same map gives the same result. Not thread-safe.
 class GroundClassifier {
   public:
     explicit GroundClassifier(const StairsConfig& config) : config_(config), walk_(config) {}
-    /// `features` and `patches` are those of the same terrain.
+    /// `features` and `patches` must come from the same terrain.
     void classify(const Terrain& terrain,
                   const TerrainFeatures& features,
                   const PatchMap& patches,
                   GroundClasses& out);
 
   private:
-    /// Four corners, in order around.
+    /// Four corners in order around the quadrilateral.
     using Quad = std::array<Eigen::Vector2d, 4>;
     void name_patches(const PatchMap& patches);
-    /// Of a height over the near ground, what no ramp leads to.
+    /// How far a height differs from every height that a ramp from the near ground can reach.
     [[nodiscard]] double off_the_way_m(const NearGround& ground, double height_m) const;
     [[nodiscard]] GroundClass walked_class(const PlanarPatch& patch) const;
     [[nodiscard]] GroundClass other_class(const PlanarPatch& patch, double above_m) const;
@@ -104,12 +104,12 @@ class GroundClassifier {
     std::vector<float> sorted_m_;
 };
 
-/// Patches and classes of a map, for who wants them once. Allocates.
+/// Computes patches and classes in one call, without kept memory. Allocates.
 [[nodiscard]] GroundClasses classify_ground(const StairsConfig& config,
                                             const Terrain& terrain,
                                             const TerrainFeatures& features);
 
-/// How many cells have each class, in the order of kGroundClassNames.
+/// Number of cells of each class, in the order of kGroundClassNames.
 [[nodiscard]] std::array<int, kGroundClassNames.size()> count_classes(const GroundClasses& classes);
 
 }  // namespace surefoot::stairs

@@ -22,7 +22,7 @@ const char* name_of(GroundClass name) {
     return kGroundClassNames[static_cast<std::size_t>(name)];
 }
 
-/// A map with everything that lines of sight may say of it, and what was made of it.
+/// A map with free-space evidence, and the classes computed from it.
 class Named {
   public:
     explicit Named(TestMap map, const Eigen::Vector2d& stance_m = {-1.0, 0.0})
@@ -38,7 +38,7 @@ class Named {
         FeatureFinder(config).find(terrain, features);
         classes = classify_ground(config, terrain, features);
     }
-    /// Calls f(cell) for all cells with their middle in a rectangle of the world.
+    /// Calls f(cell) for all cells whose centre lies in a rectangle of the world.
     template <typename F>
     void for_cells(Eigen::Vector2d low_m, Eigen::Vector2d high_m, const F& f) const {
         for (int iy = 0; iy < map_.geometry.ny; ++iy) {
@@ -49,7 +49,7 @@ class Named {
             }
         }
     }
-    /// Share of the cells of a rectangle of the world that have a class.
+    /// Share of the cells in a rectangle of the world that have a given class.
     [[nodiscard]] double share(GroundClass name,
                                const Eigen::Vector2d& low_m,
                                const Eigen::Vector2d& high_m) const {
@@ -89,7 +89,7 @@ TEST(GroundClasses, AllKnownLevelGroundIsFloorAndNothingElse) {
         Named named(noisy([](double, double) { return 0.25; }, sigma_m));
         named.classify();
         const int cells = 200 * 200;
-        // Of normal noise 0.27 % of the cells lie beyond 3 sigma of the plane: they are unsure.
+        // 0.27 % of normal noise lies beyond 3 sigma of the plane: these cells are unknown.
         EXPECT_GE(named.count(floor), 0.995 * cells) << sigma_m;
         EXPECT_EQ(named.count(floor) + named.count(unknown) + named.count(drop), cells) << sigma_m;
         EXPECT_LE(named.count(drop), 4) << sigma_m;
@@ -186,7 +186,7 @@ TEST(GroundClasses, ARampIsSteeperThanOneInTwenty) {
     }
 }
 
-/// A table, a wall, a pit and a kerb with what lies behind it.
+/// A table, a wall, a pit, and a kerb with the ground behind it.
 double room(double x_m, double y_m) {
     if (x_m > 0.3 && x_m < 1.1 && std::abs(y_m - 0.9) < 0.35) return 0.72;
     if (y_m > 1.8 && y_m < 1.9) return 1.6;
@@ -213,7 +213,7 @@ TEST(GroundClasses, TableWallDropAndKerbAreToldFromTheFloor) {
     }
 }
 
-// A matcher's kerb of 0.72 m: a smooth way up over 0.15 m. No two neighbouring cells differ much.
+// A matcher smears the rim of 0.72 m over 0.15 m: no two neighbouring cells differ much.
 TEST(GroundClasses, ATableWithASmearedRimIsNotWalkedTo) {
     const auto ground = [](double x_m, double) {
         return 0.72 * std::clamp((x_m - 0.5) / 0.15, 0.0, 1.0);
@@ -324,7 +324,7 @@ TEST(GroundClasses, TreadsOfAFlightDownAreTreads) {
     for (int k = 0; k < 3; ++k)
         EXPECT_GE(named.share(tread, {0.29 * k + 0.04, -0.5}, {0.29 * k + 0.25, 0.5}), 0.98) << k;
     EXPECT_GE(named.share(floor, {0.95, -0.5}, {1.8, 0.5}), 0.98) << "the ground at its foot";
-    // Who falls off its side falls by as much as the steps go down.
+    // A person who falls off its side falls by the height of the steps.
     EXPECT_EQ(named.count(table), 0);
 }
 

@@ -16,11 +16,11 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: less is known of what hardly is a patch
-constexpr double kContact_m = 0.2;           ///< a foot passes where patches meet over that length
-constexpr double kStance_m = 0.3;            ///< as traversability::Reachability
-constexpr double kSurface_m = 0.05;          ///< heights of one surface under the body
-/// Treads lean and maps are bent by less, over the depth of a tread (flights.cpp).
+constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: the slope of a small patch is less certain
+constexpr double kContact_m = 0.2;           ///< a foot passes if patches meet over this length
+constexpr double kStance_m = 0.3;            ///< same value as in traversability::Reachability
+constexpr double kSurface_m = 0.05;          ///< height range of one surface under the body
+/// Tilt of treads and distortion of maps stay below this over a tread (see flights.cpp).
 constexpr double kTread_m = 0.035;
 
 }  // namespace
@@ -45,7 +45,7 @@ void PatchWalk::find_contacts(const PatchMap& patches) {
     });
 }
 
-/// Of a row or column of blocks. Block coordinates are enough: planes say the rest.
+/// Adds the contacts of one row or column of blocks. Planes give the heights at the contact.
 void PatchWalk::add_contacts(const PatchMap& patches, bool along_x, int line) {
     const int blocks = along_x ? patches.of_block.width() : patches.of_block.height();
     int last = -1;
@@ -75,7 +75,7 @@ bool PatchWalk::may_carry(const PlanarPatch& patch) const {
            patch.slope_sigma_rad <= kCarries_sigma_rad;
 }
 
-/// How many blocks of each patch that may carry lie within the radius.
+/// Number of blocks within the radius, for each patch that may carry the machine.
 PatchWalk::NearStance PatchWalk::count_near(const Vector2d& stance_m,
                                             double radius_m,
                                             const PatchMap& patches) {
@@ -99,7 +99,7 @@ PatchWalk::NearStance PatchWalk::count_near(const Vector2d& stance_m,
     return near;
 }
 
-/// The patches that the machine stands on are walked to first.
+/// Marks the patches under the machine as the start of the walk.
 void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
     walked_.assign(patches.patches.size(), 0);
     waiting_.clear();
@@ -108,7 +108,7 @@ void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
     NearStance near = count_near(stance_m, kStance_m, patches);
     if (!std::isfinite(near.nearest_m)) return;
     Vector2d at_m = stance_m;
-    if (near.blocks == 0) {  // the ground at the feet is not in view
+    if (near.blocks == 0) {  // the ground at the feet is not visible
         near = count_near(stance_m, near.nearest_m + kStance_m, patches);
         at_m = near.nearest_at_m;
     }
@@ -124,10 +124,10 @@ void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
     }
 }
 
-/// Patches whose planes meet within a step, over a foot's width.
+/// Links patches whose planes meet within a step, over a foot's width.
 void PatchWalk::link_neighbours(double block_m) {
     links_.clear();
-    const double near_m = config_.smear_m + block_m;  // an edge lies askew in the grid
+    const double near_m = config_.smear_m + block_m;  // an edge may lie oblique in the grid
     for (std::size_t i = 0; i < contacts_.size();) {
         const Contact& first = contacts_[i];
         int steps = 0;
@@ -145,7 +145,7 @@ void PatchWalk::link_neighbours(double block_m) {
     }
 }
 
-/// The patch on one side of an edge, at the level that was measured there.
+/// The patch on one side of an edge whose plane has the measured level of that side.
 std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
                                      const Edge& edge,
                                      bool upper,
@@ -169,7 +169,7 @@ std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
 void PatchWalk::link_flight(const grid::GridGeometry& grid,
                             const Flight& flight,
                             const PatchMap& patches) {
-    if (flight.steps < 2) return;  // one step says no more than the planes on both sides of it
+    if (flight.steps < 2) return;  // a single step adds nothing to the two planes beside it
     const bool up = flight.kind == FlightKind::up;
     std::int32_t last = kNone;
     const auto update = [&](std::int32_t id) {
@@ -204,7 +204,7 @@ void PatchWalk::walk(const PatchMap& patches) {
     }
 }
 
-/// Nearest block that can be walked to, by steps along rows, columns and diagonals.
+/// Finds the nearest reachable block, moving along rows, columns and diagonals.
 void PatchWalk::find_near_ground(const PatchMap& patches) {
     const int nbx = patches.of_block.width();
     const int nby = patches.of_block.height();

@@ -14,50 +14,50 @@
 
 namespace surefoot::stairs {
 
-/// Ground that can be walked to, nearest to a block.
+/// The reachable ground nearest to a block.
 struct NearGround {
     float distance_m = 0.0F;  ///< infinite = none within stairs.classes.reach_m
     float height_m = 0.0F;
 };
 
-/// Which patches can be walked to from the stance, and how far the rest of the map is from them.
+/// Finds the patches that are reachable from the stance, and the distance of each block to them.
 ///
-/// Patches are asked where their planes meet, not neighbouring cells (as Reachability does): a kerb
-/// or a table that a matcher has smeared over five cells has no steps between cells, but its planes
-/// lie as far apart as ever. One goes from patch to patch where they lie within
-/// stairs.classes.max_step_m of each other over a foot's width, with no more between them than an
-/// edge and its shadow; and along every flight of two steps or more. What is steeper than
+/// Compares the planes of patches where they meet, not neighbouring cells (as Reachability does). A
+/// matcher can smear a kerb or a table over five cells, so that no step between cells remains, but
+/// the planes keep their distance. Two patches connect where they lie within
+/// stairs.classes.max_step_m over a foot's width with no more than an edge and its occluded region
+/// between them, or along a flight of two or more steps. A patch steeper than
 /// stairs.classes.ramp_deg, or of unknown slope, is not walked on.
 ///
-/// The machine stands on the lowest of the patches near it that hold a quarter of what is known
-/// there, and on those on its level; if nothing is known near it, near the nearest that is.
+/// The machine stands on the lowest patch near it that holds a quarter of the known blocks there,
+/// and on patches of that level. Without known ground near it, the nearest known ground counts.
 class PatchWalk {
   public:
     explicit PatchWalk(const StairsConfig& config) : config_(config) {}
-    /// `features` and `patches` are those of the same terrain.
+    /// `features` and `patches` must come from the same terrain.
     void find(const Terrain& terrain, const TerrainFeatures& features, const PatchMap& patches);
 
     [[nodiscard]] bool walked(std::size_t patch) const { return walked_[patch] != 0; }
-    /// For each block, row by row.
+    /// One entry per block, row by row.
     [[nodiscard]] std::span<const NearGround> near_ground() const { return near_; }
 
   private:
-    /// Two patches with nothing but unknown ground and borders between them.
+    /// Two patches with only unknown ground and borders between them.
     struct Contact {
         std::int32_t low = 0;  ///< the lower number of the two
         std::int32_t high = 0;
-        float rise_m = 0.0F;  ///< from `low` to `high`, half way between
+        float rise_m = 0.0F;  ///< from `low` to `high`, at the middle between both
         float gap_m = 0.0F;
     };
     struct NearStance {
         int blocks = 0;
-        double nearest_m = 0.0;  ///< block of a patch that may carry; infinite = none
+        double nearest_m = 0.0;  ///< nearest block of a walkable patch; infinite = none
         Eigen::Vector2d nearest_at_m = Eigen::Vector2d::Zero();
     };
     struct Link {
         std::int32_t from = 0;
         std::int32_t to = 0;
-        bool proven = false;  ///< by a flight, whatever the patch looks like
+        bool proven = false;  ///< a flight proves the link, whatever the slope of the patch
     };
 
     void find_contacts(const PatchMap& patches);
@@ -79,7 +79,7 @@ class PatchWalk {
     StairsConfig config_;
     std::vector<Contact> contacts_;
     std::vector<Link> links_;
-    std::vector<int> near_stance_;  ///< blocks of each patch
+    std::vector<int> near_stance_;  ///< number of blocks of each patch
     std::vector<std::uint8_t> walked_;
     std::vector<std::int32_t> waiting_;
     std::vector<NearGround> near_;

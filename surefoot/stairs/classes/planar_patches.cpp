@@ -12,11 +12,11 @@
 namespace surefoot::stairs {
 namespace {
 
-/// No height is believed better than that when cells are weighed.
+/// Floor of the sigma of a cell when cells are weighted.
 constexpr double kLeastSigma_m = 0.005;
-/// Nine cells of noise do not make a slope: without more they count as level within 0.1.
+/// Noise in nine cells must not create a slope: without more cells it counts as level within 0.1.
 constexpr double kSlopeSigma = 0.1;
-/// Mixed blocks wait for their cells to be told apart one by one.
+/// A block below this share of cells on one plane is mixed; its cells are assigned one by one.
 constexpr double kBlockShare = 0.7;
 constexpr int kQualities = 32;
 constexpr double kQualityStep_m = 0.002;
@@ -30,10 +30,13 @@ double square(double value) {
 }  // namespace
 
 void PatchConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("block_m", block_m, 0.005, 1.0, "side of the squares that planes are made of");
-    visitor.number("tolerance_m", tolerance_m, 0.001, 0.2, "cells lie on their plane within this");
-    visitor.number("sigma_factor", sigma_factor, 0.0, 10.0, "or within so many of their own sigma");
-    visitor.number("max_tolerance_m", max_tolerance_m, 0.001, 0.5, "but never further from it");
+    visitor.number(
+        "block_m", block_m, 0.005, 1.0, "side of the blocks of cells that planes are fitted to");
+    visitor.number(
+        "tolerance_m", tolerance_m, 0.001, 0.2, "largest distance of a cell from its plane");
+    visitor.number(
+        "sigma_factor", sigma_factor, 0.0, 10.0, "or this many of the cell's own sigmas");
+    visitor.number("max_tolerance_m", max_tolerance_m, 0.001, 0.5, "but never more than this");
     visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest patch");
 }
 
@@ -101,7 +104,7 @@ void PatchFinder::find(const Terrain& terrain, PatchMap& out) {
     sum_blocks(terrain);
     order_seeds();
     grow_all(out);
-    // A region that began beside something else leant until its border had settled.
+    // A region that began beside another surface leans until its border is correct.
     for (int round = 0; round < kBorderRounds; ++round) {
         join_regions(out);
         settle_borders(out);
@@ -123,7 +126,7 @@ void PatchFinder::sum_blocks(const Terrain& terrain) {
         for (int bx = 0; bx < nbx_; ++bx, ++out) {
             const int begin_ix = bx * block_cells_;
             const int end_ix = std::min(grid.nx, begin_ix + block_cells_);
-            Sums s;  // x and y in cells from the first one of the block
+            Sums s;  // x and y in cells from the first cell of the block
             for (int iy = by * block_cells_; iy < end_iy; ++iy) {
                 const float* height_m = terrain.height_m.row(iy);
                 const float* var_m2 =
@@ -176,7 +179,7 @@ PatchFinder::Sums PatchFinder::around(int bx, int by) const {
     return sums;
 }
 
-/// Blocks in the middle of flat ground first, then those that are flat on their own.
+/// Seeds in order: blocks inside flat ground first, then blocks that are flat alone.
 void PatchFinder::order_seeds() {
     const std::size_t count = blocks_.size();
     quality_.assign(count, 0);
@@ -227,7 +230,7 @@ void PatchFinder::grow_all(PatchMap& out) {
 }
 
 void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
-    constexpr double kFirstBlocks = 4.0;  ///< until then the plane of the seed holds
+    constexpr double kFirstBlocks = 4.0;  ///< until then the plane of the seed is used
     constexpr double kMore = 1.5;
     const auto id = static_cast<std::int32_t>(regions_.size());
     Region region{{}, start};
@@ -261,7 +264,7 @@ void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
     regions_.push_back(region);
 }
 
-/// The smaller of two neighbours becomes part of the larger one if it lies on its plane.
+/// Joins the smaller of two neighbours to the larger one if it lies on the larger one's plane.
 void PatchFinder::join_regions(PatchMap& out) {
     joined_to_.resize(regions_.size());
     for (std::size_t i = 0; i < joined_to_.size(); ++i)
@@ -300,7 +303,7 @@ void PatchFinder::join_regions(PatchMap& out) {
         if (of_block[i] != kNone) of_block[i] = root(of_block[i]);
 }
 
-/// Blocks between two regions change to the one whose plane they lie on better.
+/// Moves blocks between two regions to the region whose plane fits better.
 void PatchFinder::settle_borders(PatchMap& out) {
     for (int by = 0; by < nby_; ++by) {
         for (int bx = 0; bx < nbx_; ++bx) {
@@ -343,7 +346,7 @@ void PatchFinder::refit(const PatchMap& out) {
         if (region.sums.cells > 0.0) region.plane = fit(region.sums);
 }
 
-/// What is left is numbered without gaps.
+/// Removes small patches and renumbers the rest without gaps.
 void PatchFinder::drop_small(double cell_m2, PatchMap& out) {
     const double least = std::max(3.0, config_.min_area_m2 / cell_m2);
     std::size_t kept = 0;
@@ -426,7 +429,7 @@ void PatchFinder::measure(const Terrain& terrain, PatchMap& out) const {
             plane.at_0_m + plane.gx * x + plane.gy * y;
         patch.gradient = {plane.gx, plane.gy};
         patch.rms_m = std::sqrt(square_m2_[i] / std::max(1, patch.cells));
-        // Smaller eigenvalue of the scatter along the ground.
+        // Smaller eigenvalue of the horizontal scatter.
         const double a = s.xx / s.w - x * x, b = s.xy / s.w - x * y, c = s.yy / s.w - y * y;
         const double narrow_m2 =
             std::max(0.0, 0.5 * (a + c) - std::sqrt(0.25 * square(a - c) + b * b));

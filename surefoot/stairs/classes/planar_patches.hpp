@@ -15,26 +15,26 @@
 namespace surefoot::stairs {
 
 struct PatchConfig {
-    double block_m = 0.075;  ///< three cells of 25 mm: a tread of 250 mm holds one at any yaw
-    /// A cell lies on a plane within this, or `sigma_factor` of its own sigma, but never further
-    /// than `max_tolerance_m`: what is so high is an edge (stairs.min_height_m).
+    double block_m = 0.075;  ///< three cells of 25 mm: a 250 mm tread holds a block at any yaw
+    /// A cell lies on a plane within this distance or within `sigma_factor` of its own sigma, but
+    /// at most within `max_tolerance_m`: a larger difference is an edge (stairs.min_height_m).
     double tolerance_m = 0.015;
     double sigma_factor = 3.0;
     double max_tolerance_m = 0.04;
-    double min_area_m2 = 0.02;  ///< of a patch
+    double min_area_m2 = 0.02;  ///< least area of a patch
 
     void describe(ConfigVisitor& visitor);
-    /// First reason why this cannot be used, or nothing.
+    /// The first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// A piece of ground on one plane. Frame of the map.
+/// A connected piece of ground on one plane. Map frame.
 struct PlanarPatch {
     Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< on the plane
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< dz / dx, dz / dy
-    double slope_sigma_rad = 0.0;  ///< one sigma, along the narrower side; infinite = not known
+    double slope_sigma_rad = 0.0;  ///< one sigma, along the narrower side; infinite = unknown
     double rms_m = 0.0;            ///< scatter of its cells about the plane
-    double width_m = 0.0;          ///< of the rectangle with its smaller scatter along the ground
+    double width_m = 0.0;          ///< smaller side of the rectangle about the cells
     int cells = 0;
 
     [[nodiscard]] double slope_rad() const { return std::atan(gradient.norm()); }
@@ -43,10 +43,10 @@ struct PlanarPatch {
     }
 };
 
-/// Which patch each cell lies on.
+/// The patch of each cell.
 struct PatchMap {
     std::vector<PlanarPatch> patches;
-    Image<std::int32_t> of_cell;  ///< place in `patches`, kNone = on no plane, or unknown
+    Image<std::int32_t> of_cell;  ///< index in `patches`; kNone = unknown, or on no plane
     int block_cells = 1;          ///< side of a block, in cells
     double block_m = 0.0;
     Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();  ///< corner of block (0, 0)
@@ -58,24 +58,24 @@ struct PatchMap {
     }
 };
 
-/// Cuts the known ground into planes. Blocks of some cells are fitted on their own, weighted by the
-/// variances of the cells; regions grow from the flattest blocks over neighbours that lie on the
-/// plane that the region makes up so far; regions on one plane become one; blocks at borders change
-/// to the better plane; and last each cell chooses among the planes of its block and the eight
-/// around it. So borders follow cells, while all the work is done on blocks. (Growing from the best
-/// seed: Besl and Jain 1988; over blocks with sums that add up: Feng, Taguchi and Kamat 2014.)
+/// Divides the known ground into planes. Each block of cells is fitted alone, weighted by the cell
+/// variances. Regions grow from the flattest blocks over neighbours that lie on the region's plane
+/// so far. Regions on one plane are joined, and border blocks move to the better plane. Last, each
+/// cell takes the best plane of its block and the eight around it, so borders follow cells.
+/// (Growing from the best seed: Besl and Jain 1988; over blocks with sums that add up: Feng,
+/// Taguchi and Kamat 2014.)
 ///
-/// Blocks with less than half of their cells known start nothing. Holds the working memory: maps of
-/// one size allocate nothing after the first few. The same result for the same map.
+/// A block with less than half of its cells known is no seed. Owns the working memory: maps of one
+/// size allocate nothing after the first few calls. The same map gives the same result.
 class PatchFinder {
   public:
     explicit PatchFinder(const PatchConfig& config) : config_(config) {}
-    /// `config().problem()` is empty.
+    /// Precondition: `config().problem()` is empty.
     void find(const Terrain& terrain, PatchMap& out);
     [[nodiscard]] const PatchConfig& config() const noexcept { return config_; }
 
   private:
-    /// Weighted sums of cells; x and y from the middle of the map.
+    /// Weighted sums over cells; x and y count from the middle of the map.
     struct Sums {
         double w = 0.0, x = 0.0, y = 0.0, z = 0.0;
         double xx = 0.0, xy = 0.0, yy = 0.0, xz = 0.0, yz = 0.0, zz = 0.0;
@@ -92,7 +92,7 @@ class PatchFinder {
     };
 
     [[nodiscard]] static Plane fit(const Sums& sums);
-    /// Mean square of the residuals [m2], weighted.
+    /// Weighted mean of the squared residuals [m2].
     [[nodiscard]] static double mean_square_m2(const Sums& sums, const Plane& plane);
     [[nodiscard]] bool lies_on(const Sums& sums, const Plane& plane) const;
 
@@ -114,13 +114,13 @@ class PatchFinder {
     int nbx_ = 0;
     int nby_ = 0;
     std::vector<Sums> blocks_;
-    std::vector<std::uint8_t> quality_;  ///< of a seed, 0 = best
-    std::vector<Plane> start_;           ///< of a seed
+    std::vector<std::uint8_t> quality_;  ///< of a seed; 0 = best
+    std::vector<Plane> start_;           ///< plane of a seed
     std::vector<std::int32_t> seeds_;
     std::vector<std::int32_t> waiting_;
     std::vector<Region> regions_;
     std::vector<std::int32_t> joined_to_;
-    std::vector<double> square_m2_;  ///< of a patch: sum over its cells
+    std::vector<double> square_m2_;  ///< sum of squared residuals over the cells of a patch
 };
 
 }  // namespace surefoot::stairs

@@ -23,7 +23,7 @@ PatchMap patches_of(const TestMap& map) {
     return out;
 }
 
-/// Patch at a place of the world.
+/// The patch at a point of the world.
 std::int32_t at(const TestMap& map, const PatchMap& patches, double x_m, double y_m) {
     const Eigen::Vector2d p_m = map.to_map({x_m, y_m});
     const auto cell = map.geometry.cell_at(p_m.x(), p_m.y());
@@ -52,7 +52,7 @@ TEST(PlanarPatches, ALeaningPlaneIsOnePatchWithItsSlopeAndNoise) {
     }
 }
 
-// Such heights must not get here (kMaxHeight_m); should they, they are no crash.
+// Such heights are excluded before (kMaxHeight_m); if they occur, they must not crash.
 TEST(PlanarPatches, HeightsOfAnyMagnitudeLeaveTheOthersAlone) {
     for (const float bad_m : {9e4F, -1e10F, 1e12F, std::numeric_limits<float>::lowest()}) {
         TestMap map([](double, double) { return 0.0; }, 0.0, {0.0, 0.0});
@@ -64,7 +64,7 @@ TEST(PlanarPatches, HeightsOfAnyMagnitudeLeaveTheOthersAlone) {
     }
 }
 
-// The sums over blocks are those of all cells: the same plane as by total least squares, whose
+// The sums over blocks equal the sums over all cells: the plane equals total least squares, whose
 // residuals lie along the normal.
 TEST(PlanarPatches, ThePlaneIsThatOfItsCells) {
     TestMap map([](double x_m, double y_m) { return 0.02 * x_m - 0.03 * y_m; }, 0.4, {0.0, 0.0});
@@ -103,15 +103,15 @@ TEST(PlanarPatches, ARampBeginsWhereItLeavesTheFloorByTheTolerance) {
     EXPECT_NEAR(leaning.slope_rad() * kDegPerRad, 4.76, 0.1);
     EXPECT_NEAR(
         patches.patches[static_cast<std::size_t>(floor)].slope_rad() * kDegPerRad, 0.0, 0.1);
-    // The better plane wins, but for what noise of 3 mm leaves open: 3 sigma are 0.11 m of it.
+    // The better plane wins, except where noise of 3 mm decides: 3 sigma are 0.11 m of the ramp.
     for (double y_m = -1.0; y_m <= 1.0; y_m += 0.1) {
         EXPECT_EQ(at(map, patches, -0.15, y_m), floor) << y_m;
         EXPECT_EQ(at(map, patches, 0.25, y_m), ramp) << y_m;
     }
 }
 
-// Regions that begin at the foot of a ramp lean with it until their border has settled: the floor
-// comes in pieces that lie on one plane only then.
+// Regions that begin at the foot of a ramp lean until their border is correct. Only then the pieces
+// of the floor lie on one plane.
 TEST(PlanarPatches, AFloorAroundThingsIsOnePatch) {
     const auto ground = [](double x_m, double y_m) {
         if (std::abs(x_m + 1.0) < 0.4 && y_m > 1.2 && y_m < 1.9) return 0.72;
@@ -149,7 +149,7 @@ TEST(PlanarPatches, EachTreadIsAPatchAtAnyYaw) {
 }
 
 TEST(PlanarPatches, CellsThatAreKnownBadlyCountLess) {
-    // Half of the floor is known to 20 mm and lies 15 mm too high, every other cell.
+    // Half of the cells have a sigma of 20 mm and lie 15 mm too high, every other cell.
     TestMap map([](double, double) { return 0.0; }, 0.0, {0.0, 0.0});
     for (int iy = 0; iy < map.geometry.ny; ++iy) {
         for (int ix = 0; ix < map.geometry.nx; ++ix) {
@@ -160,7 +160,7 @@ TEST(PlanarPatches, CellsThatAreKnownBadlyCountLess) {
     }
     const PatchMap patches = patches_of(map);
     ASSERT_EQ(patches.patches.size(), 1U);
-    // Weights 1 / (400 + 25) and 1 / (4 + 25) mm-2 give 0.96 mm; alike they would give 7.5 mm.
+    // Weights 1 / (400 + 25) and 1 / (4 + 25) mm-2 give 0.96 mm; equal weights would give 7.5 mm.
     EXPECT_NEAR(patches.patches[0].middle_m.z(), 0.00096, 1e-4);
 }
 

@@ -13,11 +13,11 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Heights within a block of floor differ by less, noise included; within one of a wall by more.
+/// Height range within a block: floor has less (noise included), a block with wall has more.
 constexpr float kLevel_m = 0.1F;
 constexpr std::int16_t kNone = -1;
 
-/// Lowest, highest and number of the known heights of columns.
+/// Lowest height, highest height and number of known cells per column.
 void take_row(const float* z_m, std::size_t count, float* low_m, float* high_m, int* known) {
     for (std::size_t i = 0; i < count; ++i) {
         known[i] += z_m[i] == z_m[i] ? 1 : 0;
@@ -53,7 +53,7 @@ const std::vector<Bottleneck>& BottleneckFinder::find(const Terrain& terrain,
     return bottlenecks_;
 }
 
-/// What does not fill a block at the far sides is left out.
+/// Computes the blocks. An incomplete block at the far sides is left out.
 void BottleneckFinder::measure_blocks(const Terrain& terrain) {
     const int nx = terrain.geometry.nx / cells_;
     const int ny = terrain.geometry.ny / cells_;
@@ -91,8 +91,8 @@ void BottleneckFinder::measure_blocks(const Terrain& terrain) {
     }
 }
 
-/// Lowest level block in a square of kReach_m to every side: runs of that length grow by doubling,
-/// along the rows, then along the columns.
+/// Lowest level block within kReach_m on every side: a running minimum by doubling, first along the
+/// rows, then along the columns.
 void BottleneckFinder::spread_ground() {
     const int width = low_m_.width();
     const int height = low_m_.height();
@@ -110,7 +110,7 @@ void BottleneckFinder::spread_ground() {
     }
 }
 
-/// Wrong matches stand alone: wall has wall beside it.
+/// A wall block needs a neighbouring wall block, because wrong matches are isolated.
 void BottleneckFinder::mark_walls(double rise_m) {
     const int nx = high_m_.width();
     const int ny = high_m_.height();
@@ -119,7 +119,7 @@ void BottleneckFinder::mark_walls(double rise_m) {
     bottleneck_.resize(nx, ny);
     const auto rise = static_cast<float>(rise_m);
     for (int by = 0; by < ny; ++by) {
-        // Runs begin at a block: that of a block and its reach begins at the edge of the margin.
+        // A window begins at its block: the window of a block and its reach begins at the margin.
         const float* ground_m = low_m_.row(by);
         for (int bx = 0; bx < nx; ++bx)
             bottleneck_.row(by)[bx] = high_m_.row(by)[bx] >= ground_m[bx] + rise ? 1 : 0;
@@ -155,8 +155,8 @@ void BottleneckFinder::find_walls_in_columns() {
     }
 }
 
-/// Lower envelope of the parabolas (bx - column)^2 + (rows to the column's wall)^2. Walls that no
-/// neck reaches are left out.
+/// Lower envelope of the parabolas (bx - column)^2 + (rows to the column's wall)^2. Walls beyond
+/// the reach of any bottleneck are left out.
 void BottleneckFinder::find_nearest_walls(int by) {
     const int nx = wall_.width();
     const std::int16_t* wall_by = wall_by_.row(by);
@@ -200,7 +200,7 @@ bool BottleneckFinder::in_bottleneck(int bx, int by, const BottleneckLimits& lim
         return false;
     const Vector2i near = to_wall(bx, by);
     if (near.squaredNorm() > range_ * range_) return false;
-    // Blocks with a bit of wall count as wall, and the middle may lie between two blocks.
+    // A block with any part of a wall counts as wall; the middle may lie between two blocks.
     const double width = 2.0 * near.cast<double>().norm();
     if ((width + 2.0) * block_m_ < limits.min_width_m ||
         (width - 2.0) * block_m_ > limits.max_width_m)
@@ -209,7 +209,7 @@ bool BottleneckFinder::in_bottleneck(int bx, int by, const BottleneckLimits& lim
     if (!bottleneck_.contains(opposite.x(), opposite.y()) ||
         wall_bx_.row(opposite.y())[opposite.x()] < 0)
         return false;
-    // Two blocks at most: the walls are at least six apart.
+    // At most two blocks: the walls are at least six blocks apart.
     return to_wall(opposite.x(), opposite.y()).squaredNorm() <= 4;
 }
 

@@ -16,37 +16,37 @@ struct BottleneckLimits {
     double min_width_m = 0.0;
     double max_width_m = 0.0;
     double max_depth_m = 0.0;
-    double rise_m = 0.0;  ///< what stands so high above the ground beside it is a wall
+    double rise_m = 0.0;  ///< anything so high above the ground beside it is a wall
 };
 
-/// A place at which free ground is narrowest between two walls, to within a block or two.
+/// The narrowest place of free ground between two walls; accurate to one or two blocks.
 struct Bottleneck {
     Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d across = Eigen::Vector2d::UnitX();  ///< unit vector from wall to wall
     double width_m = 0.0;
 };
 
-/// Finds necks on blocks of about 50 mm. A block lies in a neck when the circle about it that
-/// reaches to the nearest wall touches wall on its other side as well. Such circles follow each
-/// other along the middle of a passage; one that is longer than `max_depth_m` is a corridor and no
-/// neck.
+/// Finds bottlenecks on blocks of about 50 mm. A block is in a bottleneck if the circle about it
+/// that reaches the nearest wall also touches a wall on its opposite side. Such blocks form a line
+/// along a passage. A line longer than `max_depth_m` is a corridor, not a bottleneck.
 ///
-/// A wall is what stands `rise_m` above the lowest level block within kReach_m.
+/// A wall is anything `rise_m` or more above the lowest level block within kReach_m.
 ///
-/// Nearest walls by the distance transform of Meijster, Roerdink and Hesselink (2000), whose cost
-/// is linear in the number of blocks. Holds the working memory.
+/// Nearest walls: distance transform of Meijster, Roerdink and Hesselink (2000). Its cost is linear
+/// in the number of blocks.
+/// Owns the working memory; not thread-safe.
 class BottleneckFinder {
   public:
     static constexpr double kBlock_m = 0.05;
     static constexpr double kReach_m = 0.15;
 
-    /// Nearest to the stance first. Valid until the next call.
+    /// Nearest to the stance first. The reference is valid until the next call.
     const std::vector<Bottleneck>& find(const Terrain& terrain, const BottleneckLimits& limits);
 
   private:
     struct Parabola {
         int bx = 0;
-        double from = 0.0;  ///< lowest of all from here on
+        double from = 0.0;  ///< first column where this parabola is the lowest
     };
 
     void measure_blocks(const Terrain& terrain);
@@ -56,22 +56,22 @@ class BottleneckFinder {
     void find_nearest_walls(int by);
     void mark_bottlenecks(const BottleneckLimits& limits);
     [[nodiscard]] bool in_bottleneck(int bx, int by, const BottleneckLimits& limits) const;
-    /// The neck of marked blocks that hang together with this one; takes their marks away.
+    /// Adds the bottleneck of the marked blocks connected to `first`; clears their marks.
     void collect(grid::Cell first,
                  const grid::GridGeometry& geometry,
                  const BottleneckLimits& limits);
-    /// From the block to its nearest wall block; precondition: has one.
+    /// Vector from the block to its nearest wall block. Precondition: a wall block exists.
     [[nodiscard]] Eigen::Vector2i to_wall(int bx, int by) const;
 
     int cells_ = 0;  ///< side of a block in cells
     double block_m_ = 0.0;
     int reach_ = 0;  ///< kReach_m in blocks
-    int range_ = 0;  ///< half the width of the widest neck in blocks, and one
-    /// Lowest of a level block, then of a square that begins there; +inf = none. With a margin of
-    /// `reach_` blocks, so that the square of a block's reach begins at its own index.
+    int range_ = 0;  ///< half the width of the widest bottleneck in blocks, plus one
+    /// Lowest level block of the square that begins at a block; +inf = none. The image has a margin
+    /// of `reach_` blocks, so the square about a block begins at the block's own index.
     Image<float> low_m_;
     Image<float> high_m_;  ///< highest; -inf = unknown
-    // Of the cells of one row of blocks that lie in one column.
+    // Per column: the cells of one row of blocks.
     std::vector<float> column_low_m_;
     std::vector<float> column_high_m_;
     std::vector<int> column_known_;

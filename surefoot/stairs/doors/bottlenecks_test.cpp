@@ -65,7 +65,7 @@ TEST(Bottlenecks, StepsAreNoWalls) {
     EXPECT_TRUE(bottlenecks(floor).empty());
 }
 
-/// A matcher rounds off where floor and wall meet, so that the ground there is not level.
+/// A matcher rounds off the corner between floor and wall, so the ground there is not level.
 TEST(Bottlenecks, WallsRiseFromTheLevelGroundNearby) {
     Floor floor;
     for (const double edge_m : {1.0, 1.9}) {
@@ -78,7 +78,7 @@ TEST(Bottlenecks, WallsRiseFromTheLevelGroundNearby) {
     EXPECT_NEAR(found[0].width_m, 0.9, 2.0 * kBlock_m);
 }
 
-/// Scattered heights, as a camera sees a wall.
+/// Scattered heights, like those of a wall in a camera.
 TEST(Bottlenecks, WallsHaveNoLevelBlocks) {
     Floor floor;
     for (const double y0_m : {0.0, 1.9}) {

@@ -18,17 +18,17 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Ground is looked at so far before and behind a door.
+/// Depth of ground examined before and behind a door.
 constexpr double kGround_m = 0.4;
-/// Beside a wall heights are not those of the ground: a matcher rounds the corner off.
+/// Within this distance of a wall the heights are wrong: a matcher rounds off the corner.
 constexpr double kCorner_m = 0.075;
-/// Of the middles of jambs that face each other: the noise of where walls begin.
+/// Largest offset along the way between the middles of facing jambs: noise of wall begins.
 constexpr double kOffset_m = 0.15;
-/// Walls seem as thick as the noise of what is seen of them, to each side.
+/// Apparent extra thickness of a wall on each side, caused by noise.
 constexpr double kWallNoise_m = 0.25;
-/// Where a cell holds the foot of a wall and floor, a matcher puts it between them.
+/// A cell with both wall and floor gets a height between them.
 constexpr double kFoot_m = 0.1;
-/// Behind a sill a matcher comes down to the ground over so much more than what the sill hides.
+/// Behind a sill the matcher returns to ground level only after this many sill heights.
 constexpr double kShadowPerHeight = 5.0;
 constexpr double kLongestShadow_m = 0.25;
 constexpr double kBin_m = 0.025;
@@ -43,7 +43,7 @@ struct Range {
     double from = 0.0;
     double to = 0.0;
 
-    /// Where |slope x + offset| <= limit; all of it for a slope of 0, whose offset is within.
+    /// Keeps the part where |slope x + offset| <= limit. For slope 0 the offset must be within.
     void cut(double slope, double offset, double limit) {
         if (std::abs(slope) < 1e-9) return;
         const double a = (-limit - offset) / slope;
@@ -56,9 +56,9 @@ struct Range {
 }  // namespace
 
 struct DoorFinder::Jamb {
-    double at_m = 0.0;  ///< across, from the middle of the neck; >= 0 on both sides
+    double at_m = 0.0;  ///< across, from the middle of the bottleneck; >= 0 on both sides
     double sigma_m = 0.0;
-    double front_m = 0.0;  ///< along
+    double front_m = 0.0;  ///< position along the way
     double back_m = 0.0;
     [[nodiscard]] bool faces(const Jamb& other) const {
         return front_m <= other.back_m && other.front_m <= back_m &&
@@ -66,38 +66,39 @@ struct DoorFinder::Jamb {
     }
 };
 
-/// Frame: across to the left, along away from the stance.
+/// Frame: across = to the left, along = away from the stance.
 struct DoorFinder::Opening {
     Vector2d bottleneck_m;
     Vector2d across;
     double width_m = 0.0;
-    double middle_m = 0.0;  ///< across, from the neck
+    double middle_m = 0.0;  ///< across, from the bottleneck
     double sigma_m = 0.0;
-    double front_m = 0.0;  ///< of the jambs, along, from the neck
+    double front_m = 0.0;  ///< front of the jambs: along, from the bottleneck
     double back_m = 0.0;
     double before_m = 0.0;  ///< height of the ground
     double behind_m = 0.0;
-    float wall_from_m = 0.0F;  ///< what is higher is no ground
-    float foot_from_m = 0.0F;  ///< in the rows that lead to a jamb; sills are lower
+    float wall_from_m = 0.0F;  ///< anything higher is not ground
+    float foot_from_m = 0.0F;  ///< in rows that lead to a jamb; sills are lower
 
     [[nodiscard]] Vector2d along() const { return {across.y(), -across.x()}; }
 };
 
 struct DoorFinder::Sill {
-    double above_before_m = 0.0;  ///< 0 = not shown, as the next one
+    double above_before_m = 0.0;  ///< 0 = not visible; the same for the next one
     double ridge_m = 0.0;         ///< above the ground on both sides
     double sigma_m = 0.0;
-    double along_m = 0.0;  ///< of the ridge
+    double along_m = 0.0;  ///< position of the ridge along the way
 };
 
-/// The ground on one side of the jambs, as a line along the way.
+/// The ground on one side of the jambs, as a straight line along the way.
 struct DoorFinder::GroundLine {
     bool known = false;
-    double at_m = 0.0;  ///< along, where it ends at the jambs
+    double at_m = 0.0;  ///< position of its end at the jambs, along the way
     double height_m = 0.0;
     double slope = 0.0;
-    double point_var_m2 = 0.0;  ///< of the mean height over the width, at one place along
-    double var_m2 = 0.0;        ///< of height_m
+    double point_var_m2 =
+        0.0;              ///< variance of the mean height over the width, at one position along
+    double var_m2 = 0.0;  ///< variance of height_m
     [[nodiscard]] double height_at(double along_m) const {
         return height_m + slope * (along_m - at_m);
     }
@@ -151,7 +152,7 @@ void DoorFinder::report(const Opening& opening,
     sills.push_back(line);
 }
 
-/// False if it turns out to be no door.
+/// Returns false if the opening is not a door.
 bool DoorFinder::measure(const Terrain& terrain, Opening& opening) {
     const auto before_m = ground_m(terrain, opening, -0.6, -0.2);
     if (!before_m || !ground_m(terrain, opening, -0.2, 0.2)) return false;
@@ -193,7 +194,7 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
         Range x_m{-g.nx * cell_m_, g.nx * cell_m_};
         x_m.cut(across.x(), across.y() * y_m, across_m);
         x_m.cut(along.x(), along.y() * y_m, kHalfProfile_m);
-        // Where the opening lies almost along the rows the range may end beyond all integers.
+        // For an opening almost along the rows the range may exceed all integers.
         const auto cell_at = [&](double offset_m) {
             return bottleneck.x() + offset_m / cell_m_ - 0.5;
         };
@@ -212,7 +213,7 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
     }
 }
 
-/// Median height of the ground from `from_m` to `to_m` along, if most of it is known.
+/// Median height of the ground from `from_m` to `to_m` along the way, if most of it is known.
 std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
                                            const Opening& opening,
                                            double from_m,
@@ -235,13 +236,13 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
     return static_cast<double>(upper_median_in_place(values_));
 }
 
-/// Line through the cells of both walls, with the least sum of distances: far cells are ghosts
-/// behind a jamb more often than noise, and lie on one side. By least squares with the inverse of
-/// the distance from the line before as weight. False if it turns too far.
+/// Fits a line through the cells of both walls with least absolute distances, because distant cells
+/// are mostly false points behind a jamb, all on one side. Method: least squares, reweighted with
+/// the inverse of the previous distance. Returns false if the line turns too far.
 bool DoorFinder::turn_to_walls(Opening& opening) const {
     constexpr int kRounds = 6;
-    constexpr double kSure_m = 0.03;      // nearer ones count alike: about one cell
-    constexpr double kMaxTurn_rad = 0.6;  // blocks place a neck better than that
+    constexpr double kSure_m = 0.03;      // nearer cells have equal weights: about one cell
+    constexpr double kMaxTurn_rad = 0.6;  // blocks place a bottleneck more precisely
     const Vector2d first = opening.across;
     double offset_m = 0.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -272,7 +273,7 @@ bool DoorFinder::turn_to_walls(Opening& opening) const {
     return opening.across.dot(first) > std::cos(kMaxTurn_rad);
 }
 
-/// Walks from the middle of the opening outwards, row by row of cells.
+/// Walks from the middle of the opening outwards, one row of cells after another.
 void DoorFinder::find_row_ends(const Terrain& terrain, const Opening& opening, double side) {
     const grid::GridGeometry& g = terrain.geometry;
     const Vector2d along = opening.along();
@@ -306,7 +307,7 @@ void DoorFinder::find_row_ends(const Terrain& terrain, const Opening& opening, d
                 break;
             }
             unknown = height_m == height_m ? 0 : unknown + 1;
-            if (unknown >= 2) break;  // the wall may begin anywhere in there
+            if (unknown >= 2) break;  // the wall may begin anywhere in the unknown cells
         }
     }
 }
@@ -318,7 +319,7 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
     std::sort(ends_.begin(), ends_.end(), [](const RowEnd& a, const RowEnd& b) {
         return a.across_m < b.across_m;
     });
-    // A straight wall crosses rows so that their last cells lie within one cell of each other.
+    // At a straight wall the last cells of the rows lie within one cell of each other.
     const double spread_m = (1.0 + 1e-6) * cell_m_;
     std::size_t most = 0;
     const auto alike_from = [&](std::size_t i) {
@@ -342,8 +343,8 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
     const double sine = std::min(std::abs(opening.across.x()), std::abs(opening.across.y()));
     const double cosine = std::max(std::abs(opening.across.x()), std::abs(opening.across.y()));
     jamb.at_m += 0.5 * sine * cell_m_;
-    // Even over one cell of a row. From row to row a jamb moves on by a part of a cell, so that
-    // some see other parts of theirs; at 45 deg it moves on by a whole one.
+    // The error is uniform over one cell for one row. From row to row the jamb moves by a part of a
+    // cell, so the rows sample different parts; at 45 deg it moves by a whole cell.
     const double moves = std::min(sine / cosine, 1.0 - sine / cosine);
     const double parts = 1.0 + moves * static_cast<double>(count - 1);
     jamb.sigma_m =
@@ -372,11 +373,11 @@ bool DoorFinder::has_wall(const Opening& opening, double side, const Jamb& jamb)
            static_cast<double>(hits) >= 0.7 * static_cast<double>(bins);
 }
 
-/// Wall goes on along the way before the jamb or behind it: this is no jamb but the side of
-/// something that stands along the way.
+/// True if the wall continues along the way before or behind the jamb. Then it is no jamb but the
+/// side of an object that stands along the way.
 bool DoorFinder::goes_on(const Opening& opening, double side, const Jamb& jamb) const {
     constexpr double kBeside_m = 0.25;
-    constexpr double kAway_m = 0.15;  // noise of what is seen of the wall
+    constexpr double kAway_m = 0.15;  // noise of the visible part of the wall
     constexpr double kFar_m = 0.45;
     double at_jamb = 0.0;
     double before = 0.0;
@@ -416,7 +417,7 @@ void DoorFinder::take_profile(const Opening& opening) {
     }
 }
 
-/// Line through the profile from the jambs, at `at_m`, to `far_m`.
+/// Fits a line to the profile from the jambs, at `at_m`, to `far_m`.
 DoorFinder::GroundLine DoorFinder::ground_line(const Opening& opening,
                                                double at_m,
                                                double far_m) const {
@@ -457,12 +458,12 @@ DoorFinder::GroundLine DoorFinder::ground_line(const Opening& opening,
     const double errors_across = std::max(1.0, opening.width_m / config_.correlation_m);
     const double errors_along = std::max(1.0, n * bin_m / config_.correlation_m);
     line.point_var_m2 = std::max(rest_m2, cell_var_m2 / n / errors_across);
-    // Of a line at its end: a part for its mean and three for its slope.
+    // Variance at the end of a line: one part from its mean and three from its slope.
     line.var_m2 = 4.0 * line.point_var_m2 / errors_along;
     return line;
 }
 
-/// Nothing if the ground beside the jambs is not known well enough.
+/// Empty if the ground beside the jambs is not known well enough.
 std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     take_profile(opening);
     const double bin_m = std::max(cell_m_, kBin_m);
@@ -476,7 +477,7 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
         if (along_m < front_m || along_m > back_m || profile_[i].count == 0) continue;
         top_m = std::max(top_m, profile_[i].mean_m() - before.height_at(along_m));
     }
-    // What a sill hides a matcher fills from the sill on.
+    // A matcher fills the region that a sill hides, beginning at the sill.
     const double seen_m = back_m + std::min(kShadowPerHeight * top_m, kLongestShadow_m);
     const GroundLine behind = ground_line(opening, seen_m, seen_m + kGround_m);
     if (!behind.known) return std::nullopt;
@@ -484,8 +485,8 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     sill.sigma_m = std::sqrt(std::max(before.point_var_m2, behind.point_var_m2) +
                              0.5 * (before.var_m2 + behind.var_m2));
     const double least_m = std::max(config_.min_sill_m, config_.sigma_factor * sill.sigma_m);
-    // Where the ground takes a step, a ridge has to stand above both grounds; elsewhere above the
-    // line from the one to the other, which is surer than where either would go on to.
+    // If the ground has a step, a ridge must be higher than both sides. Else it must be higher than
+    // the line between both sides, which is more certain than extrapolations.
     const double middle_m = 0.5 * (front_m + back_m);
     const bool step = std::abs(behind.height_at(middle_m) - before.height_at(middle_m)) > least_m;
     double ridge_m = 0.0;
@@ -510,7 +511,7 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     return sill;
 }
 
-/// Least free height that is seen over more than a single wrong match.
+/// Least free height that is supported by more than a single wrong match.
 double DoorFinder::clearance_m(const Opening& opening) {
     values_.clear();
     for (const Near& cell : near_) {
@@ -534,22 +535,29 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
     visitor.number("min_width_m", min_width_m, 0.1, 10.0, "narrower openings are no doors");
     visitor.number("max_width_m", max_width_m, 0.1, 10.0, "wider openings are no doors");
     visitor.number("max_depth_m", max_depth_m, 0.05, 10.0, "deeper openings are corridors");
-    visitor.number("rise_m", rise_m, 0.01, 2.0, "what rises higher beside ground is a wall");
-    visitor.number("wall_height_m", wall_height_m, 0.01, 3.0, "walls are seen to rise so high");
+    visitor.number("rise_m",
+                   rise_m,
+                   0.01,
+                   2.0,
+                   "anything higher than this above the ground beside it is a wall");
     visitor.number(
-        "wall_length_m", wall_length_m, 0.01, 10.0, "wall wanted on either side of a door");
+        "wall_height_m", wall_height_m, 0.01, 3.0, "visible height of a wall above the ground");
+    visitor.number("wall_length_m",
+                   wall_length_m,
+                   0.01,
+                   10.0,
+                   "least length of wall on either side of a door");
     visitor.number("min_sill_m", min_sill_m, 0.0, 1.0, "lower sills are not reported");
     visitor.number(
-        "sigma_factor", sigma_factor, 0.0, 100.0, "sills stand out of the floor by so many");
+        "sigma_factor", sigma_factor, 0.0, 100.0, "a sill exceeds the floor by this many");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
-    visitor.number(
-        "jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "of where a matcher puts the border of a jamb");
+        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+    visitor.number("jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "one sigma of the position of a jamb");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "what hangs over less than a square of this side may be a wrong match");
+                   "an overhead object smaller than a square of this side may be a wrong match");
 }
 
 std::optional<std::string> DoorConfig::problem() const {

@@ -16,50 +16,50 @@ namespace surefoot::stairs {
 
 struct DoorConfig {
     double min_width_m = 0.6;    ///< doors in buildings have 0.76 m and more
-    double max_width_m = 1.4;    ///< pillars of a corridor stand that far apart and more
-    double max_depth_m = 0.5;    ///< of the jambs, along the way; what is deeper is a corridor
-    double rise_m = 0.2;         ///< what rises higher above the ground beside it is no ground
-    double wall_height_m = 0.5;  ///< walls are seen to rise so high; a camera looks down on them
-    double wall_length_m = 0.3;  ///< the wall goes on so far on both sides of the opening
-    double min_sill_m = 0.008;   ///< lower ones are not told from the grain of the floor
-    double sigma_factor = 3.0;   ///< a sill stands out of the floor by so many sigma
-    /// Errors of a semi-global matcher are shared over 30-50 px: 0.1 m of floor 1 m away.
+    double max_width_m = 1.4;    ///< least distance of the pillars of a corridor
+    double max_depth_m = 0.5;    ///< of the jambs along the way; deeper passages are corridors
+    double rise_m = 0.2;         ///< anything higher above the ground beside it is not ground
+    double wall_height_m = 0.5;  ///< visible height of a wall; the camera looks down on walls
+    double wall_length_m = 0.3;  ///< length of wall on both sides of the opening
+    double min_sill_m = 0.008;   ///< lower sills cannot be distinguished from floor noise
+    double sigma_factor = 3.0;   ///< a sill exceeds the floor by so many sigma
+    /// Correlation length of semi-global matching errors: 30-50 px, 0.1 m of floor at 1 m.
     double correlation_m = 0.1;
-    /// Of where a matcher puts a jamb, besides what cells leave open: 20 rendered doors with the
+    /// One sigma of a jamb's position beyond cell quantisation. Source: 20 rendered doors with the
     /// noise of the real ZED.
     double jamb_sigma_m = 0.006;
-    /// What hangs over less than a square of this side may be a wrong match.
+    /// An overhead object smaller than a square of this side may be a wrong match.
     double overhead_side_m = 0.05;
 
     void describe(ConfigVisitor& visitor);
-    /// First reason why this cannot be used, or nothing.
+    /// The first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Finds doorways and their sills: an opening between two walls in one line, with known ground
-/// before, in and behind it.
+/// Finds doorways and their sills. A doorway is an opening between two walls in one line, with
+/// known ground before, in and behind it.
 ///
-/// Openings are looked for as necks of the free ground (see BottleneckFinder). On the cells follow
-/// - yaw: the line through both walls. The noise of a wall lies along the line of sight, so that
-///   all cells that stand in a band count, not the first of them;
-/// - jambs: each row of cells across the opening (along the nearer axis of the grid) ends at the
-///   first cell of wall. A jamb is where most rows end alike; those that end in the noise of a wall
-///   do so farther from the middle;
-/// - width: a cell that holds any bit of the wall shows the wall (Terrain: highest surface). So the
-///   centre of the last cell of a row lies before the jamb by sin(yaw) / 2 cells on average, yaw
-///   being that of the wall to that axis, and the width is corrected by that. What is left is even
-///   over one cell where the wall lies along the grid, and less for oblique walls;
-/// - sill: what stands out of the line from the ground before the jambs to that behind them. Its
-///   sigma counts one error in each square of `correlation_m`.
+/// Candidates are bottlenecks of the free ground (BottleneckFinder). Then the cells give:
+/// - yaw: the line through both walls. All wall cells in a band count, not only the first
+///   ones, because the noise of a wall lies along the ray;
+/// - jambs: a row of cells across the opening (along the nearer grid axis) ends at its
+///   first wall cell. The jamb lies where most rows end; noise ends a row farther from the
+///   middle;
+/// - width: a cell that contains any part of the wall shows the wall (Terrain: highest
+///   surface). So the last free cell's centre lies sin(yaw) / 2 cells before the jamb on
+///   average (yaw: wall to axis); the width is corrected by this. The remaining error is
+///   uniform over one cell for a wall along the grid, and smaller for an oblique wall;
+/// - sill: the height above the line from the ground before the jambs to that behind them.
+///   Its sigma counts one independent error per square of `correlation_m`.
 ///
-/// Not found: doors with jambs deeper than `max_depth_m`, or less than 0.25 m beside a corner.
-/// Holds the working memory: maps of one size allocate nothing after the first few.
+/// Not found: doors with jambs deeper than `max_depth_m`, or within 0.25 m of a corner.
+/// Owns the working memory: maps of one size allocate nothing after the first few calls.
 class DoorFinder {
   public:
     explicit DoorFinder(const DoorConfig& config) : config_(config) {}
     [[nodiscard]] const DoorConfig& config() const noexcept { return config_; }
-    /// Nearest to the stance first. Both lists are replaced; `sills` are those of `doors`.
-    /// `config().problem()` is empty.
+    /// Nearest to the stance first. Replaces both lists; `sills` are those of `doors`.
+    /// Precondition: `config().problem()` is empty.
     void find(const Terrain& terrain, std::vector<Door>& doors, std::vector<LineFeature>& sills);
 
   private:
@@ -69,7 +69,7 @@ class DoorFinder {
     struct GroundLine;
     /// A known cell near an opening.
     struct Near {
-        Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  ///< from the middle of its neck
+        Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  ///< from the middle of its bottleneck
         float height_m = 0.0F;
         float var_m2 = 0.0F;
         float clearance_m = 0.0F;

@@ -29,7 +29,7 @@ struct Box {
     double width_m = 0.0;
     double top_m = 0.0;
 
-    /// Shares area with a cell: no side of either separates them.
+    /// True if the box shares area with a cell: no side of either one separates them.
     [[nodiscard]] bool overlaps(const Vector2d& cell_m, double cell_side_m) const {
         constexpr double kTouch_m = 1e-9;
         const Vector2d x(std::cos(yaw_rad), std::sin(yaw_rad));
@@ -46,7 +46,7 @@ struct Box {
     }
 };
 
-/// A floor of 5 x 5 m about the origin; each cell shows the highest of what is in it.
+/// A floor of 5 x 5 m about the origin; each cell holds its highest point.
 struct World {
     grid::GridGeometry geometry;
     Image<float> height_m;
@@ -74,7 +74,7 @@ struct World {
                 z_m = std::max(z_m, static_cast<float>(box.top_m));
         });
     }
-    /// Errors of single cells, and such as squares of 0.1 m share.
+    /// Adds errors of single cells, and errors that squares of 0.1 m share.
     World& add_noise(Rng& rng, double cell_sigma_m, double shared_sigma_m) {
         const int shared = static_cast<int>(std::lround(0.1 / geometry.resolution_m));
         Image<float> error_m(geometry.nx / shared + 1, geometry.ny / shared + 1);
@@ -103,7 +103,7 @@ struct World {
 
 struct DoorPlan {
     Vector2d middle_m = Vector2d::Zero();
-    double yaw_rad = 0.0;  ///< of the way through
+    double yaw_rad = 0.0;  ///< direction through the door
     double width_m = 0.9;
     double depth_m = 0.12;
     double sill_m = 0.0;
@@ -148,7 +148,7 @@ double angle_between_rad(double a, double b) {
     return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
 }
 
-/// Both jambs lie even over one cell, half a cell to either side of what is measured.
+/// The error of each jamb is uniform over one cell, centred on the measured position.
 TEST(Doors, WidthIsExactToACellInWallsAlongTheGrid) {
     double sum_m = 0.0;
     int count = 0;
@@ -169,12 +169,12 @@ TEST(Doors, WidthIsExactToACellInWallsAlongTheGrid) {
             }
         }
     }
-    // The parts of a cell are taken in steps of a tenth, on either side.
+    // The sub-cell positions are sampled in steps of a tenth, on either side.
     EXPECT_NEAR(sum_m / count, 0.0, 0.1 * kCell_m);
 }
 
-/// Rows of an oblique wall end in different parts of a cell, and their mean is that much better
-/// than half a cell. At 45 deg all rows end in the same part of a shorter one.
+/// Rows of an oblique wall end at different positions within a cell, so their mean is better than
+/// half a cell. At 45 deg all rows end at the same position of a shorter cell.
 TEST(Doors, WidthIsExactToTenMillimetresInObliqueWalls) {
     for (const double yaw_deg : {12.0, 20.0, 33.0, 45.0, 61.0, 80.0, 110.0, 135.0, 160.0}) {
         const double tolerance_m =
@@ -222,7 +222,7 @@ TEST(Doors, PoseLeadsThroughTheMiddleAwayFromTheStance) {
                 const double yaw_rad = plan.yaw_rad + (turned ? std::numbers::pi : 0.0);
                 EXPECT_LT(angle_between_rad(pose.yaw_rad, yaw_rad), 1.0 * kRadPerDeg) << yaw_deg;
                 const Vector2d error_m = pose.p_m.head<2>() - plan.middle_m;
-                // Half a cell for either jamb, of which the middle has half.
+                // Half a cell per jamb; the middle has half of the sum.
                 EXPECT_LT(std::abs(error_m.dot(plan.left())), 0.5 * kCell_m + 1e-6) << yaw_deg;
                 EXPECT_LT(std::abs(error_m.dot(plan.along())), kCell_m) << yaw_deg;
                 EXPECT_EQ(pose.p_m.z(), 0.0);
@@ -279,8 +279,8 @@ TEST(Doors, NearestToTheStanceFirst) {
     EXPECT_NEAR(found.doors[1].pose.p_m.x(), -0.4, kCell_m);
 }
 
-/// Noise of 3 mm a cell and 2 mm that squares of 0.1 m share: the mean of 0.75 m x 0.05 m is sure
-/// to 1 mm, the ground beside it as well.
+/// Noise of 3 mm per cell and 2 mm shared by squares of 0.1 m. The mean over 0.75 m x 0.05 m has a
+/// sigma of 1 mm, and so has the ground beside it.
 TEST(Doors, SillsOf20mmAreFoundInNoiseAndFloorsHaveNone) {
     constexpr int kSeeds = 40;
     int found_sills = 0;
@@ -317,7 +317,7 @@ TEST(Doors, SillsOf20mmAreFoundInNoiseAndFloorsHaveNone) {
     EXPECT_EQ(found_sills, kSeeds);
 }
 
-/// A matcher comes down to the floor behind a sill over 0.2 m and more.
+/// Behind a sill a matcher returns to the floor only after 0.2 m or more.
 TEST(Doors, ASillIsOneWhateverAMatcherMakesOfTheGroundBehindIt) {
     for (const double reach_m : {0.1, 0.2}) {
         DoorPlan plan;
@@ -336,7 +336,7 @@ TEST(Doors, ASillIsOneWhateverAMatcherMakesOfTheGroundBehindIt) {
     }
 }
 
-/// A floor that lies higher behind the door is no sill, but it is what a foot meets.
+/// A higher floor behind the door is no sill, but a foot meets the step.
 TEST(Doors, AStepInADoorIsNoSill) {
     for (const double step_m : {0.06, -0.06}) {
         World world;
@@ -401,7 +401,7 @@ TEST(Doors, NoneInNoise) {
     }
 }
 
-/// What is no door, beside the same thing that is one.
+/// Objects that form no door, each beside a variant that forms one.
 TEST(Doors, WallsMustFaceEachOtherInOneLine) {
     const Box left{{0.0, 1.05}, 0.0, 0.12, 1.2, kWall_m};
     const Box right{{0.0, -1.05}, 0.0, 0.12, 1.2, kWall_m};
@@ -421,7 +421,7 @@ TEST(Doors, WallsMustFaceEachOtherInOneLine) {
     EXPECT_TRUE(find(World().add(left).add(other)).doors.empty());
 }
 
-/// A wall that meets the opening from one side is passed alongside.
+/// A wall that meets the opening from one side can be passed.
 TEST(Doors, AWallThatLeadsToTheOpeningIsNoJamb) {
     const Box right{{0.0, -1.05}, 0.0, 0.12, 1.2, kWall_m};
     for (const double side : {-1.0, 1.0}) {
@@ -454,7 +454,7 @@ TEST(Doors, ThingsInTheWayToADoorDoNotHideIt) {
     EXPECT_NEAR(found.doors[0].width_m, plan.width_m, kCell_m);
 }
 
-/// Matchers mix a jamb with what is seen beside it.
+/// Matchers mix a jamb with the objects beside it.
 TEST(Doors, GhostsBehindAJambDoNotTurnTheWall) {
     Rng rng(5);
     DoorPlan plan;
@@ -480,7 +480,7 @@ TEST(Doors, ThingsBesideTheWallDoNotTurnIt) {
     EXPECT_LT(angle_between_rad(found.doors[0].pose.yaw_rad, plan.yaw_rad), 1.0 * kRadPerDeg);
 }
 
-/// The wall may begin anywhere in what was not seen.
+/// The wall may begin anywhere in the unknown cells.
 TEST(Doors, AJambBehindUnknownCellsIsNotMeasured) {
     World world;
     add_door(world, {});
@@ -546,7 +546,7 @@ TEST(Doors, TheGroundIsKnownOnBothSides) {
     EXPECT_TRUE(find(high).doors.empty());
 }
 
-/// Heights of what a camera sees of a wall scatter, and so does where it stands.
+/// The heights and the positions of wall cells scatter.
 TEST(Doors, WallsMayScatter) {
     for (int seed = 1; seed <= 20; ++seed) {
         Rng rng(static_cast<std::uint64_t>(seed));

@@ -24,7 +24,7 @@ double upper_tolerance_m(double scatter_m, double rise_m) {
     return std::clamp(kSigmas * scatter_m, kShare * rise_m, 0.6 * rise_m);
 }
 
-/// The rows (columns where the line runs along the rows) that cross an edge.
+/// The rows that cross an edge (the columns if the line runs along the rows).
 class Rows {
   public:
     Rows(const Terrain& terrain, const EdgeLine& line, const BorderSearch& search)
@@ -45,10 +45,10 @@ class Rows {
     }
     [[nodiscard]] int first() const { return first_; }
     [[nodiscard]] int last() const { return last_; }
-    /// Cells of a row go this way over the edge.
+    /// Direction in which the cells of a row cross the edge: +1 or -1.
     [[nodiscard]] int way() const { return down_[axis_] > 0.0 ? 1 : -1; }
-    /// False where the row does not cross the edge between its ends, or what is asked for lies
-    /// beyond the map.
+    /// Enters a row. Returns false if the row does not cross the edge between its ends, or if the
+    /// search range leaves the map.
     bool enter(int row, double inside_m, double outside_m) {
         row_ = row;
         const int other = 1 - axis_;
@@ -70,7 +70,8 @@ class Rows {
     [[nodiscard]] Vector2d middle_m(int cell) const {
         return axis_ == 0 ? grid_.center_m({cell, row_}) : grid_.center_m({row_, cell});
     }
-    /// A place in this row, in cells from the middle of the first, in the frame of the line.
+    /// A position in this row, in cells from the centre of the first cell, in the frame of the
+    /// line.
     [[nodiscard]] BorderPoint point(double cells, int edge) const {
         Vector2d p_m;
         p_m[axis_] = grid_.origin_m[axis_] + (cells + 0.5) * grid_.resolution_m;
@@ -81,7 +82,7 @@ class Rows {
 
   private:
     [[nodiscard]] int rows() const { return axis_ == 0 ? grid_.ny : grid_.nx; }
-    /// Of the point that far behind the edge, across it.
+    /// The cell at distance `s_m` behind the edge, measured across the edge.
     [[nodiscard]] int cell_of(double s_m) const {
         const double p_m = cross_m_ + s_m / down_[axis_];
         return grid::whole_cells(std::floor((p_m - grid_.origin_m[axis_]) / grid_.resolution_m));
@@ -90,7 +91,7 @@ class Rows {
     const grid::GridGeometry& grid_;
     const EdgeLine& line_;
     Vector2d down_;
-    int axis_;  ///< of the walk
+    int axis_;  ///< axis of the walk
     Vector2d from_m_;
     Vector2d to_m_;
     int first_ = 0;
@@ -106,9 +107,9 @@ void add_border_points(const Terrain& terrain,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out) {
     Rows rows(terrain, line, search);
-    // Where a cell holds the highest of all that it touches, the middle of the last upper cell of a
-    // row lies beyond the edge by as much as that runs askew within the cell; where it holds what
-    // is at its middle, it lies half a cell before it.
+    // If a cell holds the highest point of its area, the centre of the last upper cell lies beyond
+    // the edge by the oblique part of the edge within the cell. If a cell holds the height at its
+    // centre, the last upper centre lies half a cell before the edge.
     const Vector2d down = line.down().cwiseAbs();
     const double reach_m =
         0.5 * terrain.geometry.resolution_m *
@@ -123,12 +124,12 @@ void add_border_points(const Terrain& terrain,
     for (int row = rows.first(); row <= rows.last(); ++row) {
         if (!rows.enter(row, search.inside_m, search.outside_m)) continue;
         int cell = rows.begin();
-        // A bad cell inside is skipped; the ground has to begin before the edge.
+        // Skips single bad cells inside, but the upper ground must begin before the edge.
         while (!is_upper(cell) && cell != rows.edge() && cell != rows.end()) cell += rows.way();
         if (!is_upper(cell)) continue;
         while (cell != rows.end() && is_upper(cell + rows.way())) cell += rows.way();
-        if (cell == rows.end()) continue;  // no end: not this edge
-        // Between the middles of the cells, as far as the next one is known.
+        if (cell == rows.end()) continue;  // no end of the upper ground: not this edge
+        // Interpolates between the cell centres if the next cell is known.
         const double height_m = rows.value(terrain.height_m, cell);
         const double next_m = rows.value(terrain.height_m, cell + rows.way());
         const double beyond = next_m < least_m ? (height_m - least_m) / (height_m - next_m) : 0.0;
@@ -144,11 +145,11 @@ void add_faces_near(const Terrain& terrain,
                     const EdgeLine& line,
                     const BorderSearch& search,
                     std::vector<BorderPoint>& out) {
-    constexpr double kLevel = 1.2;  ///< of level ground, with some room
-    constexpr double kLeast = 1.5;  ///< points beyond that, for each point of level ground
+    constexpr double kLevel = 1.2;  ///< times the points of level ground, with a margin
+    constexpr double kLeast = 1.5;  ///< least excess points per point of level ground
     Rows rows(terrain, line, search);
-    // A point counts alike wherever it lies: level ground farther away and nearer to the height of
-    // the camera shows fewer, and a ratio to them would pull the face there.
+    // Weights must not depend on the position: distant level ground near the camera height shows
+    // fewer points, and a ratio to them would pull the face towards it.
     const auto level_px = [&](const Eigen::Vector2d& p_m, double z_m) {
         return terrain.view ? terrain.view->pixels_per_m2({p_m.x(), p_m.y(), z_m}) : 1.0;
     };
@@ -181,7 +182,7 @@ void add_face_points(const Terrain& terrain,
                      const BorderSearch& search,
                      std::vector<BorderPoint>& out) {
     if (terrain.density_ratio.empty()) return;
-    // Heights alone begin too early: the window moves to where the face is.
+    // Heights alone give a border that is too early: centre the window on the face.
     BorderSearch centred = search;
     std::vector<BorderPoint> found;
     for (int round = 0; round < 3; ++round) {
@@ -201,7 +202,7 @@ double across_sigma_m(const grid::GridGeometry& grid, const EdgeLine& line, doub
     const double length_m = std::max(line.length_m(), grid.resolution_m);
     const double scatter_m = std::max(rms_m, 0.25 * grid.resolution_m) /
                              std::sqrt(std::max(1.0, length_m / kCorrelation_m));
-    // Rows of an edge that runs along the cells all see it in the same part of a cell.
+    // On an edge along the grid all rows see the edge at the same position within a cell.
     const Vector2d along = line.along().cwiseAbs();
     const double parts = std::max(1.0, length_m * along.minCoeff() / grid.resolution_m);
     return std::hypot(scatter_m, grid.resolution_m / std::sqrt(12.0 * parts));
@@ -238,7 +239,7 @@ double fit_parallel(std::span<const BorderPoint> points,
             sum.ts += w * t_m * point.s_m;
             sum.rr += w * residual_m * residual_m;
         }
-        // The offsets are eliminated.
+        // Eliminates the offsets of the edges.
         double tt = 0.0, ts = 0.0;
         for (const Sums& sum : sums) {
             if (!(sum.w > 0.0)) continue;

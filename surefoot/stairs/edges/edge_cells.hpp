@@ -9,10 +9,10 @@
 
 namespace surefoot::stairs {
 
-/// Calls `visit(ix, iy, s_cells, t_cells)` for the cells of a rectangle about a line, row by row.
-/// `line` has from_m, to_m, along(), down() and length_m() (EdgeLine, Edge). s_cells: distance of
-/// the cell's middle across the line, from `upper_cells` cells above it on, 0 to `slices`; t_cells:
-/// along the line from its beginning [cells].
+/// Calls `visit(ix, iy, s_cells, t_cells)` for each cell in a rectangle about a line, row by row.
+/// `line` has from_m, to_m, along(), down() and length_m() (EdgeLine, Edge). s_cells: distance
+/// across the line to the cell centre, counted from `upper_cells` cells above the line, in [0,
+/// slices). t_cells: distance along the line from its beginning [cells].
 template <typename Line, typename Visit>
 void for_each_cell_about(const grid::GridGeometry& grid,
                          const Line& line,
@@ -45,12 +45,12 @@ void for_each_cell_about(const grid::GridGeometry& grid,
         };
         keep(t, t_step, length);
         keep(s, s_step, most);
-        // A line almost along the rows meets some of them beyond all integers.
+        // A line almost parallel to the rows can give bounds beyond the range of int.
         const int first =
             static_cast<int>(std::ceil(std::min(low, 1.0 * grid.nx)));  // in range: 0 to nx
         for (int ix = first; ix <= high; ++ix) {
             const double at_slice = s + s_step * ix;
-            if (!(at_slice >= 0.0 && at_slice < most)) continue;  // by rounding
+            if (!(at_slice >= 0.0 && at_slice < most)) continue;  // rounding can leave the range
             visit(ix, iy, at_slice, t + t_step * ix);
         }
     }

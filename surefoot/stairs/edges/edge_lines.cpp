@@ -15,10 +15,10 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kTouch_cells = 2;
-/// Edges of neighbouring steps lie further apart in height, noise of one cell does not.
+/// Larger than the noise of one cell, smaller than the height between neighbouring steps.
 constexpr float kLevel_m = 0.06F;
 constexpr int kDraws = 60;
-constexpr double kNear_m = 0.6;  ///< pairs are drawn within it
+constexpr double kNear_m = 0.6;  ///< largest distance of a drawn pair
 
 Vector2d down_of(Side side) {
     switch (side) {
@@ -120,11 +120,11 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
         const float x_m = left.x_m - at_x;
         const float y_m = left.y_m - at_y;
         if (std::abs(x_m * along_y - y_m * along_x) > tolerance_m) continue;
-        // A border that runs along the fall belongs to another edge.
+        // A border that runs along the direction of the fall belongs to another edge.
         if (left.down_x * along_y - left.down_y * along_x < 0.1F) continue;
         run_.push_back({x_m * along_x + y_m * along_y, left.point});
     }
-    if (run_.size() < least_points) return run_.clear();  // too few to be longer than the best
+    if (run_.size() < least_points) return run_.clear();  // too few points to beat the best line
     std::sort(run_.begin(), run_.end(), [](const Placed& a, const Placed& b) {
         return a.t_m < b.t_m || (a.t_m == b.t_m && a.point < b.point);
     });
@@ -150,7 +150,7 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
 
 void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
                                 std::span<const std::int32_t> chain) {
-    const double least_m = 0.5 * config_.min_length_m;  // pieces may still be joined
+    const double least_m = 0.5 * config_.min_length_m;  // shorter pieces may still be joined
     const auto least_points =
         saturated_integer<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
     left_.clear();
@@ -177,7 +177,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             if (apart_m < 0.4 * least_m || apart_m > kNear_m) continue;
             along /= apart_m;
             if (down_of(first.side).dot(right_of(along)) < 0.0) along = -along;
-            // A line that is longer than the best has about as many points at least.
+            // A line that is longer than the best one has at least about as many points.
             keep_longest_run(
                 place_of(first), along, std::max(least_points, best.members.size() * 2 / 3));
             if (run_.size() < least_points) continue;
@@ -198,7 +198,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             for (const Placed& placed : run_) best.members.push_back(placed.point);
         }
         const bool good = fit(points, best);
-        // What lies beside the line belongs to it, though it does not help to place it.
+        // Points beside the line belong to it, although they do not help to place it.
         const Vector2d from_m = best.line.from_m;
         const Vector2d along = best.line.along();
         const double length_m = best.line.length_m();
@@ -225,7 +225,7 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
         xy += d_m.x() * d_m.y();
         yy += d_m.y() * d_m.y();
     }
-    // The longer axis of the points' scatter.
+    // Direction of the longer axis of the scatter of the points.
     const double angle_rad = 0.5 * std::atan2(2.0 * xy, xx - yy);
     Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
     if (along.dot(piece.line.to_m - piece.line.from_m) < 0.0) along = -along;
@@ -251,7 +251,7 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
 }
 
 bool EdgeLineFinder::belong_together(const Piece& a, const Piece& b) const {
-    constexpr double kLeastCosine = 0.985;  // 10 deg: the shorter piece hardly knows its direction
+    constexpr double kLeastCosine = 0.985;  // 10 deg: a short piece's direction is uncertain
     if (a.line.along().dot(b.line.along()) < kLeastCosine) return false;
     constexpr auto kSame_m = static_cast<double>(kLevel_m);
     if (std::abs(a.upper_m - b.upper_m) > kSame_m || std::abs(a.lower_m - b.lower_m) > kSame_m)
@@ -283,7 +283,7 @@ void EdgeLineFinder::join(std::span<const EdgePoint> points) {
             members.insert(members.end(), pieces_[k].members.begin(), pieces_[k].members.end());
             (void)fit(points, pieces_[i]);
             pieces_.erase(pieces_.begin() + static_cast<std::ptrdiff_t>(k));
-            k = i + 1;  // the longer line may reach others now
+            k = i + 1;  // the longer line may now reach other pieces
         }
     }
 }

@@ -10,12 +10,12 @@
 
 namespace surefoot::stairs {
 
-/// Edge points in a row: lower ground on the right hand of who goes from one end to the other.
+/// A straight line through edge points. From `from_m` to `to_m` the lower ground is on the right.
 struct EdgeLine {
     Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
     int points = 0;
-    double rms_m = 0.0;  ///< of the points, across
+    double rms_m = 0.0;  ///< scatter of the points across the line
 
     [[nodiscard]] double length_m() const { return (to_m - from_m).norm(); }
     [[nodiscard]] Eigen::Vector2d along() const { return (to_m - from_m).normalized(); }
@@ -25,14 +25,14 @@ struct EdgeLine {
     }
 };
 
-/// Groups edge points into straight lines. Points that touch and whose upper ground is level with
-/// each other form a chain; from each chain the longest unbroken lines are taken one after the
-/// other (RANSAC, Fischler and Bolles 1981, with drawn pairs of near points; the draws depend on
-/// the number of points alone). Then pieces of one line are joined across gaps.
+/// Groups edge points into straight lines. Touching points with level upper ground form a chain.
+/// Each chain is cut into its longest unbroken lines, one after the other (RANSAC, Fischler and
+/// Bolles 1981; pairs of near points; the draws depend only on the number of points). Then pieces
+/// of one line are joined across gaps.
 class EdgeLineFinder {
   public:
     explicit EdgeLineFinder(const StairsConfig& config) : config_(config) {}
-    /// `points` as EdgePointFinder gives them. Longest first.
+    /// `points` in the order of EdgePointFinder. Writes the longest line first.
     void find(const grid::GridGeometry& grid,
               std::span<const EdgePoint> points,
               std::vector<EdgeLine>& out);
@@ -59,7 +59,7 @@ class EdgeLineFinder {
     Image<std::int32_t> first_;  ///< first point of a cell, -1 = none
     std::vector<std::int32_t> parent_;
     std::vector<std::int32_t> order_;  ///< points, chain by chain
-    /// A point that is in no line yet.
+    /// A point that no line has yet.
     struct Left {
         float x_m = 0.0F;
         float y_m = 0.0F;

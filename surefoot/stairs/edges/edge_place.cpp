@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr int kSlices = 16;           ///< along an edge
+constexpr int kSlices = 16;           ///< along the edge
 constexpr double kNearest_m = 0.075;  ///< a matcher spreads a step over +-0.06 m
-constexpr double kStrip_m = 0.05;     ///< of ground that is looked at on either side
-constexpr double kMinKnown = 0.6;     ///< of the slices
-constexpr double kMinLevel = 0.8;     ///< of the known ones
-/// Level is what differs by less than half of the edge, which for high ones is the lowest drop.
+constexpr double kStrip_m = 0.05;     ///< depth of the compared ground on either side
+constexpr double kMinKnown = 0.6;     ///< least share of known slices
+constexpr double kMinLevel = 0.8;     ///< least share of level slices among the known ones
+/// The ground is level if it differs by less than half of min(edge height, lowest drop).
 constexpr double kHighest_m = 0.1;
 
 std::optional<double> mean_height_m(const Terrain& terrain,

@@ -6,21 +6,21 @@
 
 namespace surefoot::stairs {
 
-/// What a map knows of the ground at the place of an edge.
+/// The map's knowledge of the ground where an edge should be.
 enum class PlaceOfEdge : std::uint8_t {
-    unknown,  ///< of one side at least
-    uneven,   ///< the ground falls there, or rises
-    level,    ///< as high on both sides
+    unknown,  ///< at least one side is unknown
+    uneven,   ///< the heights of both sides differ
+    level,    ///< both sides have the same height
 };
 
-/// Compares the ground on both sides of an edge, as far away from it as matchers spread a step and
-/// as two of its sigmas: level ground is level all over where the edge may be.
+/// Compares the ground on both sides of an edge. The compared strips lie outside the width over
+/// which matchers spread a step and outside two sigmas of the edge's position.
 [[nodiscard]] PlaceOfEdge place_of(const Edge& edge, const Terrain& terrain);
 
-/// The camera sees the place; without a camera: the map knows it.
+/// True if the camera sees the point; without a camera: if the map knows the cell.
 [[nodiscard]] bool is_observed(const Terrain& terrain, const Eigen::Vector3d& p_m);
 
-/// Some of the edge is in the map.
+/// True if a part of the edge lies inside the map.
 [[nodiscard]] bool is_in_window(const Edge& edge, const Terrain& terrain);
 
 }  // namespace surefoot::stairs

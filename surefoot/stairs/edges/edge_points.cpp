@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-/// A single cell need not stand out: the edges that the points make up have to.
+/// A single cell may be less significant than an edge: the finished edge is tested again.
 constexpr double kPointSigmas = 1.5;
 constexpr double kLongestShadow_m = 2.5;  ///< of a drop of 1 m, see shadow_per_height
 
@@ -96,7 +96,7 @@ void EdgePointFinder::take_line(const Terrain& terrain, Side side, int index) {
 }
 
 void EdgePointFinder::scan(const Line& line) {
-    // Most ground does not fall: the lowest of the cells ahead tells, by one pass for each of them.
+    // Most ground does not fall. One pass that finds the lowest cell ahead excludes most cells.
     const auto cells = static_cast<std::size_t>(line.cells);
     low_m_.assign(cells, kNothing);
     for (std::size_t ahead = 1; ahead <= static_cast<std::size_t>(window_cells_); ++ahead) {
@@ -131,7 +131,8 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
         if (!known(next_m)) break;
         if (low < 0 || next_m < line.height_m[low]) low = cell + k;
     }
-    if (k <= window_cells_) {  // the known ground ends: what does its shadow hide?
+    if (k <= window_cells_) {  // the known ground ends: find the next known cell behind the
+                               // occluded region
         for (; k <= reach_cells_ && cell + k < line.cells; ++k) {
             const int behind = cell + k;
             if (known(line.height_m[behind])) {
@@ -154,9 +155,9 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
     found.upper_m = top_m;
     found.ends = low < 0 && !(bound_m < top_m);
     if (found.ends) {
-        // The next window is unknown from its beginning.
+        // The next window must be unknown from its first cell on.
         if (k <= window_cells_ || cell - window_cells_ < 0) return false;
-        found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // of no meaning
+        found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // placeholder
         return true;
     }
     const auto height_m = static_cast<double>(top_m - found.lower_m);

@@ -11,38 +11,38 @@
 
 namespace surefoot::stairs {
 
-/// Where the lower ground lies from a cell.
+/// Direction from a cell to the lower ground.
 enum class Side : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
 
-/// The last cell of a piece of ground along a row or a column, before it falls.
+/// The last cell of upper ground in a row or column, before the ground falls.
 struct EdgePoint {
-    Eigen::Vector2f at_m;  ///< middle of the cell's border on that side
-    std::int16_t ix = 0;   ///< of the upper cell
+    Eigen::Vector2f at_m;  ///< middle of the cell border on that side
+    std::int16_t ix = 0;   ///< column of the upper cell
     std::int16_t iy = 0;
     Side side = Side::plus_x;
-    bool lower_seen = false;  ///< else the ground is only known to lie no higher than `lower_m`
+    bool lower_seen = false;  ///< false: `lower_m` is only an upper bound of the ground
     float upper_m = 0.0F;
     float lower_m = 0.0F;
 };
 
-/// Finds where the ground falls, along all rows and columns, both ways. Of a cell and what follows
-/// it let `top` be the highest of the cells up to `smear_m` before it, `low` the lowest of those up
-/// to `smear_m` behind it. Where the known ground ends there, the next known cell counts too, if it
-/// lies no further than the shadow of such an edge, and so does the bound that lines of sight have
-/// left for the ground in between. It is an edge point if top - low reaches the least height and
-/// stands out of the noise of both a little, the cell lies above the middle of them and the next
-/// one below it, or is unknown.
+/// Finds points where the ground falls, along all rows and columns, in both directions. For a cell,
+/// `top` is the highest of the cells up to `smear_m` before it and `low` the lowest of the cells up
+/// to `smear_m` behind it. Behind known ground two more values count for `low`: the next known
+/// cell, if it lies within the occluded region of such an edge, and the free-space bound of the
+/// cells in between. The cell is an edge point if top - low reaches the least height and exceeds
+/// the noise, if the cell lies above the middle of both, and if the next cell lies below the middle
+/// or is unknown.
 ///
-/// Where nothing is known of what lies behind, though ground that goes on would be seen there
-/// (Terrain::view), the ground ends: it may go down so steeply that nothing of it is in sight.
+/// If nothing is known behind the cell although the camera would see continuing ground there
+/// (Terrain::view), the ground ends. It may fall too steeply to be visible.
 class EdgePointFinder {
   public:
     explicit EdgePointFinder(const StairsConfig& config) : config_(config) {}
-    /// Sorted by iy, then ix, then side. No allocation once the largest map has been seen.
+    /// Sorted by iy, then ix, then side. Allocates only until the largest map was processed.
     void find(const Terrain& terrain, std::vector<EdgePoint>& out);
 
   private:
-    /// Every n-th element of a layer; nothing where there is no layer.
+    /// Every n-th element of a layer, or a default value if the layer is empty.
     struct Strided {
         const float* first = nullptr;
         std::ptrdiff_t step = 0;
@@ -50,11 +50,11 @@ class EdgePointFinder {
             return first == nullptr ? otherwise : first[cell * step];
         }
     };
-    /// A row or a column, walked one way.
+    /// A row or a column, walked in one direction.
     struct Line {
         int cells = 0;
         const float* height_m = nullptr;  ///< a copy without gaps
-        Strided var_m2;                   ///< few cells are asked for these
+        Strided var_m2;                   ///< read for few cells only
         Strided free_above_m;
     };
     struct Found {
@@ -62,7 +62,7 @@ class EdgePointFinder {
         float upper_m = 0.0F;
         float lower_m = 0.0F;
         bool lower_seen = false;
-        bool ends = false;  ///< nothing at all is known of what lies behind
+        bool ends = false;  ///< nothing is known of the ground behind
     };
     void scan(const Line& line);
     [[nodiscard]] bool falls_at(const Line& line, int cell, Found& found) const;
@@ -72,8 +72,8 @@ class EdgePointFinder {
     int window_cells_ = 1;
     int reach_cells_ = 1;
     double resolution_m_ = 0.0;
-    std::vector<float> height_m_;  ///< of the line that is scanned
-    std::vector<float> low_m_;     ///< lowest of the known cells that follow, within the window
+    std::vector<float> height_m_;  ///< of the line that is being scanned
+    std::vector<float> low_m_;     ///< lowest of the next known cells within the window
     std::vector<Found> found_;
 };
 

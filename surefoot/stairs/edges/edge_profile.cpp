@@ -16,22 +16,23 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kUpper_m = 0.7;  ///< how far the ground is looked at before an edge and behind it
+constexpr double kUpper_m = 0.7;  ///< depth of ground examined before and behind an edge
 constexpr double kLower_m = 1.2;
-constexpr double kLeastShare = 0.25;  ///< of a slice that must be known
-/// Neighbouring slices of level ground differ by less; a ramp of 1:8 by 3 mm in 25 mm.
+constexpr double kLeastShare = 0.25;  ///< least share of known cells in a slice
+/// Largest difference of neighbouring slices of level ground; a ramp of 1:8 has 3 mm in 25 mm.
 constexpr double kLevel_m = 0.012;
-constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its height
-constexpr double kStrip_m = 0.2;      ///< no tread of which more is in sight lies between shadows
+constexpr double kMeasured_m = 0.15;  ///< depth of level ground that gives the height
+constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread between occluded regions
 constexpr double kStripRange_m = 0.06;
-constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
-constexpr double kHalfTurn = 0.02;  ///< half of the turn of a line that is still its own
-constexpr double kEnd_m = 0.25;     ///< where ground ends: known before it and unknown behind it
+constexpr double kBeside_m = 0.3;  ///< the edge may continue beyond the ends of its line
+constexpr double kHalfTurn =
+    0.02;                        ///< half of the turn of a line that still counts as the same line
+constexpr double kEnd_m = 0.25;  ///< ground end: known over this depth before it, unknown behind it
 constexpr double kEndRms_m = 0.025;
-constexpr double kRagged_m = 0.075;  ///< where ground ends it does so in some rows sooner
-/// Steeper than noise makes level ground.
+constexpr double kRagged_m = 0.075;  ///< in some rows the ground ends earlier by this much
+/// A steeper slope is not explained by noise on level ground.
 constexpr double kLeastSlope = 0.06;
-constexpr double kSloping_m = 0.3;  ///< of ground that is asked for its slope
+constexpr double kSloping_m = 0.3;  ///< depth of ground that gives the slope
 
 }  // namespace
 
@@ -75,7 +76,7 @@ void EdgeProfiler::slice(const Terrain& terrain,
     samples_.clear();
     gather(terrain, line);
 
-    // Samples of a slice side by side, in the order of the rows.
+    // Sorts the samples by slice, within a slice in row order.
     first_.assign(slices + 1, 0);
     for (const Sample& sample : samples_) ++first_[static_cast<std::size_t>(sample.slice) + 1];
     for (std::size_t k = 0; k < slices; ++k) first_[k + 1] += first_[k];
@@ -90,8 +91,7 @@ void EdgeProfiler::slice(const Terrain& terrain,
                           slices_[k]);
 }
 
-/// The cells of the slices, row by row: of each those between the ends of the line and of the
-/// slices.
+/// Collects the cells between the ends of the line and of the slices, row by row.
 void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
     const auto visit = [&](int ix, int iy, double at_slice, double) {
         const int k = static_cast<int>(at_slice);  // in range: for_each_cell_about() checks it
@@ -123,7 +123,7 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
     const auto middle_m = static_cast<double>(middle);
     slice.scatter_m = robust_sigma_about(middle, values_);
     slice.sigma_m = std::sqrt(var_m2 / static_cast<double>(samples.size()));
-    // The mean of what agrees is truer than the middle one.
+    // The mean of the inliers is more accurate than the median.
     const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);
     double sum_m = 0.0;
     int agreeing = 0;
@@ -135,7 +135,7 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
     slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
 }
 
-/// Level ground near slice `first`, from there on in steps of `step`.
+/// The level ground near slice `first`, from there on in steps of `step`.
 Level EdgeProfiler::level_from(int first, int step) const {
     const Slices all{slices_, 0.0, resolution_m_};
     const int slices = all.count();
@@ -144,8 +144,8 @@ Level EdgeProfiler::level_from(int first, int step) const {
         return known(k) && known(k + step) &&
                std::abs(at(k).height_m - at(k + step).height_m) <= kLevel_m;
     };
-    // Of what is level the longest piece counts, as far as it is needed: beside a riser a few
-    // slices may agree on what depth noise makes of it.
+    // The longest level piece counts, up to the needed depth: beside a riser a few slices may agree
+    // by depth noise.
     const int enough = std::max(1, grid::whole_cells(std::round(kMeasured_m / resolution_m_)));
     const int furthest = grid::whole_cells(std::ceil(2.0 * config_.smear_m / resolution_m_));
     int begin = first;
@@ -161,7 +161,7 @@ Level EdgeProfiler::level_from(int first, int step) const {
         const int passed = std::max(1, run);
         k += passed * step;
         tried += passed;
-        // Ground behind a shadow is as far away as the shadow is long.
+        // Ground behind an occluded region is as far away as the region is deep.
         if (tried > furthest && length > 0) break;
     }
     Level level;
@@ -183,7 +183,7 @@ Level EdgeProfiler::level_from(int first, int step) const {
     return level;
 }
 
-/// Rise over run away from the edge, of `count` slices; 0 for fewer than three.
+/// Rise over run away from the edge over `count` slices; 0 for fewer than three.
 double EdgeProfiler::slope_of(int begin, int step, int count) const {
     if (count < 3) return 0.0;
     const double middle = 0.5 * (count - 1);
@@ -195,8 +195,8 @@ double EdgeProfiler::slope_of(int begin, int step, int count) const {
     return moment / squares / resolution_m_;
 }
 
-/// The ground is known and level before the line, nothing is known behind it, and what is there
-/// would be seen if it were level.
+/// True if the ground is known and level before the line and unknown behind it, although the camera
+/// would see level ground there.
 bool EdgeProfiler::ground_ends(const Terrain& terrain,
                                const EdgeLine& line,
                                const Level& upper) const {
@@ -205,7 +205,7 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     if (!terrain.view || upper.end_m < kEnd_m || line.rms_m > kEndRms_m ||
         line.length_m() < config_.min_width_m)
         return false;
-    // Seen from the front: what ends along the line of sight is the end of the view.
+    // Only for a line seen from the front: along a ray the view ends, not the ground.
     const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
     const Vector2d observed_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
     if (observed_m.dot(line.down()) < 0.7 * observed_m.norm()) return false;
@@ -223,7 +223,7 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     return true;
 }
 
-/// Moves the edge to where the upper ground ends; rms of the points about it.
+/// Moves the edge to the end of the upper ground. Returns the rms of its points.
 double EdgeProfiler::place(const Terrain& terrain,
                            const EdgeLine& line,
                            const Level& upper,
@@ -236,7 +236,7 @@ double EdgeProfiler::place(const Terrain& terrain,
     search.beside_m = kBeside_m;
     borders_.clear();
     const Vector2d to_stance_m = terrain.stance_m - line.from_m;
-    if (to_stance_m.dot(line.down()) > 0.0) {  // the face is on that side
+    if (to_stance_m.dot(line.down()) > 0.0) {  // the riser face is on the side of the stance
         add_face_points(terrain, line, search, borders_);
     }
     if (borders_.size() < kLeastPoints) add_border_points(terrain, line, search, borders_);
@@ -263,7 +263,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     Level upper = level_from(upper_slices_ - 1, -1);
     Level lower = level_from(upper_slices_, +1);
     if (!std::isfinite(upper.sigma_m)) return std::nullopt;
-    // A slope that goes on is no edge: what both sides fall by explains the height.
+    // A continuous slope is no edge: the slopes of both sides explain the height.
     const double slope = std::min(upper.slope, -lower.slope);
     if (slope > kLeastSlope) {
         upper.height_m -= slope * upper.middle_m;
@@ -287,7 +287,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
             bound_at_m = k * resolution_m_;
         }
     }
-    // What is seen behind a long shadow may be other ground.
+    // Ground behind a deep occluded region may belong to something else.
     const bool near =
         lower.begin_m <=
         config_.shadow_per_height * (upper.height_m - lower.height_m) + config_.smear_m;
@@ -306,7 +306,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     } else if (bound_at_m <= kLower_m && stands_out(bound_m, upper.sigma_m)) {
         edge.lower_m = bound_m;
     } else if (ground_ends(terrain, line, upper)) {
-        // What a line of sight over the edge passes, as far as nothing is seen.
+        // Bounds the unseen lower ground by the ray that passes over the edge.
         const Eigen::Vector3d& camera_m = terrain.view->T_map_camera.translation_m;
         const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
         const double fall =

@@ -13,42 +13,42 @@
 
 namespace surefoot::stairs {
 
-/// Level ground on one side of an edge.
+/// Level ground on one side of an edge. Distances count from the edge.
 struct Level {
     double height_m = 0.0;
     double sigma_m = 0.0;
-    double scatter_m = 0.0;  ///< of a cell
+    double scatter_m = 0.0;  ///< robust standard deviation of one cell
     double begin_m = 0.0;    ///< from the edge
-    double end_m = 0.0;      ///< where it falls, rises or is no longer known
+    double end_m = 0.0;      ///< where the ground falls, rises or becomes unknown
     bool ends_unknown = false;
     double slope = 0.0;     ///< rise over run, away from the edge
-    double middle_m = 0.0;  ///< of the ground that `height_m` is the mean of, from the edge
+    double middle_m = 0.0;  ///< middle of the ground that `height_m` averages
 };
 
-/// Ground in slices along an edge: how high it lies at which distance from it, on either side, each
-/// slice one cell deep and as long as the edge. What single cells say wrongly the middle value of
-/// a slice does not take over.
+/// Measures the ground along an edge in slices. A slice is one cell deep and as long as
+/// the edge; its height is the median of its cells, so single wrong cells have no
+/// effect.
 class EdgeProfiler {
   public:
     explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
 
-    /// The edge with its levels; nothing where the ground above it is not known. Where the ground
-    /// does not fall after all, or nothing shows it, the edge is no higher than 0 and lies where
-    /// the line does.
+    /// The edge with its levels, or nothing if the upper ground is unknown. If the ground does not
+    /// fall, or nothing shows a fall, the edge has a height of 0 or less and keeps the line's
+    /// position.
     [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
 
     struct Slice {
         double height_m = 0.0;
-        double scatter_m = 0.0;  ///< robust standard deviation of a cell
-        double sigma_m = 0.0;    ///< median of what the map says of a cell
+        double scatter_m = 0.0;  ///< robust standard deviation of one cell
+        double sigma_m = 0.0;    ///< median of the sigmas that the map states for the cells
         double known_share = 0.0;
-        double free_above_m = 0.0;  ///< lowest bound of unknown cells; infinite = none
+        double free_above_m = 0.0;  ///< lowest free-space bound of unknown cells; infinite = none
     };
-    /// The ground from `upper_m` before a line to `lower_m` behind it. The slices begin whole cells
-    /// from the line. Valid until the next call.
+    /// The slices from `upper_m` before a line to `lower_m` behind it. Slice borders lie at whole
+    /// cells from the line. Valid until the next call.
     struct Slices {
         std::span<const Slice> slices;
-        double begin_m = 0.0;  ///< of the first one, from the line; negative on the upper side
+        double begin_m = 0.0;  ///< begin of the first slice, from the line; negative = upper side
         double cell_m = 0.0;
 
         [[nodiscard]] int count() const { return static_cast<int>(slices.size()); }
@@ -56,8 +56,8 @@ class EdgeProfiler {
             return slices[static_cast<std::size_t>(slice)];
         }
         [[nodiscard]] bool known(int slice) const;
-        /// How many slices, from this one on in steps of `way`, are a strip of ground between two
-        /// shadows: what is in sight of a tread that lies lower; 0 where it is none.
+        /// Number of slices, from `slice` on in direction `way`, of a narrow strip between two
+        /// occluded regions: the visible part of a lower tread. 0 = there is no such strip.
         [[nodiscard]] int strip(int slice, int way) const;
     };
     [[nodiscard]] Slices slices(const Terrain& terrain,
@@ -90,11 +90,11 @@ class EdgeProfiler {
     int upper_slices_ =
         0;  ///< slices before the edge; slice k begins (k - upper_slices_) cells from it
     std::vector<Slice> slices_;
-    std::vector<int> cells_;  ///< of each slice
+    std::vector<int> cells_;  ///< number of cells of each slice
     std::vector<BorderPoint> borders_;
     std::vector<Sample> samples_;
     std::vector<Sample> sorted_;
-    std::vector<std::size_t> first_;  ///< of each slice in `sorted_`
+    std::vector<std::size_t> first_;  ///< index of each slice's first sample in `sorted_`
     std::vector<std::size_t> next_;
     std::vector<float> values_;
 };

@@ -7,20 +7,20 @@
 
 namespace surefoot::stairs {
 
-/// Within 15 deg: edges that were found alone are ragged.
+/// True within 15 deg: an edge that was found alone has a ragged direction.
 [[nodiscard]] bool is_parallel(const Edge& a, const Edge& b);
-/// The same heights above and below.
+/// True if both edges have the same heights above and below.
 [[nodiscard]] bool same_ground(const Edge& a, const Edge& b);
-/// Length that two edges share, along the first; negative = the gap between them.
+/// Length that two edges share, along the first one; negative = the gap between them.
 [[nodiscard]] double overlap_m(const Edge& a, const Edge& b);
-/// A piece of the same edge, or what a ragged edge looks like beside it.
+/// True if `piece` belongs to `edge`: a piece of it, or a false line beside a ragged edge.
 [[nodiscard]] bool is_part_of(const Edge& piece, const Edge& edge);
-/// What is left of the edges of a flight whose far end is seen badly: among its steps, as high as
-/// they are, leading the same way. `chain`: from below.
+/// True for a leftover edge of a flight with an unclear far end: it lies among the steps of
+/// `chain`, has their height and faces the same way. `chain`: lowest step first.
 [[nodiscard]] bool is_among(const Edge& edge, std::span<const Edge> chain);
-/// Two pieces of one straight line, at most `max_gap_m` apart.
+/// True for two pieces of one straight line that are at most `max_gap_m` apart.
 [[nodiscard]] bool goes_on(const Edge& edge, const Edge& piece, double max_gap_m);
-/// The line through both, as long as both; all else is what the first says.
+/// One line through both edges, with the length of both; other fields come from the first.
 [[nodiscard]] Edge joined(Edge edge, const Edge& piece);
 
 }  // namespace surefoot::stairs

@@ -5,15 +5,15 @@
 
 namespace surefoot::stairs {
 
-/// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
+/// Correlation length of semi-global matching errors: 30-50 px, which is 0.1 m of floor at 1 m.
 inline constexpr double kCorrelation_m = 0.1;
 
 struct SliceMean {
     double height_m = 0.0;
-    double sigma_m = 0.0;    ///< of the height: one error in each square of kCorrelation_m
-    double scatter_m = 0.0;  ///< of a cell
+    double sigma_m = 0.0;    ///< of the height: one independent error per square of kCorrelation_m
+    double scatter_m = 0.0;  ///< standard deviation of one cell
 };
-/// Ground over `count` known slices, from `first` on in steps of `way`, each as long as its edge.
+/// Mean over `count` known slices, from `first` on in direction `way`; a slice is `length_m` long.
 [[nodiscard]] SliceMean mean_of(
     const EdgeProfiler::Slices& all, int first, int way, int count, double length_m);
 

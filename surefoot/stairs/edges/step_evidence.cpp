@@ -17,20 +17,19 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-/// Of ground on either side. More would ask the plane to be flat over more than a tread.
+/// Depth of ground used on either side. With more, one plane would have to fit several treads.
 constexpr double kWindow_m = 0.35;
-constexpr double kLeastShare = 0.25;  ///< of a slice's cells that must be known
+constexpr double kLeastShare = 0.25;  ///< least share of known cells in a slice
 constexpr int kLeastSlices = 2;       ///< on either side
-constexpr int kLags = 6;              ///< cells: beyond 0.15 m `evidence_shared_m` takes over
+constexpr int kLags = 6;  ///< in cells: 0.15 m; beyond, `evidence_shared_m` covers the correlation
 constexpr double kClip_sigma = 3.0;
-/// One sigma of the slope of ground, before it is measured: 19 deg. Keeps slopes of short pieces
-/// within bounds.
+/// Prior: one sigma of the slope of ground (19 deg). It bounds the slopes of short pieces.
 constexpr double kUsualSlope = 0.35;
-constexpr int kCreaseStep = 2;  ///< places of creases that are tried, in slices
+constexpr int kCreaseStep = 2;  ///< distance of tested crease positions, in slices
 constexpr int kLargestDegree = 5;
-/// Of the lowest edge: the fit takes a part of a low step for the slopes beside it.
+/// Share of the least edge height, because the fit assigns a part of a low step to the slopes.
 constexpr double kLeastFall = 0.75;
-constexpr double kMostLogRatio = 690.0;  ///< 1e300: what is surer is not told apart
+constexpr double kMostLogRatio = 690.0;  ///< 1e300: larger values are not distinguished
 
 constexpr double square(double value) {
     return value * value;
@@ -47,7 +46,7 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
                                 double upper_m,
                                 double lower_m) {
     resolution_m_ = terrain.geometry.resolution_m;
-    // Reaches of half a metre: tens of cells.
+    // A reach is about half a metre, which is tens of cells.
     const int upper = saturated_integer<int>(std::ceil(upper_m / resolution_m_));
     const int slices = upper + saturated_integer<int>(std::ceil(lower_m / resolution_m_));
     cells_.clear();
@@ -84,8 +83,9 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
     }
 }
 
-/// The slope that all slices share: of each the middle heights of its two halves, and of these
-/// slopes the middle one. What stands on the line, and slices that a riser crosses, are few.
+/// The slope along the edge that all slices share: per slice the slope between the medians of its
+/// two halves, then the median over the slices. Objects on the line and slices across a riser are
+/// few and have no effect.
 double StepEvidenceFinder::slope_along(double length_m) {
     slopes_.clear();
     std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
@@ -143,7 +143,7 @@ void StepEvidenceFinder::measure_slices(double length_m) {
     }
 }
 
-/// What the profile, linear between the slices, leaves of each cell.
+/// Computes the residual of each cell from the profile, linear between the slices.
 void StepEvidenceFinder::weigh_slices() {
     residual_m_.assign(static_cast<std::size_t>(box_width_) * static_cast<std::size_t>(box_height_),
                        std::numeric_limits<float>::quiet_NaN());
@@ -166,7 +166,7 @@ void StepEvidenceFinder::weigh_slices() {
         count += 1.0;
     }
     const double scatter_m = robust_sigma_about(0.0, values_);
-    // Each slice has taken one mean.
+    // The mean of each slice uses one degree of freedom.
     const double taken = std::max(1.0, count - static_cast<double>(slices_.size()));
     const double cell_var_m2 = std::max(square(scatter_m) * count / taken, stated_var_m2_);
     const double shared_var_m2 = square(config_.evidence_shared_m);
@@ -182,8 +182,8 @@ void StepEvidenceFinder::weigh_slices() {
     independent_ = std::max(2.0, independent);
 }
 
-/// Sum of the autocorrelation over the lags of rows, times that of columns: so many cells count as
-/// one independent cell.
+/// Number of cells that count as one independent cell: sum of the autocorrelation over the lags
+/// along rows, times the sum along columns.
 double StepEvidenceFinder::cells_per_error(double scatter_m) const {
     if (!(scatter_m > 0.0)) return 1.0;
     const auto most = static_cast<float>(kClip_sigma * scatter_m);
@@ -223,8 +223,8 @@ double StepEvidenceFinder::cells_per_error(double scatter_m) const {
     return product;
 }
 
-/// Two planes and what is between them. Parameters: height of the upper plane at `from_m`, its
-/// slope, the rise from there to `to_m`, the slope of the lower plane.
+/// Fits two planes and the transition between them. Parameters: height of the upper plane at
+/// `from_m`, its slope, the rise from there to `to_m`, the slope of the lower plane.
 StepEvidenceFinder::Fit StepEvidenceFinder::fit_planes(double from_m,
                                                        double to_m,
                                                        bool is_step) const {
@@ -250,7 +250,7 @@ StepEvidenceFinder::Fit StepEvidenceFinder::fit_planes(double from_m,
     normal(0, 0) += 1e-12;
     const Eigen::Vector4d found = normal.ldlt().solve(right);
     Fit fit;
-    // The penalty for the slopes is in it.
+    // Removes the penalty of the slopes from the sum.
     fit.squares = std::max(0.0, squares - found.dot(right));
     fit.upper_slope = found[1];
     fit.lower_slope = found[3];
@@ -262,13 +262,13 @@ double StepEvidenceFinder::cost(double squares, int parameters) const {
     return 0.5 * squares + 0.5 * parameters * std::log(independent_);
 }
 
-/// The least cost of two planes that meet in a crease, or of a slope between two planes.
+/// The least cost of two planes with a crease, or with a slope between them.
 double StepEvidenceFinder::cost_of_creases() const {
     double least = kNothing;
     const auto is_walked = [](double slope) { return std::abs(slope) <= kSteepest; };
     const auto count = static_cast<int>(slices_.size());
     const double least_m = 2.0 * config_.smear_m;
-    // A crease lies between the middles of slices as well.
+    // A crease may also lie between the centres of two slices.
     for (int a = 2; a < 2 * count - 2; ++a) {
         const Slice& before = slices_[static_cast<std::size_t>((a - 1) / 2)];
         const Slice& behind = slices_[static_cast<std::size_t>(a / 2)];
@@ -290,7 +290,7 @@ double StepEvidenceFinder::cost_of_creases() const {
     return least;
 }
 
-/// Two planes that meet at a place.
+/// Fits two planes that meet at `at_m`.
 StepEvidenceFinder::Fit StepEvidenceFinder::fit_crease(double at_m) const {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -312,7 +312,7 @@ StepEvidenceFinder::Fit StepEvidenceFinder::fit_crease(double at_m) const {
             .rise_m = 0.0};
 }
 
-/// Infinite where the polynomial is too steep or too bent for ground that one walks on.
+/// The cost of a polynomial; infinite if it is too steep or too bent for walkable ground.
 double StepEvidenceFinder::cost_of_polynomial(int degree) const {
     constexpr int kMost = kLargestDegree + 1;
     using Square = Eigen::Matrix<double, kMost, kMost>;
@@ -348,7 +348,7 @@ double StepEvidenceFinder::cost_of_polynomial(int degree) const {
 
 double StepEvidenceFinder::cost_of_smooth_ground(bool is_hidden) const {
     double least = cost_of_creases();
-    // Nothing bounds a polynomial where nothing is known.
+    // Over unknown ground nothing constrains a polynomial of higher degree.
     const int most = is_hidden ? 1 : kLargestDegree;
     for (int degree = 1; degree <= most; ++degree)
         least = std::min(least, cost_of_polynomial(degree));
@@ -359,7 +359,7 @@ double StepEvidenceFinder::cost_of_step(const Gap& gap, double& fall_m) const {
     double least = kNothing;
     const double widest_m = std::max(config_.smear_m, gap.to_m - gap.from_m);
     for (std::size_t a = 0; a + 1 < slices_.size(); ++a) {
-        // Between the middles of two slices.
+        // The middle between two slices.
         const double from_m = 0.5 * (slices_[a].s_m + slices_[a + 1].s_m);
         if (from_m < -config_.smear_m || from_m > std::max(config_.smear_m, gap.to_m)) continue;
         for (std::size_t b = a; b + 1 < slices_.size(); ++b) {
@@ -377,7 +377,7 @@ double StepEvidenceFinder::cost_of_step(const Gap& gap, double& fall_m) const {
     return least;
 }
 
-/// The longest piece about the edge and below it of which nothing is known.
+/// The longest unknown interval at the edge and below it.
 StepEvidenceFinder::Gap StepEvidenceFinder::find_gap() const {
     Gap gap;
     for (std::size_t k = 0; k + 1 < slices_.size(); ++k) {

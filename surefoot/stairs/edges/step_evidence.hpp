@@ -10,43 +10,43 @@
 
 namespace surefoot::stairs {
 
-/// What the heights on both sides of an edge say of the two explanations "step" and "smooth
+/// Evidence of the heights beside an edge for one of two explanations: "step" or "smooth
 /// ground".
 struct StepEvidence {
-    /// Natural logarithm of the likelihood ratio, step over smooth ground. NaN = the map knows too
-    /// little of one side.
+    /// Natural logarithm of the likelihood ratio "step" over "smooth ground". NaN = the map knows
+    /// too little of one side.
     double log_ratio = 0.0;
-    /// What the ground falls by at the edge, beyond what the slopes of both sides explain [m].
+    /// Fall of the ground at the edge that the slopes of both sides do not explain [m].
     double fall_m = 0.0;
-    /// The ground between both sides is unknown over more than `StairsConfig::smear_m`.
+    /// True if the ground between both sides is unknown over more than `StairsConfig::smear_m`.
     bool is_hidden = false;
 };
 
-/// Compares two explanations of the ground about an edge:
-/// - step: two planes with a fall between them that is no wider than `smear_m` (or than what is
-///   unknown there). Their slopes are free, and so is the place of the fall, near the edge.
-/// - smooth ground, the best of: one plane; two planes that meet in a crease; two planes with a
-///   slope between them that is at least twice `smear_m` wide; a polynomial of degree 2 to 5 that
-///   is nowhere bent more than kMostBend_per_m. None of them is steeper than kSteepest.
-/// Both may fall along the edge too.
+/// Compares two explanations of the ground beside an edge:
+/// - Step: two planes with a fall between them. The fall is no wider than `smear_m` or than the
+///   unknown gap. Both slopes and the position of the fall near the edge are free.
+/// - Smooth ground, the best of four models: one plane; two planes with a crease; two planes and
+///   a slope between them of at least twice `smear_m`; a polynomial of degree 2 to 5 with a bend
+///   of at most kMostBend_per_m. No model is steeper than kSteepest. Both may fall along the
+///   edge.
 ///
-/// The likelihood is Gaussian, a composite one (Varin, Reid and Firth 2011): cells count as
-/// independent, and the sum is divided by the number of cells that share one error. That number is
-/// measured: the sum of the autocorrelation of what the best profile leaves, along rows and along
-/// columns of the map. The variance is the measured scatter of cells along the edge, or what the
-/// map states where that is more. Beside it all cells of a slice along the edge, and slices within
-/// kCorrelation_m of each other, share an error of `evidence_shared_m`: what neither a map nor a
-/// plane is true to, however long the edge. Explanations with more parameters pay for them (Schwarz
-/// 1978, BIC).
+/// The likelihood is a Gaussian composite likelihood (Varin, Reid and Firth 2011). Cells
+/// count as independent, and the sum is divided by the number of cells that share one error.
+/// That number is the sum of the measured autocorrelation of the residuals along rows and
+/// columns of the map. The variance of a cell is its measured scatter along the edge, or the
+/// variance in the map if that is larger. In addition all cells of a slice, and slices
+/// within kCorrelation_m of each other, share an error of `evidence_shared_m`, so a longer
+/// edge does not average it away. A model pays for each of its parameters (BIC, Schwarz
+/// 1978).
 ///
-/// Holds the working memory; not thread-safe. The same result for the same map.
+/// Owns the working memory; not thread-safe. The same map gives the same result.
 class StepEvidenceFinder {
   public:
     static constexpr double kSteepest = 0.84;       ///< rise over run of 40 deg
     static constexpr double kMostBend_per_m = 4.0;  ///< radius of 0.25 m
 
     explicit StepEvidenceFinder(const StairsConfig& config) : config_(config) {}
-    /// `upper_m` and `lower_m`: how much ground is looked at above and below the edge [m].
+    /// `upper_m`, `lower_m`: depth of the ground used above and below the edge [m].
     [[nodiscard]] StepEvidence weigh(const Terrain& terrain,
                                      const Edge& edge,
                                      double upper_m,
@@ -57,11 +57,11 @@ class StepEvidenceFinder {
         int slice = 0;
         int x = 0;  ///< column and row in the box of all cells
         int y = 0;
-        double s_m = 0.0;  ///< below the edge
+        double s_m = 0.0;  ///< across the edge; positive below it
         double t_m = 0.0;  ///< along it
-        double z_m = 0.0;  ///< above the edge's upper ground
+        double z_m = 0.0;  ///< relative to the upper ground
     };
-    /// Cells at one distance from the edge.
+    /// All cells at one distance from the edge.
     struct Slice {
         double s_m = 0.0;  ///< mean
         double cells = 0.0;
@@ -95,12 +95,12 @@ class StepEvidenceFinder {
     StairsConfig config_;
     double resolution_m_ = 0.0;
     double stated_var_m2_ = 0.0;
-    double independent_ = 2.0;  ///< errors in all cells
+    double independent_ = 2.0;  ///< number of independent errors in all cells
     int box_width_ = 0;
     int box_height_ = 0;
     std::vector<Cell> cells_;
-    std::vector<int> all_in_slice_;  ///< cells, known or not
-    std::vector<int> slice_of_;      ///< index in `slices_`; -1 = too little is known of it
+    std::vector<int> all_in_slice_;  ///< number of cells, known or not
+    std::vector<int> slice_of_;      ///< index in `slices_`; -1 = too few known cells
     std::vector<Slice> slices_;      ///< from the upper side on
     std::vector<float> residual_m_;  ///< of the box; NaN = no cell
     std::vector<double> values_;
@@ -108,7 +108,7 @@ class StepEvidenceFinder {
     std::array<std::vector<double>, 2> halves_;  ///< heights of a slice
 };
 
-/// The ratio of the edge reaches `StairsConfig::step_ratio`.
+/// True if the likelihood ratio of the edge reaches `StairsConfig::step_ratio`.
 [[nodiscard]] bool is_step_of(const StairsConfig& config, const Edge& edge);
 
 }  // namespace surefoot::stairs

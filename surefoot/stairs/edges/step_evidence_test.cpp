@@ -29,7 +29,7 @@ TerrainFeatures find(const Terrain& terrain) {
     return found;
 }
 
-/// The line x = 0 of a map, 1 m long, with the lower ground on the side of smaller x.
+/// The line x = 0 of a map, 1 m long; the lower ground is at smaller x.
 Edge line_at_0(double upper_m, double lower_m) {
     Edge edge;
     edge.from_m = {0.0, 0.5};
@@ -74,7 +74,7 @@ TEST(StepEvidence, SmoothGroundOfAnySlopeHasNeitherFlightsNorKerbs) {
     }
 }
 
-// Cut into slices of one cell such slopes look like treads and risers.
+// In slices of one cell such slopes resemble treads and risers.
 TEST(StepEvidence, ASlopeFromALevelFloorOnIsNoStair) {
     for (const double slope_deg : {12.0, 18.0, 22.0, 26.0, 30.0, 35.0}) {
         for (const double yaw_deg : {0.0, 20.0}) {
@@ -84,7 +84,7 @@ TEST(StepEvidence, ASlopeFromALevelFloorOnIsNoStair) {
             for (const double sigma_m : {0.0, 0.012}) {
                 TestMap map(slope, yaw_deg * kRadPerDeg, {0.0, 0.0});
                 if (sigma_m > 0.0) map.add_noise(sigma_m, 11);
-                map.var_m2.fill(0.0F);  // as a grid that states none
+                map.var_m2.fill(0.0F);  // a grid without stated variances
                 const TerrainFeatures found = find(map.terrain({0.0, 0.0}));
                 const auto where = ::testing::Message() << slope_deg << " deg, turned by "
                                                         << yaw_deg << " deg, " << sigma_m << " m";
@@ -107,7 +107,7 @@ TEST(StepEvidence, AKerbBeforeASlopeIsOneStepAndNoFlight) {
 }
 
 TEST(StepEvidence, ALowKerbStandsOutOfTheErrorsOfItsCells) {
-    // A kerb of 75 mm, spread over 0.1 m as by a matcher.
+    // A kerb of 75 mm, smeared over 0.1 m like by a matcher.
     const TestMap exact(
         [](double x_m, double) { return 0.075 * std::clamp(10.0 * x_m + 0.5, 0.0, 1.0); },
         0.0,

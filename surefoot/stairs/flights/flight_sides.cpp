@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNearest_m = 0.05;  ///< ends of edges are as unsure
+constexpr double kNearest_m = 0.05;  ///< the ends of edges have this uncertainty
 constexpr double kFarthest_m = 0.25;
 constexpr double kInside_m = 0.1;  ///< a rail may stand on the treads
 constexpr double kWall_m = 0.3;
@@ -22,23 +22,23 @@ constexpr double kLeastRail_m = 0.75;
 constexpr double kMostRail_m = 1.1;
 constexpr double kRailBand_m = 0.1;
 
-/// One tread: where it begins (its nose) and ends, how high it is, how the noses climb.
+/// One tread: its nosing, its end, its height and the slope of the nosing line.
 struct Tread {
-    Vector2d nose_m;   ///< end of its edge, on the side that is looked at
-    Vector2d way;      ///< over it
+    Vector2d nose_m;   ///< end of its edge on the examined side
+    Vector2d way;      ///< direction of travel over the tread
     Vector2d outward;  ///< away from the flight
     double depth_m = 0.0;
     double level_m = 0.0;
     double climb = 0.0;
 };
 
-/// What the cells of a strip beside a tread say.
+/// The data of the cells in a strip beside a tread.
 struct Strip {
     int cells = 0;
     int walls = 0;
     int open = 0;
     int level = 0;
-    double rail_m = 0.0;  ///< highest that may be one, above the line of the noses; 0 = none
+    double rail_m = 0.0;  ///< highest possible rail above the nosing line; 0 = none
 
     [[nodiscard]] SideKind kind() const {
         const int known = walls + open + level;
@@ -48,13 +48,13 @@ struct Strip {
     }
 };
 
-/// Of a step; none where the tread is too short or was not seen.
+/// Makes the tread of a step. Returns false if the tread is too short or was not seen.
 bool tread_of(const Flight& flight, std::size_t step, bool left, Tread& tread) {
     const Edge& edge = flight.edges[step];
     const bool up = flight.kind == FlightKind::up;
     if (!up && !edge.lower_seen) return false;
     const bool is_last = step + 1 == flight.edges.size();
-    // Seen from the stance, edges of flights up run to the right, those of flights down to the
+    // Seen from the stance, edges of flights up run to the right, edges of flights down to the
     // left.
     const bool at_from = left == up;
     tread.nose_m = at_from ? edge.from_m : edge.to_m;
@@ -111,7 +111,7 @@ Strip strip_beside(const Terrain& terrain, const Tread& tread) {
 }  // namespace
 
 FlightSide FlightSides::observe_beside(const Terrain& terrain, const Flight& flight, bool left) {
-    // In the order of danger.
+    // Sorted by danger, the most dangerous first.
     constexpr std::array kKinds = {SideKind::open, SideKind::level, SideKind::wall};
     std::array<int, kKinds.size()> votes{};
     rails_m_.clear();

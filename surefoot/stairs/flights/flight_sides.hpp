@@ -8,17 +8,17 @@
 
 namespace surefoot::stairs {
 
-/// Says what lies beside the steps of flights, and whether a rail runs along them. Looked at is a
+/// Finds the kind of ground beside the steps of a flight, and rails along the flight. Examines a
 /// strip beside the ends of each tread, up to 0.25 m away.
 ///
-/// A step's side is a wall where something stands 0.3 m or more above the tread, open where the
-/// ground, or a line of sight over unknown cells, lies 0.1 m or more below it, level else; unknown
-/// where less than a third of the strip says anything. A flight's side is what most of its steps
-/// say that say anything; of as many, the one that is more dangerous.
+/// A side of a step is a wall if something stands 0.3 m or more above the tread. It is open if the
+/// ground, or a ray over unknown cells, lies 0.1 m or more below the tread; else it is level. It is
+/// unknown if less than a third of the strip has data. The flight takes the kind of most of its
+/// known steps; of equal numbers, the more dangerous kind.
 ///
-/// A rail is what stands, or hangs, 0.75 to 1.1 m above the line of the noses (NZ D1/AS1: handrails
-/// at 0.9 to 1.0 m) along half of the steps or more, on a band of 0.1 m. What a map does not hold
-/// is not told: a camera 1 m high sees rails only where it looks up to them.
+/// A rail is an object 0.75 to 1.1 m above the nosing line (NZ D1/AS1: handrails at 0.9 to 1.0 m)
+/// along at least half of the steps, within a band of 0.1 m. Rails that the map lacks are not
+/// reported: a camera 1 m high sees a rail only when it looks up to it.
 class FlightSides {
   public:
     void find(const Terrain& terrain, Flight& flight);
@@ -26,7 +26,7 @@ class FlightSides {
   private:
     FlightSide observe_beside(const Terrain& terrain, const Flight& flight, bool left);
 
-    std::vector<double> rails_m_;  ///< heights above the noses, one a step
+    std::vector<double> rails_m_;  ///< heights above the nosing line, one per step
 };
 
 }  // namespace surefoot::stairs

@@ -20,7 +20,7 @@ constexpr double kHalfWidth_m = 0.6;
 constexpr double kYaws_deg[] = {0.0, 31.0, 90.0, 200.0};
 constexpr TestFlight kUp{.steps = 4, .riser_m = 0.18, .going_m = 0.31};
 
-/// The one with all four steps: what stands beside it may end in steps too.
+/// The flight with all four steps, because an object beside it may also end in steps.
 Flight flight_of(const Terrain& terrain) {
     FeatureFinder finder{StairsConfig{}};
     TerrainFeatures found;
@@ -31,7 +31,7 @@ Flight flight_of(const Terrain& terrain) {
     return {};
 }
 
-/// What stands on the left, +y: the flight leads along +x. It climbs as the flight does.
+/// An object on the left, +y, of a flight along +x; it climbs with the flight.
 Ground with_left(double above_m) {
     return [=](double x_m, double y_m) {
         const bool beside = y_m > kHalfWidth_m && x_m > 0.0 && x_m < 4 * 0.31 + 0.5;
@@ -69,7 +69,7 @@ TEST(FlightSides, walls_and_level_ground_are_told_on_their_side) {
 
 TEST(FlightSides, a_well_has_walls_and_left_is_left_on_the_way_down) {
     const TestFlight down{.steps = 4, .riser_m = -0.18, .going_m = 0.31};
-    // No ground beyond its right side.
+    // No ground to the right of the flight.
     const auto ground = [&](double x_m, double y_m) {
         return y_m < -kHalfWidth_m && x_m > 0.0 ? -2.0 : down.at(x_m, y_m);
     };
@@ -98,7 +98,7 @@ TEST(FlightSides, what_nobody_saw_is_unknown_and_what_lines_of_sight_passed_is_o
     EXPECT_EQ(flight.right.kind, SideKind::open);
 }
 
-/// Rails 50 mm wide on the left, so high above the noses.
+/// Rails 50 mm wide on the left, at a height above the nosing line.
 Ground with_rail(double above_m, double slope, double ends_m = 1.2) {
     return [=](double x_m, double y_m) {
         const bool rail =

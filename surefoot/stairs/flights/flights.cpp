@@ -16,23 +16,24 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-/// Treads lean and maps are bent by less, over the depth of a tread.
+/// Tilt of treads and distortion of maps stay below this over the depth of a tread.
 constexpr double kTread_m = 0.035;
-/// Steps of one flight differ by 5 mm by the code (NZ D1/AS1, Table 6); twice that is allowed for.
+/// Steps of one flight differ by 5 mm by code (NZ D1/AS1, Table 6); twice that is allowed.
 constexpr double kUnevenRiser_m = 0.01;
 constexpr double kUnevenGoing_m = 0.015;
-constexpr double kMaxSigma_m = 0.03;  ///< of the height of a single step
+constexpr double kMaxSigma_m = 0.03;  ///< largest height sigma of a single step
 constexpr double kLeastStand_m = 0.08;
 constexpr double kBeside_m = 0.25;
-/// No level of a map is known better: errors that its cells share.
+/// Floor of a tread's sigma: errors that the cells of a map share.
 constexpr double kTreadSigma_m = 0.001;
-/// One sigma of what all treads of a flight share, as a rise between two: a matcher's errors change
-/// slowly over the image. Maps that are exact have none.
+/// One sigma of a riser error that all treads of a flight share: matching errors change slowly over
+/// the image. Exact maps do not have this error.
 constexpr double kRiserShared_m = 0.001;
-/// Less than so much of a tread is a strip near the height of the camera, some 30 mm too low.
+/// A visible part below this share of a tread is a strip near the camera height, about 30 mm too
+/// low.
 constexpr double kStrip = 0.5;
 constexpr double kStripSigma_m = 0.03;
-constexpr double kAlike = 0.2;  ///< goings of a flight differ by no more, as they are measured
+constexpr double kAlike = 0.2;  ///< largest relative difference of the measured goings of a flight
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -45,7 +46,7 @@ struct Line {
     double slope_sigma = 0.0;
 };
 
-/// y over x = 0, 1, 2 ...; weighted by the sigmas of the y, at least two of them.
+/// Regression of y over x = 0, 1, 2 ..., weighted by the sigmas of y. Needs at least two values.
 Line regress(std::span<const double> y, std::span<const double> sigma) {
     double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) {
@@ -62,7 +63,7 @@ Line regress(std::span<const double> y, std::span<const double> sigma) {
     line.slope = (w * wxy - wx * wy) / determinant;
     line.at_0 = (wy - line.slope * wx) / w;
     line.slope_sigma = std::sqrt(w / determinant);
-    // Steps that are less regular than their sigmas say make it less sure.
+    // Steps that vary more than their sigmas make the result less certain.
     double square = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i)
         square += std::pow((y[i] - line.at_0 - line.slope * static_cast<double>(i)) / sigma[i], 2);
@@ -71,9 +72,9 @@ Line regress(std::span<const double> y, std::span<const double> sigma) {
     return line;
 }
 
-/// How many of them, from the first on, lie on one line within `uneven` and three sigma of what
-/// those before foretell. The far end of a flight is seen worst: where it leaves the line, it was
-/// not measured.
+/// Number of values, from the first on, that lie on one line within `uneven` and three sigma of the
+/// prediction from the earlier ones. The far end of a flight is measured worst; values off the line
+/// are not used.
 std::size_t steady(std::span<const double> y, std::span<const double> sigma, double uneven) {
     std::size_t count = std::min<std::size_t>(2, y.size());
     while (count < y.size()) {
@@ -103,7 +104,7 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 bool FlightFinder::may_be_step(const Edge& edge) const {
-    // What lies below an edge that is not seen cannot be asked: only as the last one of a flight.
+    // Without visible lower ground an edge can only be the last one of a flight.
     const bool is_step = !edge.lower_seen || is_step_of(config_, edge);
     return is_step && edge.height_m() <= config_.max_riser_m &&
            edge.length_m() >= config_.min_width_m;
@@ -123,8 +124,7 @@ double FlightFinder::going_to(const Edge& edge, const Edge& next) const {
     return going_m;
 }
 
-/// `edge` is the next step below or above the chain, as far from it as its steps are from each
-/// other.
+/// True if `edge` is the next step below or above the chain, at the distance of the chain's steps.
 bool FlightFinder::is_next(const Edge& edge, std::span<const Edge> chain, bool below) const {
     const Edge& end = below ? chain.front() : chain.back();
     if (chain.size() < 2 || !may_be_step(edge) || !is_parallel(edge, end)) return false;
@@ -151,7 +151,7 @@ void FlightFinder::lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) 
         }
         chain.insert(below ? chain.begin() : chain.end(), edges[i]);
         edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // another one may be next now
+        i = 0;  // another edge may be next now
     }
 }
 
@@ -201,7 +201,7 @@ void FlightFinder::find(std::span<const Edge> edges,
 bool FlightFinder::add_chain(std::span<const Edge> from_below,
                              const Vector2d& stance_m,
                              std::vector<Flight>& flights) const {
-    // Those that the stance lies above lead down.
+    // Edges with the stance on their upper side lead down.
     std::size_t below = 0;
     while (below < from_below.size() && from_below[below].below_m(stance_m) < 0.0) ++below;
     const std::size_t before = flights.size();
@@ -211,17 +211,17 @@ bool FlightFinder::add_chain(std::span<const Edge> from_below,
     return flights.size() > before;
 }
 
-/// A single step is one if one can walk to it, straight towards it, and stand on it.
+/// True for a single step that can be walked to straight, and stood on.
 bool FlightFinder::is_step_ahead(const Edge& edge,
                                  FlightKind kind,
                                  const Vector2d& stance_m) const {
     const bool up = kind == FlightKind::up;
     if (!edge.lower_seen || (up ? !edge.lower_walkable : !edge.upper_walkable)) return false;
-    // What stands at the foot of a wall is no step: one stands on it.
+    // A raised edge at the foot of a wall is no step, because nobody can stand on it.
     if ((up ? edge.upper_depth_m : edge.lower_depth_m) < kLeastStand_m ||
         edge.height_sigma_m > kMaxSigma_m)
         return false;
-    // The way straight on meets it, or nearly: the side of a ramp is no stair.
+    // The way straight on must meet the edge: the side of a ramp is no stair.
     const double along_m = (stance_m - edge.from_m).dot(edge.along());
     if (along_m < -kBeside_m || along_m > edge.length_m() + kBeside_m) return false;
     const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
@@ -233,7 +233,7 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
                               FlightKind kind,
                               const Vector2d& stance_m,
                               std::vector<Flight>& flights) const {
-    // Single low or high steps at the ends may be kerbs; a flight has real steps.
+    // Single low or high steps at the ends may be kerbs; a flight needs regular steps.
     std::vector<double> heights_m;
     for (const Edge& edge : from_below) heights_m.push_back(edge.height_m());
     if (median_of(heights_m) < config_.min_riser_m) return;
@@ -299,7 +299,7 @@ void FlightFinder::measure_risers(Flight& flight) {
     const bool up = flight.kind == FlightKind::up;
     const auto near_m = [&](const Edge& edge) { return up ? edge.lower_m : edge.upper_m; };
     const auto far_m = [&](const Edge& edge) { return up ? edge.upper_m : edge.lower_m; };
-    std::vector<double> level_m;  // upward, or downward
+    std::vector<double> level_m;  // of the treads, in the direction of the flight
     std::vector<double> sigma_m;
     const auto add = [&](double height_m, double edge_sigma_m) {
         level_m.push_back(up ? height_m : -height_m);
@@ -313,14 +313,14 @@ void FlightFinder::measure_risers(Flight& flight) {
         const bool measured_twice = i + 1 < edges.size();
         const double height_m =
             measured_twice ? 0.5 * (far_m(edges[i]) + near_m(edges[i + 1])) : far_m(edges[i]);
-        // Of the last tread that is seen of a flight up only a strip may be seen, near eye level.
+        // Of the last visible tread of a flight up only a strip may be visible, near camera height.
         const double depth_m = edges[i].upper_depth_m;
         if (up && !measured_twice && i > 0 && depth_m < 0.6 * flight.going_m) break;
         const bool strip = up && depth_m < kStrip * flight.going_m;
         add(height_m,
             strip ? std::hypot(edges[i].height_sigma_m, kStripSigma_m) : edges[i].height_sigma_m);
     }
-    if (level_m.size() < 2) {  // not even the ground below the first edge was seen
+    if (level_m.size() < 2) {  // even the ground below the first edge was not seen
         flight.riser_m = edges.front().height_m();
         flight.riser_sigma_m = edges.front().height_sigma_m;
         return;

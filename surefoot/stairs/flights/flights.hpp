@@ -9,29 +9,29 @@
 
 namespace surefoot::stairs {
 
-/// Chains of edges that follow each other as steps do: parallel (or turning, in a spiral), a going
-/// apart, the upper ground of one the lower ground of the next. Where the stance lies between two
-/// of them the chain is a flight up and a flight down. Single edges are chains of one.
+/// Chains edges into flights. Consecutive edges are parallel (or turn, in a spiral), lie one going
+/// apart, and the upper ground of one is the lower ground of the next. If the stance lies inside a
+/// chain, the chain becomes a flight up and a flight down. A single edge is a chain of one.
 class FlightFinder {
   public:
     explicit FlightFinder(const StairsConfig& config) : config_(config) {}
-    /// `used` says of each edge whether it is part of a flight.
+    /// `used[i]` = edge i is part of a flight.
     void find(std::span<const Edge> edges,
               const Eigen::Vector2d& stance_m,
               std::vector<Flight>& flights,
               std::vector<bool>& used);
-    /// Adds the flights that a chain of edges makes, seen from the stance. False, and nothing, if
-    /// it makes none.
+    /// Adds the flights of one chain of edges, seen from the stance. Returns false and adds nothing
+    /// if the chain forms no flight.
     bool add_chain(std::span<const Edge> from_below,
                    const Eigen::Vector2d& stance_m,
                    std::vector<Flight>& flights) const;
-    /// Takes those edges into a chain from below that belong to it, though they were not placed
-    /// with it: pieces of its steps, and the next steps at its ends.
+    /// Moves edges that belong to a chain into the chain: pieces of its steps, and the next steps
+    /// at its ends. `chain`: lowest step first.
     void lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) const;
 
   private:
     [[nodiscard]] bool may_be_step(const Edge& edge) const;
-    /// How far `next` lies above and behind `edge` [m]; infinite if it is not its next step.
+    /// Horizontal distance to `next` [m]; infinite if `next` is not the next step up.
     [[nodiscard]] double going_to(const Edge& edge, const Edge& next) const;
     [[nodiscard]] bool is_next(const Edge& edge, std::span<const Edge> chain, bool below) const;
     void add_flight(std::span<const Edge> from_below,

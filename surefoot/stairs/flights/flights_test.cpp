@@ -15,8 +15,8 @@ using Eigen::Vector2d;
 constexpr double kRiser_m = 0.17;
 constexpr double kGoing_m = 0.3;
 
-/// Edge of step k of a flight that leads along +x from x = 1; it reaches from `right_m` to `left_m`
-/// across the way, turned about its middle.
+/// Edge of step k of a flight along +x from x = 1. It reaches from `right_m` to `left_m` across the
+/// flight and is turned about its middle.
 Edge step(int k, double right_m = -0.6, double left_m = 0.6, double turn_deg = 0.0) {
     const Vector2d middle_m(1.0 + k * kGoing_m, 0.5 * (right_m + left_m));
     const double turn_rad = turn_deg * kRadPerDeg;
@@ -39,7 +39,7 @@ TEST(FlightFinder, LongerPiecesOfAStepMakeItLonger) {
     const FlightFinder finder{StairsConfig{}};
     std::vector<Edge> chain{step(0, 0.2, 0.55), step(1), step(2)};
     std::vector<Edge> edges{step(0, -0.6, 0.6, 3.0), step(3, -0.6, 0.6, 40.0), step(0)};
-    edges[2].upper_m += 0.1;  // what stands on it
+    edges[2].upper_m += 0.1;  // an object on the tread
     finder.lengthen(chain, edges);
     ASSERT_EQ(chain.size(), 3U);
     EXPECT_NEAR(chain[0].length_m(), 1.2, 0.02);
@@ -88,7 +88,7 @@ TEST(FlightFinder, WhatIsNoNextStepIsLeft) {
     EXPECT_EQ(one.size(), 1U) << "one step says nothing of the goings";
 }
 
-/// Along the side of a ramp or a platform one does not walk over it.
+/// Along the side of a ramp or platform the path does not cross the edge.
 TEST(FlightFinder, ASingleStepLiesStraightAhead) {
     FlightFinder finder{StairsConfig{}};
     std::vector<bool> used;

@@ -11,13 +11,14 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr double kMargin_m = 0.05;  ///< at the ends of an edge
-/// Of a face, from its foot. A semi-global matcher comes from the tread above and finds the top of
-/// a face 0.2-0.4 px too far; the foot it finds 0.1 px too near, the rest within 0.05 px.
+constexpr double kMargin_m = 0.05;  ///< left out at both ends of an edge
+/// Lower end of the used part of a face. A semi-global matcher approaches from the tread above and
+/// places the top of a face 0.2-0.4 px too far, its foot 0.1 px too near, and the rest within 0.05
+/// px.
 constexpr double kLowest = 0.1;
 constexpr double kHighest = 0.6;
-constexpr double kNearest_m = 0.1;  ///< of a face, from the camera
-constexpr double kGate_m = 0.2;     ///< further away it is something else
+constexpr double kNearest_m = 0.1;  ///< least distance of a face from the camera
+constexpr double kGate_m = 0.2;     ///< points farther from the face belong to something else
 constexpr std::size_t kLeastSamples = 40;
 constexpr double kLeastShare = 0.3;
 constexpr double kSigmaOfMedian = 1.25;
@@ -26,8 +27,9 @@ constexpr int kRounds = 3;
 
 }  // namespace
 
-/// Fills runs_m_: how far away, across the edge, the pixels find the face that show it if it stands
-/// `at_m` from the camera. How many pixels that are, matched or not.
+/// Fills runs_m_ with the distances that the pixels of a face measure, across the edge. The pixels
+/// are those that show the face if it stands `at_m` from the camera. Returns their number, matched
+/// or not.
 std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double at_m) {
     const View& view = *terrain.view;
     const Eigen::Vector3d& camera_m = view.T_map_camera.translation_m;
@@ -47,7 +49,8 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
     std::size_t pixels = 0;
     for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
         const SightPlane::Rows rows = plane.rows_between(lowest, highest, u, disparity_px.height);
-        if (rows.last - rows.first + 1 >= disparity_px.height) continue;  // seen edge on
+        if (rows.last - rows.first + 1 >= disparity_px.height)
+            continue;  // the face is seen edge-on
         for (int v = rows.first; v <= rows.last; ++v) {
             const double run = plane.run.at(u, v);
             const double along_m = at_m / run * plane.aside.at(u, v);
@@ -65,8 +68,8 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
 
 namespace {
 
-/// By how much level ground behind an open riser is farther away in the upper half of what shows
-/// the face than in the lower one.
+/// How much farther away level ground behind an open riser appears in the upper half of the face's
+/// pixels than in the lower half.
 double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
     const double foot_m = terrain.view->T_map_camera.translation_m.z() - edge.lower_m;
     const double quarter_m = 0.25 * (kHighest - kLowest) * edge.height_m();
@@ -118,7 +121,7 @@ void SightFaces::place(const Terrain& terrain, std::span<Edge> steps) {
         const std::optional<Face> face = see(terrain, edge);
         if (!face) continue;
         edge.open = face->open;
-        // Of a board the map leaves out what lies beside the jump to the ground below it.
+        // The map omits the part of a board beside the depth jump to the ground below.
         const Eigen::Vector3d middle_m(edge.middle_m().x(), edge.middle_m().y(), edge.upper_m);
         const double behind_m =
             face->open ? -terrain.view->unmapped_m(middle_m, -edge.down()) : face->behind_m;

@@ -11,29 +11,29 @@
 
 namespace surefoot::stairs {
 
-/// Places the risers of a flight up by what one look shows of their faces. The map's points of a
-/// face hold its top too, which a matcher finds too far, the more the farther: goings came out 5 mm
-/// too long. Pixels are chosen by where the face should be in the image, not by what was measured
-/// there, so that noise does not choose them.
+/// Places the risers of a flight up by the visible part of their faces in the current frame. The
+/// map's face points include the top of the face, which a matcher places too far away (goings came
+/// out 5 mm too long). Pixels are selected by the expected position of the face in the image, not
+/// by their disparity, so that noise does not bias the selection.
 class SightFaces {
   public:
-    /// Moves those edges whose faces are seen. Nothing without `Terrain::view` and
+    /// Moves the edges whose faces are visible. Does nothing without `Terrain::view` and
     /// `Terrain::disparity_px`.
     void place(const Terrain& terrain, std::span<Edge> steps);
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< where the edge was, away from the camera; 0 = open
+        double behind_m = 0.0;  ///< how far the old edge lies behind the face; 0 = open
         double sigma_m = 0.0;
         bool open = false;
     };
     std::size_t gather(const Terrain& terrain, const Edge& edge, double at_m);
-    /// `level_m`: by how much that leans, see there.
+    /// `level_m`: lean of the face that level ground would cause (see the definition).
     [[nodiscard]] bool shows_level_ground(double level_m);
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 
     std::vector<float> runs_m_;
-    std::vector<float> lower_m_;  ///< of them, in the lower half of the face
+    std::vector<float> lower_m_;  ///< the runs of the lower half of the face
     std::vector<float> upper_m_;
 };
 

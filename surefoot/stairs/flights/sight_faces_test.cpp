@@ -14,7 +14,7 @@ namespace {
 using testing::flight;
 using testing::SightScene;
 
-/// Edges of steps up along +x, each off its place by what `off_m` says, from below.
+/// Edges of steps up along +x from the lowest, each moved by its value of `off_m`.
 std::vector<Edge> edges_up(const std::vector<double>& off_m, double riser_m, double going_m) {
     std::vector<Edge> edges;
     for (std::size_t k = 0; k < off_m.size(); ++k) {
@@ -45,7 +45,7 @@ TEST(SightFaces, risers_come_to_where_their_faces_are_seen) {
     }
 }
 
-// What shows below a board is the floor behind it: no face, wherever it lies.
+// Below a board the floor behind it is visible: that is no face, at any distance.
 TEST(SightFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_floor_behind_it) {
     for (const bool open : {false, true}) {
         SightScene scene(flight(1, -0.2, 0.25), 0.7, 0.05, 0.0, open);
@@ -55,7 +55,7 @@ TEST(SightFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_
         terrain.view->unmapped_px = 3.0;
         SightFaces{}.place(terrain, edges);
         EXPECT_EQ(edges[0].open, open);
-        // The map ends before the board does, by the pixels that it leaves out.
+        // The map ends before the board, by the pixels that it omits.
         const Eigen::Vector3d board_m(0.0, 0.0, 0.2);
         const double before_m = open ? terrain.view->unmapped_m(board_m, {1.0, 0.0}) : 0.0;
         EXPECT_NEAR(edges[0].middle_m().x(), -before_m, 0.004);
@@ -77,7 +77,7 @@ TEST(SightFaces, what_is_not_seen_stays_where_the_map_has_it) {
     std::vector<Edge> down = given;  // whose faces point away from the camera
     for (Edge& edge : down) std::swap(edge.from_m, edge.to_m);
     EXPECT_TRUE(stays(scene.terrain(), down));
-    EXPECT_TRUE(stays(scene.terrain(), edges_up({0.5}, 0.18, 0.29)));  // nothing stands there
+    EXPECT_TRUE(stays(scene.terrain(), edges_up({0.5}, 0.18, 0.29)));  // no face stands there
     std::vector<Edge> aside = given;
     for (Edge& edge : aside) {
         edge.from_m.y() += 4.0;
@@ -87,7 +87,7 @@ TEST(SightFaces, what_is_not_seen_stays_where_the_map_has_it) {
     Terrain blind = scene.terrain();
     blind.disparity_px = {};
     EXPECT_TRUE(stays(blind, given));
-    // Few matches are not believed.
+    // Too few matches are rejected.
     for (int v = 0; v < scene.disparity_px_.height(); ++v)
         for (int u = 0; u < scene.disparity_px_.width(); ++u)
             if (u % 20 != 0) scene.disparity_px_.at(u, v) = std::numeric_limits<float>::quiet_NaN();

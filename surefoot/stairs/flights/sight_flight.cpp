@@ -10,17 +10,17 @@ namespace {
 
 constexpr double kRiserStep_m = 0.008;
 constexpr double kGoingStep_m = 0.02;
-constexpr double kShortestGoing_m = 0.2;  ///< of stairs that are built; spirals are no even flights
+constexpr double kShortestGoing_m = 0.2;  ///< of real stairs; a spiral has no equal steps
 constexpr double kLongestGoing_m = 0.4;
-constexpr int kMostSteps = 8;       ///< what lies deeper is out of sight
-constexpr double kDeepest_m = 1.3;  ///< of the ground below what is no flight
+constexpr int kMostSteps = 8;       ///< deeper steps are not visible
+constexpr double kDeepest_m = 1.3;  ///< deepest floor of the alternatives to a flight
 constexpr double kFloorStep_m = 0.025;
-constexpr double kSteepest = 0.9;  ///< of a slope; a step more: it falls at once
+constexpr double kSteepest = 0.9;  ///< steepest slope; anything steeper counts as an immediate fall
 constexpr double kSlopeStep = 0.03;
-constexpr double kMostCost = 3.0;       ///< of one bin: between two treads is neither
+constexpr double kMostCost = 3.0;       ///< limit per bin: between two treads a bin fits neither
 constexpr double kLeastSigma_m = 0.01;  ///< errors that the bins of a tread share
-constexpr double kLeastGain = 16.0;     ///< by which a flight is better than what is none
-constexpr int kRefinements = 4;         ///< each halves the steps
+constexpr double kLeastGain = 16.0;     ///< least cost advantage of a flight over all alternatives
+constexpr int kRefinements = 4;         ///< each one halves the search steps
 
 }  // namespace
 
@@ -35,14 +35,15 @@ double SightFlight::cost(const EvenFlight& flight, double most) const {
     return sum;
 }
 
-/// Of ground that falls from `first_run_m` on, then is level; a slope above kSteepest is a fall.
+/// Cost of ground that falls from `first_run_m` on and then is level. A slope above kSteepest is a
+/// vertical fall.
 double SightFlight::cost_of_slope_to(double floor_m,
                                      double slope,
                                      double first_run_m,
                                      double most) const {
     double sum = 0.0;
     for (const Point& point : points_) {
-        // Where the line of sight meets the slope: depth = slope (run - first run).
+        // The ray meets the slope where depth = slope (run - first run).
         const double beyond_m = height_m_ * point.run_per_m - first_run_m;
         const double left = 1.0 - slope * point.run_per_m;
         double depth_m = floor_m;
@@ -56,7 +57,7 @@ double SightFlight::cost_of_slope_to(double floor_m,
     return sum;
 }
 
-/// The least cost of ground that falls evenly, or at once, and then is level.
+/// The least cost of ground that falls evenly or at once, and then is level.
 double SightFlight::cost_of_no_flight() const {
     double least = std::numeric_limits<double>::infinity();
     for (double floor_m = kFloorStep_m; floor_m <= kDeepest_m; floor_m += kFloorStep_m)
@@ -69,7 +70,7 @@ double SightFlight::cost_of_slope(std::span<const SightBin> bins,
                                   double height_m,
                                   double first_run_m,
                                   double least_run_m) {
-    constexpr int kPlaces = 3;  // half a tread before the nose and behind it
+    constexpr int kPlaces = 3;  // half a tread before the nosing and behind it
     constexpr double kPlace_m = 0.05;
     take(bins, height_m, first_run_m);
     double least = std::numeric_limits<double>::infinity();

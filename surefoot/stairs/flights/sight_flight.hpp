@@ -10,15 +10,15 @@
 
 namespace surefoot::stairs {
 
-/// A flight down with steps that are all alike, as far as it is in sight.
+/// The visible part of a flight down whose steps are all alike.
 struct EvenFlight {
     int steps = 0;
     double riser_m = 0.0;
     double going_m = 0.0;
-    double cost = 0.0;  ///< sum over the bins of what they leave it by, in sigma, each at most 3
+    double cost = 0.0;  ///< sum over the bins of |residual| in sigma, each at most 3
 
-    /// After how many steps a line of sight meets it, `run_per_m` of run over fall: from a camera
-    /// `height_m` above the ground above the first nose, which is `first_run_m` away.
+    /// Number of steps that a ray (`run_per_m`: run over fall) passes before it meets the flight.
+    /// Camera: `height_m` above the upper ground, `first_run_m` before the first nosing.
     [[nodiscard]] int steps_to(double run_per_m, double height_m, double first_run_m) const {
         int k = 0;
         while (k < steps && (height_m + k * riser_m) * run_per_m > first_run_m + k * going_m) ++k;
@@ -26,29 +26,29 @@ struct EvenFlight {
     }
 };
 
-/// The even flight that explains best what is seen behind an edge: rise, going and number of steps
-/// that are tried one by one, then finer. One tread alone may be blurred by a matcher until it is
-/// none; what all treads and the floor below them say together is not.
+/// Finds the flight of equal steps that best explains the depths behind an edge. It tries rise,
+/// going and number of steps on a grid, then refines them. A matcher may blur a single tread beyond
+/// recognition; all treads and the floor below them together stay recognisable.
 class SightFlight {
   public:
     explicit SightFlight(const StairsConfig& config) : config_(config) {}
-    /// `height_m`: of the camera above the ground above the first nose, which is `first_run_m` from
-    /// it. Nothing where steps explain it no better than a slope or one fall does.
+    /// `height_m`: of the camera above the upper ground; `first_run_m`: from the camera to the
+    /// first nosing. Empty if a slope or a single fall explains the bins as well.
     [[nodiscard]] std::optional<EvenFlight> fit(std::span<const SightBin> bins,
                                                 double height_m,
                                                 double first_run_m);
 
-    /// The least cost of ground that slopes evenly down to a floor, over at least `least_run_m`,
-    /// as smooth ground does. It begins near the first nose.
+    /// The least cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
+    /// The slope begins near the first nosing.
     [[nodiscard]] double cost_of_slope(std::span<const SightBin> bins,
                                        double height_m,
                                        double first_run_m,
                                        double least_run_m);
-    /// What a bin costs whose ground should lie at `depth_m`.
+    /// Cost of a bin if its ground lies at `depth_m`.
     [[nodiscard]] static double cost_of_bin(const SightBin& bin, double depth_m);
 
   private:
-    /// A bin that tells, by the run at which its line of sight meets the ground above.
+    /// A bin with data; its ray is described by its run at the level of the upper ground.
     struct Point {
         double run_per_m = 0.0;  ///< run over fall
         double depth_m = 0.0;

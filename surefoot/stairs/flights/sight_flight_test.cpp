@@ -14,10 +14,10 @@ namespace surefoot::stairs {
 namespace {
 
 constexpr double kHeight_m = 1.0;    ///< of the camera
-constexpr double kFirst_m = 0.8;     ///< run to the first nose
+constexpr double kFirst_m = 0.8;     ///< run to the first nosing
 constexpr double kBin_rad = 0.0015;  ///< half a pixel of a ZED
 
-/// What a camera sees of a flight down, line of sight by line of sight.
+/// The bins of a flight down, one per ray.
 std::vector<SightBin> seen_of(int steps, double riser_m, double going_m) {
     std::vector<SightBin> bins;
     const double first_rad = std::atan2(kHeight_m, kFirst_m);
@@ -55,7 +55,7 @@ TEST(SightFlight, AnEvenFlightIsFoundInNoise) {
                 ASSERT_TRUE(flight) << seed;
                 EXPECT_NEAR(flight->riser_m, riser_m, 0.006) << seed;
                 EXPECT_NEAR(flight->going_m, going_m, 0.02) << seed;
-                if (steps < 6) {  // their floor is in sight
+                if (steps < 6) {  // their floor is visible
                     EXPECT_EQ(flight->steps, steps) << seed;
                 }
             }
@@ -66,7 +66,7 @@ TEST(SightFlight, AnEvenFlightIsFoundInNoise) {
 TEST(SightFlight, ABlurredTreadIsStillOne) {
     SightFlight finder{StairsConfig{}};
     auto bins = seen_of(5, 0.17, 0.27);
-    // The matcher comes down from the first tread to the third over all of the second.
+    // The matcher blurs the whole second tread between the first and the third.
     const auto tread = [&](double depth_m) {
         return std::find_if(
             bins.begin(), bins.end(), [&](const SightBin& bin) { return bin.depth_m > depth_m; });

@@ -9,21 +9,21 @@
 
 namespace surefoot::stairs {
 
-/// Neighbouring columns of a disparity image say the same.
+/// Column step: neighbouring columns of a disparity image carry the same information.
 inline constexpr int kSightStride_px = 4;
-/// Errors of a semi-global matcher hang together over so many columns ...
+/// Correlation length of semi-global matching errors, in columns ...
 inline constexpr double kSightColumns_px = 25.0;
-/// ... and rows.
+/// ... and in rows.
 inline constexpr double kSightRows_px = 3.0;
 
-/// A component of the lines of sight of a camera, each as long as 1 along the optical axis, linear
-/// in the pixel.
+/// A component of the camera's rays along one axis. Rays are scaled to length 1 along the optical
+/// axis, so the component is linear in the pixel.
 struct SightComponent {
     double at_0 = 0.0;
     double per_u = 0.0;
     double per_v = 0.0;
 
-    /// `axis`: unit vector in the frame of the map.
+    /// `axis`: unit vector in the map frame.
     SightComponent(const View& view, const Eigen::Vector3d& axis) {
         const Eigen::Vector3d k = view.T_map_camera.rotation.conjugate() * axis;
         per_u = k.x() / view.fx_px;
@@ -35,7 +35,7 @@ struct SightComponent {
     }
 };
 
-/// The lines of sight as seen along an edge: in the plane across it, its points are one.
+/// The camera's rays, projected into the plane across an edge. The edge is a point in this plane.
 struct SightPlane {
     SightComponent run;    ///< across the edge, away from the camera
     SightComponent fall;   ///< downward
@@ -48,9 +48,9 @@ struct SightPlane {
 
     struct Rows {
         int first = 0;
-        int last = -1;  ///< before the first: none
+        int last = -1;  ///< smaller than `first` = empty
     };
-    /// Those rows of a column, of an image so high, whose lines of sight lie between two of these.
+    /// The rows of column `u_px` whose ray steepness lies between both values (fall over run).
     [[nodiscard]] Rows rows_between(double steepness_a,
                                     double steepness_b,
                                     double u_px,
@@ -65,7 +65,7 @@ struct SightPlane {
                     static_cast<int>(std::clamp(std::max(a, b), -1.0, most)),  // in range: the same
                     height_px - 1)};
     }
-    /// Row of a column in which lines of sight have this fall over run; infinite or NaN = none.
+    /// The row of column `u_px` whose ray has this steepness; infinite or NaN = none.
     [[nodiscard]] double row_of(double steepness, double u_px) const {
         return -(fall.at(u_px, 0.0) - steepness * run.at(u_px, 0.0)) /
                (fall.per_v - steepness * run.per_v);

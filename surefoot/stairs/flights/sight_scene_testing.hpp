@@ -14,8 +14,8 @@ namespace surefoot::stairs::testing {
 
 using Eigen::Vector3d;
 
-/// Ground behind an edge at the origin that leads down along +x: from `behind_m` on it lies
-/// `depth_m` lower than before the edge.
+/// Ground behind an edge at the origin, along +x: beyond `behind_m` the ground lies `depth_m` lower
+/// than before the edge.
 struct Tread {
     double behind_m = 0.0;
     double depth_m = 0.0;
@@ -27,7 +27,7 @@ inline std::vector<Tread> flight(int steps, double riser_m, double going_m) {
     return treads;
 }
 
-/// A camera 1 m above the ground before the edge, 30 deg down, and what it sees of treads.
+/// A camera 1 m above the ground before the edge, pitched 30 deg down, and its disparities.
 class SightScene {
   public:
     SightScene(const std::vector<Tread>& treads,
@@ -75,7 +75,7 @@ class SightScene {
     Image<float> disparity_px_;
 
   private:
-    bool open_;  ///< steps up are boards: below them one sees the floor
+    bool open_;  ///< steps up are boards: the floor is visible below them
 
     [[nodiscard]] float seen(const std::vector<Tread>& treads, int u, int v) const {
         const Vector3d ray =

@@ -10,25 +10,25 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr double kGrid_m = 0.005;  ///< of the depths that are tried
+constexpr double kGrid_m = 0.005;  ///< grid of the tested depths
 constexpr double kHighest_m = -0.03;
 constexpr double kDeepest_m = 1.2;
 // in range: constants
 constexpr int kDepths = static_cast<int>((kDeepest_m - kHighest_m) / kGrid_m) + 1;
-constexpr int kLeastRise = 10;      ///< of a step, in kGrid_m: what is less is one tread
-constexpr float kStepCost = 8.0F;   ///< in sigma of a bin: a step pays by explaining that much
-constexpr float kMostCost = 3.0F;   ///< of one bin: between two treads is neither
+constexpr int kLeastRise = 10;      ///< least riser in units of kGrid_m; less is one tread
+constexpr float kStepCost = 8.0F;   ///< in sigma of a bin: a step must explain at least this much
+constexpr float kMostCost = 3.0F;   ///< limit per bin: between two treads a bin fits neither
 constexpr int kLeastSupport = 3;    ///< 1.5 pixels
-constexpr double kFirst_m = 0.08;   ///< the first nose lies so near to the known edge
-constexpr double kUneven_m = 0.03;  ///< risers and goings of a flight are alike
-constexpr std::size_t kPlain = 3;   ///< so many regular steps need no further search
-constexpr double kNose_bins = 1.0;  ///< one sigma of where a depth changes
-/// Depths on both sides blur a strip: this over its bins is one sigma of its depth.
+constexpr double kFirst_m = 0.08;   ///< largest distance of the first nosing from the known edge
+constexpr double kUneven_m = 0.03;  ///< largest difference of risers and of goings in a flight
+constexpr std::size_t kPlain = 3;   ///< this many regular steps need no further search
+constexpr double kNose_bins = 1.0;  ///< one sigma of the position of a depth change
+/// Depths on both sides blur a strip: its depth sigma is this value over its number of bins.
 constexpr double kBlur_m = 0.1;
 
 }  // namespace
 
-/// The cheapest path of depths that never rise, from bin to bin.
+/// Finds the cheapest path of depths that never decrease, from bin to bin.
 void SightSteps::find_levels(std::span<const SightBin> bins) {
     levels_.clear();
     const std::size_t count = bins.size();
@@ -90,7 +90,7 @@ void SightSteps::measure(std::span<const SightBin> bins, Level& level) const {
         std::hypot(std::sqrt(kSightRows_px / kSightBin_px / w), kBlur_m / level.support);
 }
 
-/// Where the depth passes the middle between two levels, in bins.
+/// The bin at which the depth passes the middle between two levels.
 double SightSteps::nose_bin(std::span<const SightBin> bins,
                             const Level& upper,
                             const Level& lower) {
@@ -106,12 +106,12 @@ double SightSteps::nose_bin(std::span<const SightBin> bins,
     return lower.begin - 0.5;
 }
 
-/// A pixel's angle moves the place by range^2 / height.
+/// An angular error of one pixel moves the nosing by range^2 / height.
 double SightSteps::nose_sigma_m(double run_m, double below_m) const {
     return kNose_bins * (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
 }
 
-/// `height_m`: of the camera above the ground above the edge.
+/// `height_m`: of the camera above the upper ground.
 void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     const auto steepness_at = [&](double bin) {
         const auto k = std::min(saturated_integer<std::size_t>(std::floor(bin)), bins.size() - 2);
@@ -128,7 +128,7 @@ void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     }
 }
 
-/// How many steps, from the first on, are steps of one flight.
+/// Number of steps, from the first on, that form one regular flight.
 std::size_t SightSteps::regular_steps() const {
     std::size_t steps = 1;
     double riser_m = levels_[1].depth_m - levels_[0].depth_m;
@@ -195,15 +195,15 @@ double SightSteps::log_ratio(std::span<const SightBin> bins, double height_m, st
                 SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)], levels_[level].depth_m);
     const double slope = even_.cost_of_slope(
         bins.subspan(begin, end - begin), height_m, noses_.front().run_m, 2.0 * config_.smear_m);
-    // Of neighbouring bins those within kSightRows_px share one error. A step has a place and a
-    // depth, a slope has three parameters in all (BIC).
+    // Bins within kSightRows_px share one error. BIC: a step has two parameters (position, depth),
+    // a slope has three in total.
     const double independent = static_cast<double>(end - begin) * kSightBin_px / kSightRows_px;
     const double parameters = 2.0 * static_cast<double>(steps) - 3.0;
     return (slope - cost) * kSightBin_px / kSightRows_px -
            0.5 * parameters * std::log(std::max(2.0, independent));
 }
 
-/// The map holds the highest of what is in a cell, and of a low step what the matcher smears.
+/// Adds the visible lower ground. The map keeps the highest point of a cell and smears low steps.
 Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
     const Level& upper = levels_[step];
     const Level& lower = levels_[step + 1];
@@ -231,7 +231,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     find_noses(bins, height_m);
     if (std::abs(noses_.front().run_m - distance_m) > kFirst_m) return;
     std::size_t steps = regular_steps();
-    // More levels than steps: the matcher blurred one of them.
+    // More levels than steps: the matcher blurred a step.
     if (steps < kPlain && levels_.size() > steps + 1) steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
     const double log_step_ratio = log_ratio(bins, height_m, steps);
@@ -239,10 +239,10 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     out.assign(known.begin(), known.end());
     const std::size_t last = known.size() - 1;
     const Edge seen = with_lower(known.back(), last);
-    // One step alone may be misread: where the map has deeper ground, that holds.
+    // A single step may be misread: deeper ground in the map has priority.
     const bool is_deeper = seen.height_m() >= known.back().height_m() - 2.0 * seen.height_sigma_m;
     if (steps > 1 || is_deeper) out.back() = seen;
-    if (!(first.height_m() > 0.0)) {  // the map does not show where it ends
+    if (!(first.height_m() > 0.0)) {  // the map does not show where the edge lies
         const Eigen::Vector2d shift_m = (noses_.front().run_m - distance_m) * first.down();
         out.front().from_m += shift_m;
         out.front().to_m += shift_m;

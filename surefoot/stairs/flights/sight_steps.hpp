@@ -13,23 +13,23 @@
 
 namespace surefoot::stairs {
 
-/// Steps down behind an edge, read from one look (SightProfile): the most likely staircase through
-/// the depths (dynamic programming, Viterbi 1967), of which so many steps are kept as are regular.
+/// Finds steps down behind an edge in the current frame (SightProfile): the most likely staircase
+/// through the depths (dynamic programming, Viterbi 1967). Only its regular steps are kept.
 class SightSteps {
   public:
     explicit SightSteps(const StairsConfig& config) : config_(config), even_(config) {}
-    /// Edges of the flight whose upper ones are `known` (at least one), from the top down: those,
-    /// with what is seen of the ground below the last of them, and the further ones. Empty if
-    /// fewer are seen than are known.
+    /// Writes the edges of a flight down, from the top: the `known` edges (at least one), with the
+    /// visible ground below the last one, then further edges. Empty if fewer steps are visible than
+    /// known.
     void find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out);
 
   private:
     struct Level {
-        int begin = 0;  ///< bins
+        int begin = 0;  ///< index of the first bin
         int end = 0;
         double depth_m = 0.0;
         double sigma_m = 0.0;
-        int support = 0;  ///< bins that agree
+        int support = 0;  ///< number of bins that agree with the level
     };
     struct Nose {
         double run_m = 0.0;  ///< from the camera
@@ -40,16 +40,16 @@ class SightSteps {
     [[nodiscard]] static double nose_bin(std::span<const SightBin> bins,
                                          const Level& upper,
                                          const Level& lower);
-    /// Of a nose so far from the camera and so far below it, by the pixels alone.
+    /// Position sigma of a nosing at this distance from the camera, from pixel errors alone.
     [[nodiscard]] double nose_sigma_m(double run_m, double below_m) const;
     void find_noses(std::span<const SightBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
-    /// Levels and noses of the even flight that explains the bins; how many steps of it are seen.
-    /// Nothing changes where there is none of more than `steps`.
+    /// Replaces levels and nosings by the equal-step flight that explains the bins. Returns its
+    /// visible steps. Changes nothing if no such flight has more than `steps` steps.
     [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
                                              double height_m,
                                              std::size_t steps);
-    /// ln of the likelihood ratio: the first so many steps over ground that slopes.
+    /// Log likelihood ratio: the first `steps` steps over ground that slopes.
     [[nodiscard]] double log_ratio(std::span<const SightBin> bins,
                                    double height_m,
                                    std::size_t steps);
@@ -60,7 +60,7 @@ class SightSteps {
     SightFlight even_;
     double bin_rad_ = 0.0;
     std::vector<float> cost_;
-    std::vector<float> cheapest_;  ///< of a level at or above this one
+    std::vector<float> cheapest_;  ///< least cost over this level and all higher levels
     std::vector<std::int16_t> from_;
     std::vector<std::int16_t> cheapest_level_;
     std::vector<Level> levels_;

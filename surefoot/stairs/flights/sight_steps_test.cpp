@@ -62,7 +62,7 @@ TEST(SightSteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
         steps.add_noise(0.3, seed);
         for (const Edge& edge : steps.find()) EXPECT_GE(edge.log_step_ratio, proven) << seed;
         for (const double slope_deg : {15.0, 22.0, 30.0, 35.0}) {
-            // So many low steps are none.
+            // Many very low steps are a slope.
             constexpr double kPiece_m = 0.01;
             Scene slope(
                 flight(300, kPiece_m * std::tan(slope_deg * kRadPerDeg), kPiece_m), 0.75, 0.1);
@@ -73,7 +73,7 @@ TEST(SightSteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
     }
 }
 
-/// A matcher comes down from tread to tread over 0.15 m of the second one.
+/// A matcher blurs the change from tread to tread over 0.15 m of the second tread.
 TEST(SightSteps, a_blurred_tread_ends_no_flight) {
     std::vector<Tread> treads = flight(6, 0.17, 0.27);
     treads.insert(treads.begin() + 1, {0.19, 0.26});
@@ -95,7 +95,7 @@ TEST(SightSteps, a_kerb_is_as_high_as_the_camera_sees_it) {
     ASSERT_EQ(found.size(), 1U);
     EXPECT_NEAR(found[0].height_m(), 0.12, 0.003);
     EXPECT_LT(found[0].height_sigma_m, 0.01);
-    // Where the map has deeper ground than that, the edge stays as deep.
+    // Deeper ground in the map has priority.
     scene.edge_.lower_m = -0.4;
     EXPECT_DOUBLE_EQ(scene.find().at(0).height_m(), 0.4);
 }
@@ -105,7 +105,7 @@ TEST(SightSteps, a_ramp_down_and_one_deep_fall_are_no_flights) {
     for (int k = 0; k < 400; ++k) ramp.push_back({0.008 * k, 0.001 * (k + 1)});  // 1 : 8
     EXPECT_LE(Scene(ramp, 0.9, 0.0).find().size(), 1U);
     EXPECT_LE(Scene({{0.0, 0.75}}, 0.9, 0.0).find().size(), 1U);
-    // Two treads of which the second is no step of the same flight: too deep, or unlike the first.
+    // Two treads; the second is no step of the same flight: too deep, or unlike the first.
     EXPECT_EQ(Scene({{0.0, 0.15}, {0.3, 0.6}}, 0.8, 0.0).find().size(), 1U);
     EXPECT_EQ(Scene({{0.0, 0.09}, {0.3, 0.31}}, 0.8, 0.0).find().size(), 1U);
     EXPECT_EQ(Scene({{0.0, 0.16}, {0.3, 0.32}}, 0.8, 0.0).find().size(), 2U);
@@ -143,7 +143,7 @@ TEST(SightSteps, what_is_not_seen_from_before_and_above_gives_nothing) {
     EXPECT_TRUE(found.empty());
 }
 
-// Few matches that disagree, on level ground and on treads: neither adds a step.
+// Few, inconsistent matches on level ground and on treads add no step.
 TEST(SightSteps, noise_of_two_pixels_and_gaps_add_no_step) {
     for (std::uint64_t seed = 21; seed < 27; ++seed) {
         for (const int steps : {1, 3}) {

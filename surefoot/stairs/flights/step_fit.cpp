@@ -13,19 +13,19 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kReach_m = 2.5;  ///< to either side of the seed
+constexpr double kReach_m = 2.5;  ///< on either side of the seed
 constexpr int kRounds = 3;
 constexpr double kLeastTread_m = 0.05;
-constexpr double kLevel_m = 0.015;  ///< neighbouring slices of a tread differ by less
-/// Edge points further from where the treads pass into each other belong to something else.
+constexpr double kLevel_m = 0.015;  ///< largest difference of neighbouring slices of a tread
+/// Edge points farther from the border of two treads belong to another object.
 constexpr double kNear_m = 0.07;
-constexpr double kFar_m = 0.1;   ///< the face of a riser lies nearer to where its tread ends
-constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed, on either side
-/// A step that shows less than so much of what both its neighbours show is as long as they are.
+constexpr double kFar_m = 0.1;   ///< the face of a riser lies nearer to the end of its tread
+constexpr double kSide_m = 0.4;  ///< a step may be wider than the seed by this on either side
+/// A step whose extent is less than this share of both neighbours gets their extent.
 constexpr double kRagged = 0.5;
-/// Ground that the seed was measured on.
+/// Tolerance for the ground on which the seed was measured.
 constexpr double kTread_m = 0.03;
-/// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
+/// Steps of a flight differ by 5 mm by code (NZ D1/AS1); badly built ones differ more.
 constexpr double kUneven_m = 0.02;
 
 }  // namespace
@@ -44,7 +44,7 @@ void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
             add_tread(all, first, length, 0);
         } else {
             length = level_run(all, first);
-            // The border slices of a tread may hold what belongs to its neighbours.
+            // The border slices of a tread may contain parts of its neighbours.
             if (length >= least)
                 add_tread(all, first, length, length >= 8 ? 2 : length >= 4 ? 1 : 0);
         }
@@ -52,7 +52,7 @@ void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
     }
 }
 
-/// Slices from one on that are level with each other.
+/// Number of slices from `first` on that are level with each other.
 int StepFitter::level_run(const EdgeProfiler::Slices& all, int first) {
     double sum_m = all.at(first).height_m * all.at(first).known_share;
     double weight = all.at(first).known_share;
@@ -78,7 +78,7 @@ void StepFitter::add_tread(const EdgeProfiler::Slices& all, int first, int lengt
 }
 
 void StepFitter::join_treads() {
-    // Pieces of one tread come together.
+    // Joins pieces of one tread.
     std::vector<Tread> joined;
     for (const Tread& tread : treads_) {
         if (!joined.empty() &&
@@ -100,7 +100,7 @@ void StepFitter::join_treads() {
 namespace {
 
 double place_between(const auto& upper, const auto& lower) {
-    // In a shadow the edge is where the upper tread ends.
+    // Beside an occluded region the edge is the end of the upper tread.
     return std::min(0.5 * (upper.end_m + lower.begin_m), upper.end_m + kNear_m);
 }
 
@@ -112,8 +112,8 @@ void StepFitter::find_steps(const Edge& seed) {
     const auto at = [&](int k) -> const Tread& { return treads_[static_cast<std::size_t>(k)]; };
     int upper = -1;
     int lower = treads;
-    // Behind a board without a riser the ground below it shows: of the treads about the line those
-    // next to it count, whatever the seed was measured on.
+    // Behind a board without a riser the ground below is visible. Of the treads about the line the
+    // two nearest count, not the ground on which the seed was measured.
     const bool open = seed.height_m() > config_.max_riser_m;
     for (int k = 0; k < treads; ++k) {
         const double rise_m = upper < 0 ? 0.0 : at(upper).height_m - at(k).height_m;
@@ -136,13 +136,14 @@ void StepFitter::find_steps(const Edge& seed) {
     }
 }
 
-/// One step further up (-1) or down (+1) from a tread, if there is a proven one. What looks like a
-/// short tread in between is where a riser was seen badly.
+/// Adds one step up (-1) or down (+1) from a tread, if it is proven. An apparent short tread in
+/// between is a badly seen riser.
 bool StepFitter::grow(int& from, int way) {
     const bool up = way < 0;
     const int treads = static_cast<int>(treads_.size());
     const Tread tread = treads_[static_cast<std::size_t>(from)];
-    if (tread.end_m - tread.begin_m > config_.max_going_m) return false;  // floor or landing
+    if (tread.end_m - tread.begin_m > config_.max_going_m)
+        return false;  // floor or landing: too long for a tread
     const double last_m = up ? steps_.front().at_m : steps_.back().at_m;
     double usual_m = 0.0;
     for (const Step& step : steps_)
@@ -186,7 +187,7 @@ void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
             BorderSearch face = search;
             face.at_m = step.at_m;
             add_face_points(terrain, line, face, borders_);
-            // Of a board without a riser there is none, but there is the front of the next one.
+            // A board without a riser has no face, but the front of the next board is visible.
             if (borders_.size() > before &&
                 std::abs(borders_[(before + borders_.size()) / 2].s_m - step.upper.end_m) > kFar_m)
                 borders_.resize(before);
@@ -196,7 +197,7 @@ void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
     }
 }
 
-/// Turn of the common direction [rad].
+/// Returns the turn of the common direction [rad].
 double StepFitter::place_steps() {
     places_.assign(steps_.size(), ParallelEdge{});
     for (std::size_t k = 0; k < steps_.size(); ++k) places_[k].at_m = steps_[k].upper.end_m;
@@ -216,7 +217,7 @@ void StepFitter::measure_extents(const grid::GridGeometry& grid) {
         steps_[k].from_m = extent.from_m - 0.5 * grid.resolution_m;
         steps_[k].to_m = extent.to_m + 0.5 * grid.resolution_m;
     }
-    // Between two steps the treads prove one, however ragged what is seen of its face.
+    // Between two steps the treads prove a step, even if its face is ragged.
     for (std::size_t k = 1; k + 1 < steps_.size(); ++k) {
         const Step& above = steps_[k - 1];
         const Step& below = steps_[k + 1];

@@ -11,34 +11,34 @@
 
 namespace surefoot::stairs {
 
-/// Looks for further steps before and behind one of them, and places all of them together: their
-/// edges are parallel, and each is seen by far more cells than tell its own direction. Finds edges
-/// that are too ragged to be seen as lines: the map of a stair's far steps is.
+/// Finds further steps before and behind a given step, and fits all of them together. Their edges
+/// are parallel, so all cells together give the direction. Also finds edges that are too ragged to
+/// form lines, such as the far steps of a stair.
 ///
-/// The ground before and behind the seed is cut into slices (EdgeProfiler). Level pieces of it that
-/// lie a step apart are treads; where one passes into the next, the edge points near that place
-/// belong to the edge. Offsets of all edges and their common direction are then found by robust
-/// least squares (Huber's weights), the ground cut again, twice.
+/// Cuts the ground before and behind the seed into slices (EdgeProfiler). Level runs that lie a
+/// step apart are treads. Edge points near the border of two treads belong to their edge. Robust
+/// least squares (Huber weights) then fits the offsets of all edges and their common direction. The
+/// ground is cut again and fitted again, twice.
 class StepFitter {
   public:
     explicit StepFitter(const StairsConfig& config) : config_(config), profiler_(config) {}
-    /// Edges of the flight that `seed` belongs to, lowest first; fewer than two if it has no
-    /// neighbours. Lines lie where the cells have them (see StairsConfig::cell_reach).
+    /// Writes the edges of the flight that contains `seed`, lowest first; fewer than two if it has
+    /// no neighbours. Lines follow the cells (see StairsConfig::cell_reach).
     void fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>& out);
 
   private:
     struct Tread {
-        double begin_m = 0.0;  ///< along the way down
+        double begin_m = 0.0;  ///< position along the way down
         double end_m = 0.0;
         double height_m = 0.0;
-        double sigma_m = 0.0;    ///< of the height
-        double scatter_m = 0.0;  ///< of a cell
+        double sigma_m = 0.0;    ///< one sigma of the height
+        double scatter_m = 0.0;  ///< standard deviation of a cell
     };
     struct Step {
-        double at_m = 0.0;  ///< of its edge, from the seed's line along the way down
+        double at_m = 0.0;  ///< position of its edge: distance from the seed's line, down
         Tread upper;
         Tread lower;
-        double from_m = 0.0;  ///< extent along the edge, from the seed's beginning
+        double from_m = 0.0;  ///< extent along the edge, counted from the begin of the seed
         double to_m = 0.0;
         double rms_m = 0.0;
         int points = 0;
@@ -56,7 +56,7 @@ class StepFitter {
     StairsConfig config_;
     EdgeProfiler profiler_;
     double length_m_ = 0.0;
-    bool sees_faces_ = false;  ///< the stance is where risers show their faces
+    bool sees_faces_ = false;  ///< the stance is on the side of the visible riser faces
     std::vector<Tread> treads_;
     std::vector<Step> steps_;
     std::vector<BorderPoint> borders_;

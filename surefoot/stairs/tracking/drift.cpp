@@ -27,10 +27,10 @@ void Drift::add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odo
 }
 
 bool Drift::is_bounded() const {
-    constexpr double kMost = 1.0;  // (1 m)^2, (1 rad)^2: the same edge cannot be told from the next
+    constexpr double kMost = 1.0;  // (1 m)^2, (1 rad)^2: beyond, neighbouring edges are ambiguous
     const double most =
         std::max(std::max(horizontal_var_m2, height_var_m2), std::max(yaw_var_rad2, tilt_var_rad2));
-    // NaN is no number that std::max would keep.
+    // std::max may drop a NaN, so test the sum.
     return std::isfinite(horizontal_var_m2 + height_var_m2 + yaw_var_rad2 + tilt_var_rad2) &&
            most <= kMost;
 }

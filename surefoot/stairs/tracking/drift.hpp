@@ -7,20 +7,20 @@
 
 namespace surefoot::stairs {
 
-/// How far remembered things may have moved against the machine: variances of its unseen motion, in
-/// the axes of odom.
+/// Uncertainty of the motion since a feature was last seen: how far its remembered position may be
+/// wrong relative to the machine. Variances in the axes of odom.
 struct Drift {
-    double horizontal_var_m2 = 0.0;  ///< in its worst direction
+    double horizontal_var_m2 = 0.0;  ///< in the direction of the largest variance
     double height_var_m2 = 0.0;
     double yaw_var_rad2 = 0.0;
-    double tilt_var_rad2 = 0.0;  ///< about the worse of x and y
+    double tilt_var_rad2 = 0.0;  ///< the larger one of the tilts about x and y
 
-    /// The motion of one more frame. `relative_covariance`: see MotionEstimate.
+    /// Adds the motion of one frame. `relative_covariance`: see MotionEstimate.
     void add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
-    /// False: nothing is known of where things are.
+    /// False if the positions of remembered features are unknown.
     [[nodiscard]] bool is_bounded() const;
 
-    /// Of a place so far from the machine.
+    /// Position variance at a distance from the machine; the next function: height variance.
     [[nodiscard]] double place_var_m2(double distance_m) const {
         return horizontal_var_m2 + distance_m * distance_m * yaw_var_rad2;
     }

@@ -16,24 +16,24 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kGate_sigma = 3.4;
-/// Floors of the gates: a look from afar is off by more than its sigma. Half of the shortest going
-/// and half of the lowest riser, so that the next step of a flight is another edge.
+/// Lower limits of the match gates, because a distant observation is off by more than its sigma.
+/// Half of the shortest going and half of the lowest riser, so that the next step is another edge.
 constexpr double kAcross_m = 0.075;
 constexpr double kHeight_m = 0.04;
 constexpr double kAngle_rad = 20.0 * kRadPerDeg;
-/// Ceilings: however far the machine drifted, two edges farther apart are not taken for one.
+/// Upper limits: edges farther apart never match, for any drift of the machine.
 constexpr double kMaxAcross_m = 0.25;
 constexpr double kMaxHeight_m = 0.08;
 constexpr double kMaxAngle_rad = 40.0 * kRadPerDeg;
-constexpr double kMinOverlap = 0.3;  ///< of the shorter one
+constexpr double kMinOverlap = 0.3;  ///< share of the shorter edge
 constexpr double kPieceAcross_m = 0.03;
-/// An edge that is not found any more beside one that is: no two edges of one upper ground lie so
-/// near to each other and fall the same way.
+/// An unmatched edge this close to a matched one is the same edge: two edges of one upper ground
+/// that fall in one direction are never so close.
 constexpr double kDouble_m = 0.2;
 constexpr double kCovered = 0.7;
-/// Ends move by so much from look to look: cells, and shadows of what stands before them.
+/// Ends move by this much between observations: cells, and occluded regions.
 constexpr double kEnds_m = 0.1;
-constexpr double kFarthest_m = 100.0;  ///< no map reaches so far; without a stance all is far
+constexpr double kFarthest_m = 100.0;  ///< beyond every map; used if there is no stance
 
 double angle_between(const Edge& a, const Edge& b) {
     const Vector2d u = a.along();
@@ -45,7 +45,7 @@ double gate(double sigma, double floor, double ceiling) {
     return std::clamp(kGate_sigma * sigma, floor, ceiling);
 }
 
-/// Middle of what two edges share, on the second one.
+/// Middle of the part that two edges share, on the second edge.
 Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     const Vector2d along = b.along();
     const double from_m = (a.from_m - b.from_m).dot(along);
@@ -55,19 +55,21 @@ Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     return b.from_m + 0.5 * (first_m + last_m) * along;
 }
 
-/// How far the lower grounds differ, beyond what one knows of ground that was not seen.
+/// Difference of the lower grounds, without the part that a bound leaves open.
 double lower_difference_m(const Edge& a, const Edge& b) {
     const double difference_m = b.lower_m - a.lower_m;
     if (a.lower_seen && b.lower_seen) return std::abs(difference_m);
-    if (a.lower_seen) return std::max(0.0, -difference_m);  // b's lies at `lower_m` or lower
+    if (a.lower_seen)
+        return std::max(0.0, -difference_m);  // the lower ground of b lies at `lower_m` or lower
     if (b.lower_seen) return std::max(0.0, difference_m);
     return 0.0;
 }
 
-/// Nothing where they cannot be the same edge, else how badly they agree.
+/// Empty if they cannot be the same edge; else the disagreement in sigma.
 std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const Edge& edge = track.edge;
-    if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m) return std::nullopt;  // most of them
+    if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m)
+        return std::nullopt;  // rejects most pairs early
     const double level_sigma_m = std::hypot(track.level.sigma(), seen.height_sigma_m);
     const double height_gate_m = gate(level_sigma_m, kHeight_m, kMaxHeight_m);
     const double upper_m = std::abs(seen.upper_m - edge.upper_m);
@@ -95,7 +97,7 @@ double distance_m(const Edge& edge, const Vector2d& point_m) {
     return std::isfinite(away_m) ? away_m : std::numeric_limits<double>::max();
 }
 
-/// Upper ground may go on beyond what the look says by one sigma of the look, not more.
+/// Lets the upper ground extend beyond the observation by at most one sigma.
 void hold_back(const Edge& seen, Edge& edge) {
     const double beyond_m = std::max(-edge.below_m(seen.from_m), -edge.below_m(seen.to_m));
     const double back_m = std::max(0.0, beyond_m - seen.across_sigma_m);
@@ -118,7 +120,8 @@ void write_sigmas(EdgeTrack& track) {
     track.edge.height_sigma_m = track.height.sigma();
 }
 
-/// A drop stays one. A kerb is what is called so twice, until nobody calls it so any more.
+/// A drop stays a drop. A kerb needs two observations, and ends when observations no longer report
+/// it.
 void name(const ObservedEdge& seen, const TrackingConfig& config, EdgeTrack& track) {
     track.drop = track.drop || seen.drop;
     if (seen.kerb) {
@@ -140,12 +143,12 @@ void take_height(const Edge& observation,
     double height_m = old_height_m;
     const double var_m2 = observation.height_sigma_m * observation.height_sigma_m;
     if (observation.lower_seen && !edge.lower_seen)
-        track.height = {};  // until now it had but a bound
+        track.height = {};  // until now only a bound was known
     if (observation.lower_seen) {
         const double higher_m = observation.height_m() - old_height_m;
         height_m += higher_m * track.height.take(var_m2, higher_m, most_observations);
         edge.lower_seen = true;
-    } else if (!edge.lower_seen) {  // of two bounds the lower one holds
+    } else if (!edge.lower_seen) {  // of two bounds the lower one is valid
         height_m = std::max(height_m, observation.height_m());
         (void)track.height.take(var_m2, 0.0, most_observations);
     }
@@ -203,7 +206,7 @@ void EdgeTracker::pair_up(std::span<const ObservedEdge> seen) {
         for (std::size_t s = 0; s < seen.size(); ++s)
             if (const auto cost = cost_of(tracks_[t], seen[s].edge))
                 pairs_.push_back({*cost, t, s});
-    // The best pair first, then the best of what is left: each is the best of both its edges.
+    // Takes the best pair first, then the best of the rest: each pair is the best of both edges.
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
         if (a.cost != b.cost) return a.cost < b.cost;
         return a.track != b.track ? a.track < b.track : a.seen < b.seen;
@@ -219,7 +222,7 @@ void EdgeTracker::pair_up(std::span<const ObservedEdge> seen) {
     }
 }
 
-/// One look may find an edge in two pieces.
+/// One observation may split an edge into two pieces.
 void EdgeTracker::take_pieces(std::span<const ObservedEdge> seen) {
     for (const Pair& pair : pairs_) {
         if (id_of_seen_[pair.seen] != 0) continue;
@@ -229,7 +232,8 @@ void EdgeTracker::take_pieces(std::span<const ObservedEdge> seen) {
         const Edge& taken = seen[static_cast<std::size_t>(other)].edge;
         EdgeTrack& track = tracks_[pair.track];
         const double shorter_m = std::min(piece.length_m(), taken.length_m());
-        if (overlap_m(taken, piece) > kMinOverlap * shorter_m) continue;  // one beside it
+        if (overlap_m(taken, piece) > kMinOverlap * shorter_m)
+            continue;  // a parallel edge beside it
         if (std::abs(track.edge.below_m(piece.middle_m())) > kPieceAcross_m) continue;
         grow(piece, track.edge);
         if (seen[pair.seen].drop) {
@@ -247,7 +251,7 @@ void EdgeTracker::take(const ObservedEdge& seen,
     const Edge& observation = seen.edge;
     Edge& edge = track.edge;
     const auto var = [](double sigma) { return sigma * sigma; };
-    // Where the look's middle lies its place is known best, and apart from its angle.
+    // The position is known best at the middle of the observation, independent of its angle.
     const Vector2d middle_m = observation.middle_m();
     const double off_m = edge.below_m(middle_m);
     const double turn_rad = angle_between(edge, observation);
@@ -272,7 +276,7 @@ void EdgeTracker::take(const ObservedEdge& seen,
     edge.upper_walkable = observation.upper_walkable;
     edge.lower_walkable = observation.lower_walkable;
     edge.open = observation.open;
-    // Of the last look that saw what lies below it.
+    // From the last observation that saw the lower ground.
     if (!std::isnan(observation.log_step_ratio)) edge.log_step_ratio = observation.log_step_ratio;
     edge.hidden = observation.hidden;
     name(seen, config_, track);
@@ -287,8 +291,8 @@ void EdgeTracker::take(const ObservedEdge& seen,
     track.shown = true;
 }
 
-/// Grows at once. What lies beyond the look's ends fades away; of a drop only where the ground
-/// there is level, or where it is no more than ends move anyhow.
+/// Grows at once. A part beyond the observation's ends fades; for a drop it fades only if the
+/// ground there is level, or if it is within the usual motion of ends.
 void EdgeTracker::take_ends(const Edge& observation,
                             const Terrain& terrain,
                             EdgeTrack& track) const {
@@ -336,8 +340,8 @@ std::uint32_t EdgeTracker::begin(const ObservedEdge& seen,
     return track.edge.tracked.id;
 }
 
-/// Forgets the least important edge if `track` is more important: drops before others, what is seen
-/// now before what is not, near before far.
+/// Drops the least important edge if `track` is more important. Order: drops before others, seen
+/// now before unseen, near before far.
 bool EdgeTracker::make_room_for(const EdgeTrack& track) {
     const auto matters_less = [](const EdgeTrack& a, const EdgeTrack& b) {
         if (a.drop != b.drop) return b.drop;
@@ -351,10 +355,10 @@ bool EdgeTracker::make_room_for(const EdgeTrack& track) {
     return true;
 }
 
-/// Ground that slopes is as high on neither side, and no drop. An edge whose place is not sure may
-/// lie beyond the ground that is weighed.
+/// True if the ground is one smooth slope, so that the edge is no drop. An edge with an uncertain
+/// position may lie outside the examined ground.
 bool EdgeTracker::is_seen_to_be_smooth(const Terrain& terrain, const Edge& edge) {
-    constexpr double kReach_m = 0.35;  ///< of ground on either side
+    constexpr double kReach_m = 0.35;  ///< depth of ground on either side
     constexpr double kSure_m = 0.05;
     if (edge.across_sigma_m > kSure_m) return false;
     const Vector2d middle_m = edge.middle_m();
@@ -380,7 +384,7 @@ bool EdgeTracker::is_over(const Terrain& terrain, const EdgeTrack& track) const 
            (track.shown ? config_.missed_observations : config_.first_observations);
 }
 
-/// An edge that looks no longer find where they find another one just beside it was that one.
+/// True if observations find another edge just beside this one instead of this one.
 bool EdgeTracker::is_now_another(const EdgeTrack& track) {
     if (track.missed < config_.level_observations) return false;
     for (EdgeTrack& other : tracks_) {

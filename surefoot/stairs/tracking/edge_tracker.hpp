@@ -16,34 +16,34 @@
 
 namespace surefoot::stairs {
 
-/// An edge as one look found it, with what it was called.
+/// An edge of one observation, with its classes in that observation.
 struct ObservedEdge {
     Edge edge;
     bool drop = false;
     bool kerb = false;
-    bool kerb_down = false;  ///< met by who goes down
+    bool kerb_down = false;  ///< the kerb is crossed downward
 };
 
-/// An edge over several looks: `edge` is their mean, its sigmas as of now.
+/// A tracked edge: `edge` is the mean of its observations, with its current sigmas.
 struct EdgeTrack {
     Edge edge;
     ObservationWeight across;
     ObservationWeight angle;
-    ObservationWeight level;   ///< of the upper ground
-    ObservationWeight height;  ///< of the difference
-    double away_m = 0.0;       ///< from the stance
+    ObservationWeight level;   ///< of the height of the upper ground
+    ObservationWeight height;  ///< of the height difference
+    double away_m = 0.0;       ///< distance from the stance
     bool shown = false;
-    bool drop = false;  ///< it was called one once
+    bool drop = false;  ///< it was a drop in at least one observation
     bool kerb = false;
     bool kerb_down = false;
     int kerb_observations = 0;
-    int kerb_missed = 0;         ///< looks in a row that found it and called it no kerb
-    int missed = 0;              ///< looks in a row that did not find it
-    int place_known = 0;         ///< of these, those that know the ground at its place
-    int level_observations = 0;  ///< in a row, that know the ground and find it level or smooth
+    int kerb_missed = 0;         ///< consecutive observations that found it, but not as a kerb
+    int missed = 0;              ///< consecutive observations that did not find it
+    int place_known = 0;         ///< of these, the observations that know the ground at its place
+    int level_observations = 0;  ///< consecutive ones that find the ground level or smooth
 };
 
-/// Counts the ids of all features that are followed together; 0 is none.
+/// Counts ids up from 1 for all features that are tracked together; 0 means "no id".
 class IdCounter {
   public:
     [[nodiscard]] std::uint32_t next() { return ++last_; }
@@ -52,17 +52,17 @@ class IdCounter {
     std::uint32_t last_ = 0;
 };
 
-/// Follows edges, and the drops and kerbs that they are. Rules: FeatureTracker.
+/// Tracks edges, and the drops and kerbs made of edges. Rules: see FeatureTracker.
 class EdgeTracker {
   public:
     static constexpr std::size_t kMaxEdges = 128;
 
-    /// `evidence`: what tells a drop from smooth ground (StepEvidenceFinder).
+    /// `evidence`: the settings that distinguish a drop from smooth ground.
     explicit EdgeTracker(const TrackingConfig& config, const StairsConfig& evidence = {})
         : config_(config), least_log_ratio_(std::log(evidence.drop_ratio)), evidence_(evidence) {
         tracks_.reserve(kMaxEdges);
     }
-    /// `first`: nothing was looked at before, so that nothing can be asked for twice.
+    /// `first`: no earlier observation exists, so no confirmation by a second one is possible.
     void update(std::span<const ObservedEdge> seen,
                 const Terrain& terrain,
                 std::int64_t time_ns,
@@ -71,14 +71,14 @@ class EdgeTracker {
                 IdCounter& ids);
     void forget() { tracks_.clear(); }
 
-    /// Nearest to the stance first.
+    /// Sorted by distance from the stance.
     [[nodiscard]] std::span<const EdgeTrack> tracks() const { return tracks_; }
     [[nodiscard]] const EdgeTrack* find(std::uint32_t id) const;
-    /// The track of each edge that was seen in the last call; 0 = it was too far away for any.
+    /// The track id of each edge in the last call; 0 = too far away to be tracked.
     [[nodiscard]] std::span<const std::uint32_t> ids_of_seen() const { return id_of_seen_; }
 
   private:
-    /// An edge that is followed and one that is seen, which may be the same.
+    /// A tracked edge and an observed edge that may be the same.
     struct Pair {
         double cost = 0.0;
         std::size_t track = 0;
@@ -93,7 +93,7 @@ class EdgeTracker {
               std::int64_t time_ns,
               EdgeTrack& track);
     void take_ends(const Edge& seen, const Terrain& terrain, EdgeTrack& track) const;
-    /// Returns its id, or 0 where there is no room for it.
+    /// Returns the new id, or 0 if all places are taken by nearer edges.
     std::uint32_t begin(const ObservedEdge& seen,
                         const Terrain& terrain,
                         std::int64_t time_ns,
@@ -111,7 +111,7 @@ class EdgeTracker {
     StepEvidenceFinder evidence_;
     std::vector<EdgeTrack> tracks_;
     std::vector<Pair> pairs_;
-    std::vector<int> track_of_seen_;  ///< -1 = none yet
+    std::vector<int> track_of_seen_;  ///< -1 = no track yet
     std::vector<int> seen_of_track_;
     std::vector<std::uint32_t> id_of_seen_;
 };

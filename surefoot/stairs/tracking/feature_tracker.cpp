@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Of one look the same numbers, but for rounding.
+/// Values of one observation are equal except for rounding.
 constexpr double kSame_m = 1e-3;
 
-/// The edge that a drop or kerb is.
+/// The edge of a drop or kerb.
 Edge edge_of(const LineFeature& line) {
     const Vector2d way(std::cos(line.pose.yaw_rad), std::sin(line.pose.yaw_rad));
     const bool goes_down = line.height_m < 0.0;
@@ -77,8 +77,8 @@ void FeatureTracker::update(const TerrainFeatures& found,
     sills_.write(terrain.stance_m, out.sills);
 }
 
-/// What was called a drop, a kerb or a step is an edge, whoever named it: it is looked up among the
-/// edges of the look, or becomes one.
+/// Collects the edges of an observation. An edge keeps its identity when its class changes, so
+/// drops, kerbs and steps are looked up among the edges; a missing one is added.
 void FeatureTracker::gather(const TerrainFeatures& found) {
     seen_.clear();
     for (const Edge& edge : found.edges) seen_.push_back({.edge = edge});

@@ -14,48 +14,48 @@
 
 namespace surefoot::stairs {
 
-/// When a look was taken, and what the machine's motion since the last look leaves unsure.
+/// The time of an observation, and the uncertainty of the motion since the previous one.
 struct Moment {
     std::int64_t time_ns = 0;
     Drift drift;
 };
 
-/// What the ground is, over time: what looks (FeatureFinder) find is put together by its place,
-/// gets an id, and is reported as the mean of its looks. In odom.
+/// Tracks features over time. Observations (FeatureFinder) of one place are joined under one id and
+/// reported as their mean. In odom.
 ///
-/// - Edges are the same where they agree across, in direction, in both heights and in the ground
-///   that they share: within 3.4 sigma, or half a step where sigmas are smaller. Flights are the
-///   same where their edges are, doors and sills where they stand.
-/// - A mean is steadier than its looks but no surer than the best one (ObservationWeight): all of
-/// them are
-///   looks at one map. What was not found in this look has sigmas that grow with the drift.
-/// - Unknown is never safe. A drop is reported from the first look on, not farther away than this
-///   look says by more than its sigma, and as long as it is. It goes when `level_observations`
-///   looks in a row know level ground on both sides of it, or see smooth ground that slopes, when
-///   it has left the map, or when as many looks in a row found it just beside, as another edge. One
-///   that this look finds is always reported (of more than EdgeTracker::kMaxEdges the nearest).
-/// - All else is reported from the second look on: a wrong match has the sigma of a right one, but
-///   not twice the same place. (In the first look after nothing there was none to ask.) It goes
-///   when looks see its place and do not find it, `missed_observations` times in a row.
-/// - A flight has as many steps as most of the last looks say. Its going hangs on where each look
-///   sees the faces of risers; those errors change, and the mean of many looks is surer than any
-///   (RobustMean).
+/// - Two edges are the same if position across, direction, both heights and a shared length
+///   agree within 3.4 sigma, or within half a step if the sigmas are smaller. Flights match by
+///   their edges, doors and sills by their position.
+/// - A mean is steadier than its observations, but its sigma is not below the best one
+///   (ObservationWeight), because all observations read one map. Without a match the sigmas
+///   grow with the drift.
+/// - Drops are reported from the first observation on, never farther away than the current
+///   observation plus its sigma, and at full length. A drop ends after `level_observations`
+///   consecutive observations of level or smooth ground on both sides, or of another edge just
+///   beside it, or when it leaves the map. A drop of the current observation is always reported
+///   (of more than EdgeTracker::kMaxEdges the nearest).
+/// - All other features need two observations, because a wrong match rarely repeats its
+///   position. (The very first observation needs none.) They end after `missed_observations`
+///   consecutive observations that see the place but not the feature.
+/// - The number of steps is the one most of the last observations report. A going depends on
+///   visible riser faces, whose errors change between frames, so RobustMean may lower its
+///   sigma.
 ///
-/// Kerbs and drops have the ids of their edges. Ids are never used twice, not even after `forget`.
-/// Looks of one place and size allocate nothing after the first few. Not thread-safe.
+/// Kerbs and drops have the ids of their edges. No id is used twice, not even after `forget`.
+/// Observations of one place and size stop allocating after the first few. Not thread-safe.
 class FeatureTracker {
   public:
     explicit FeatureTracker(const TrackingConfig& config);
-    /// With the settings by which the finder tells a drop from smooth ground.
+    /// Uses the settings by which the finder distinguishes a drop from smooth ground.
     explicit FeatureTracker(const StairsConfig& config);
 
-    /// `found`: by a look at `terrain`. Its order does not matter but for ties. A drift that is not
-    /// bounded forgets all that came before.
+    /// `found`: the features of an observation of `terrain`, in any order (order decides ties
+    /// only). A drift that is not bounded discards all tracks.
     void update(const TerrainFeatures& found,
                 const Terrain& terrain,
                 const Moment& now,
                 TerrainFeatures& out);
-    /// Odom is another one, or nobody knows where the machine is.
+    /// Discards all tracks. Call it when odom restarts or the machine's pose is lost.
     void forget();
 
   private:
@@ -71,7 +71,7 @@ class FeatureTracker {
     IdCounter ids_;
     bool nothing_yet_ = true;
     std::vector<ObservedEdge> seen_;
-    std::vector<Flight> seen_flights_;  ///< with the ids of their edges; keeps its memory
+    std::vector<Flight> seen_flights_;  ///< with the ids of their edges; the memory is reused
     std::size_t flight_count_ = 0;
 };
 

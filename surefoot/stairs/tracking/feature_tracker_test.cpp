@@ -47,7 +47,7 @@ TerrainFeatures drop_found(const Edge& edge) {
     return found;
 }
 
-/// `steps` to walk up, from `first_m` on; each with its own id-less edge.
+/// A flight up with `steps` steps from `first_m` on; each edge is its own and has no id.
 Flight flight_up(int steps, double first_m = 1.0, double riser_m = 0.18, double going_m = 0.3) {
     Flight flight;
     flight.steps = steps;
@@ -71,11 +71,11 @@ TerrainFeatures flight_found(const Flight& flight) {
     return found;
 }
 
-/// Looks at a map that stays the same, one every 0.1 s.
+/// Observes a constant map every 0.1 s.
 class Observations {
   public:
     explicit Observations(const testing::Ground& ground) : map_(ground, 0.0, {0.0, 0.0}) {}
-    /// All of it is unknown.
+    /// All cells are unknown.
     Observations() : Observations([](double, double) { return 0.0; }) { map_.height_m.fill(kNanF); }
 
     const TerrainFeatures& observation(const TerrainFeatures& found, const Drift& drift = {}) {
@@ -83,7 +83,7 @@ class Observations {
         tracker_.update(found, map_.terrain({0.0, 0.0}), {time_ns_, drift}, out_);
         return out_;
     }
-    /// So that what follows is not seen by the first look of all.
+    /// Makes the next observation not the first one.
     void observe_nothing() { observation({}); }
 
     [[nodiscard]] const TerrainFeatures& out() const { return out_; }
@@ -210,7 +210,7 @@ TEST(FeatureTracker, an_edge_that_is_no_drop_and_is_found_once_is_not_told) {
     observations.observe_nothing();
     EXPECT_TRUE(observations.observation(edges_found({edge_ahead(1.0)})).edges.empty());
     for (int k = 0; k < 20; ++k) EXPECT_TRUE(observations.observation({}).edges.empty());
-    // Nothing of it is left that a second one could be added to.
+    // Its track is gone, so this is a first observation again.
     EXPECT_TRUE(observations.observation(edges_found({edge_ahead(1.0)})).edges.empty());
     EXPECT_EQ(observations.observation(edges_found({edge_ahead(1.0)})).edges.size(), 1U);
 }
@@ -282,7 +282,7 @@ TEST(FeatureTracker, what_is_not_seen_grows_as_unsure_as_the_machine_drifts) {
     EXPECT_NEAR(observations.out().drops[0].across_sigma_m, std::sqrt(var_m2), 1e-9);
     EXPECT_NEAR(
         observations.out().edges.at(0).angle_sigma_rad, std::sqrt(1e-4 + kFrames * 4e-6), 1e-9);
-    // Seen again, it is as sure as the look, and found where it was although it lies elsewhere.
+    // Seen again it has the sigma of the observation, and keeps its id although it has moved.
     const std::uint32_t id = observations.out().drops[0].tracked.id;
     observations.observation(drop_found(edge_ahead(2.09)), drift);
     ASSERT_EQ(observations.out().drops.size(), 1U);
@@ -297,7 +297,7 @@ TEST(FeatureTracker, level_ground_seen_several_times_in_a_row_takes_a_drop_away)
     observations.observe_nothing();
     observations.observation(drop_found(edge_ahead(1.0)));
     for (int k = 1; k < enough; ++k) EXPECT_EQ(observations.observation({}).drops.size(), 1U) << k;
-    observations.observation(drop_found(edge_ahead(1.0)));  // found again: the count begins anew
+    observations.observation(drop_found(edge_ahead(1.0)));  // found again: the count restarts
     for (int k = 1; k < enough; ++k) EXPECT_EQ(observations.observation({}).drops.size(), 1U) << k;
     EXPECT_TRUE(observations.observation({}).drops.empty());
     EXPECT_TRUE(observations.out().edges.empty());
@@ -319,7 +319,7 @@ TEST(FeatureTracker, a_slope_seen_several_times_in_a_row_takes_a_drop_away_and_a
 }
 
 TEST(FeatureTracker, a_drop_whose_place_drifted_goes_only_where_all_of_that_place_is_level) {
-    // The drop lies 0.18 m farther than it is remembered, within two sigma of the drift.
+    // The drop lies 0.18 m farther than remembered, within two sigma of the drift.
     Observations observations([](double x_m, double) { return x_m < 1.18 ? 0.0 : -0.2; });
     Edge edge = edge_ahead(1.0);
     edge.across_sigma_m = 0.1;
@@ -327,7 +327,7 @@ TEST(FeatureTracker, a_drop_whose_place_drifted_goes_only_where_all_of_that_plac
     for (int k = 0; k < 50; ++k) EXPECT_EQ(observations.observation({}).drops.size(), 1U) << k;
 }
 
-/// The told drop does not begin farther away than the found one by more than its sigma.
+/// True if the reported drop begins at most one sigma farther away than the found one.
 bool warns(const TerrainFeatures& told, const Edge& found) {
     return std::any_of(told.edges.begin(), told.edges.end(), [&](const Edge& edge) {
         const bool is_drop =
@@ -467,7 +467,7 @@ TEST(FeatureTracker, the_number_of_steps_does_not_flicker_but_follows_what_stays
     EXPECT_EQ(observations.out().flights.at(0).edges.size(), 6U);
 }
 
-/// Looks often break a flight where it is seen worst.
+/// Observations often break a flight where it is seen worst.
 TEST(FeatureTracker, the_far_end_of_a_flight_is_no_flight_of_its_own) {
     const auto told = [](double beyond_m, double turn_m, int near_steps = 4) {
         const Flight near = flight_up(near_steps);

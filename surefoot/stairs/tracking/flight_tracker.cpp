@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and shadow; the same for all
-/// One sigma of what all looks at a going have in common: a texture draws the matcher in each.
+constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and occlusion; equal for all
+/// One sigma of the going error that all observations share: texture biases the matcher each time.
 constexpr double kGoingShared_m = 0.0015;
-/// So many more votes than the shown number of steps has: two that take turns do not change it.
+/// Least lead in votes to change the number of steps: two alternating numbers do not change it.
 constexpr float kLead = 1.0F;
-/// What lies so many risers beside where a flight leads is another one, behind a landing.
+/// Edges this many risers off the flight's line belong to another flight, behind a landing.
 constexpr double kFarEnd_risers = 1.5;
 
 int common_edges(const Flight& a, const Flight& b) {
@@ -44,7 +44,7 @@ int steps_of(const Flight& flight) {
     return std::clamp(flight.steps, 0, FlightTrack::kMaxSteps);
 }
 
-/// True: the number that the look found is the one to show.
+/// Returns true if the observed number of steps is the one to report.
 bool vote(int steps, double most_observations, FlightTrack& track) {
     const auto keep = static_cast<float>(1.0 - 1.0 / most_observations);
     for (float& votes : track.votes) votes *= keep;
@@ -59,7 +59,7 @@ double distance_m(const Flight& flight, const Vector2d& stance_m) {
     return std::isfinite(away_m) ? away_m : std::numeric_limits<double>::max();
 }
 
-/// Pose and turn of a flight whose edges have moved.
+/// Updates pose and turn of a flight whose edges have moved.
 void place(Flight& flight) {
     const Edge& first = flight.edges.front();
     const Edge& last = flight.edges.back();
@@ -73,7 +73,7 @@ void place(Flight& flight) {
     flight.pose.yaw_rad = up ? std::atan2(-down.y(), -down.x()) : std::atan2(down.y(), down.x());
 }
 
-/// Its edges are those that are followed; how many there still are.
+/// Copies the tracked edges into the flight; returns how many are left.
 int refresh(const EdgeTracker& edges, Flight& flight) {
     int left = 0;
     for (Edge& edge : flight.edges) {
@@ -89,8 +89,8 @@ int refresh(const EdgeTracker& edges, Flight& flight) {
     return left;
 }
 
-/// What is seen of the far end of a flight, apart from it, begins where the flight leads: after how
-/// many of its steps. 0 = it is another flight.
+/// Number of steps of `flight` before the separately observed far end `end` begins. 0 = `end` is
+/// another flight.
 int steps_before(const Flight& end, const Flight& flight) {
     if (end.kind != flight.kind || flight.steps < 2 || !(flight.going_m > 0.0)) return 0;
     const Edge& first = flight.edges.front();
@@ -108,7 +108,7 @@ int steps_before(const Flight& end, const Flight& flight) {
     return steps <= static_cast<int>(flight.edges.size()) ? std::max(steps, 0) : 0;
 }
 
-/// The flight with what was seen of its far end instead of its own steps there.
+/// Replaces the steps at the far end of the flight by the separately observed ones.
 void take_far_end(const Flight& end, int steps_before, Flight& flight) {
     flight.edges.resize(static_cast<std::size_t>(steps_before));
     flight.edges.insert(flight.edges.end(), end.edges.begin(), end.edges.end());
@@ -154,7 +154,7 @@ void FlightTracker::update(std::span<const Flight> seen,
             continue;
         }
         FlightTrack& track = add();
-        // `take` fills it: what is there now is nothing, found by no look.
+        // `take` fills it; until then no observation has found it.
         track.flight.tracked = {.id = ids.next(), .observations = 0};
         track.flight.going_m = track.flight.riser_m = track.flight.width_m = std::nan("");
         take(seen[i], time_ns, track);
@@ -227,8 +227,8 @@ void FlightTracker::take(const Flight& seen, std::int64_t time_ns, FlightTrack& 
     track.missed = track.place_seen = 0;
 }
 
-/// It has lost its edges, or is not found any more where it is looked at, or its edges are those of
-/// others now: a machine that has climbed it has it below.
+/// True if the flight has lost its edges, is visible but no longer found, or if other flights have
+/// taken its edges (for example after the machine has climbed it).
 bool FlightTracker::is_over(int edges_left, const Terrain& terrain, FlightTrack& track) const {
     if (track.flight.tracked.seen_now) return false;
     ++track.missed;

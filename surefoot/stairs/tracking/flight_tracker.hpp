@@ -15,27 +15,27 @@
 
 namespace surefoot::stairs {
 
-/// A flight over several looks.
+/// A tracked flight.
 struct FlightTrack {
     static constexpr int kMaxSteps = 64;
 
-    /// As the last look that found `flight.steps` steps has it, with the means of all looks.
+    /// From the last observation with `flight.steps` steps, with the means of all observations.
     Flight flight;
     ObservationWeight riser;
     RobustMean going;
     ObservationWeight width;
-    /// How often each number of steps was found, the last looks counting most.
+    /// How often each number of steps was found; recent observations weigh most.
     std::array<float, kMaxSteps + 1> votes{};
     bool shown = false;
     int missed = 0;
-    int place_seen = 0;  ///< of the looks in a row that did not find it, those that see its place
+    int place_seen = 0;  ///< observations since the last match that see its place
 };
 
-/// Follows flights: two are the same where most of their edges are. Rules: FeatureTracker.
+/// Tracks flights. Two flights match if most of their edges match. Rules: see FeatureTracker.
 class FlightTracker {
   public:
     explicit FlightTracker(const TrackingConfig& config) : config_(config) {}
-    /// Edges of `seen` have the ids of `edges`.
+    /// The edges of `seen` carry the ids of `edges`.
     void update(std::span<const Flight> seen,
                 const EdgeTracker& edges,
                 const Terrain& terrain,
@@ -43,8 +43,8 @@ class FlightTracker {
                 bool first,
                 IdCounter& ids);
     void forget();
-    /// Those that are shown, nearest first; `out` keeps its memory. What was seen of a flight's far
-    /// end apart from it is a part of it.
+    /// Writes the shown flights, nearest first; `out` keeps its memory. A separate track of a
+    /// flight's far end is written as a part of that flight.
     void write(const Eigen::Vector2d& stance_m, std::vector<Flight>& out);
 
   private:
@@ -54,7 +54,7 @@ class FlightTracker {
         std::size_t seen = 0;
     };
 
-    /// A track that is the far end of another one's flight.
+    /// A track that is the far end of the flight of another track.
     struct FarEnd {
         std::size_t track = 0;
         std::size_t host = 0;
@@ -63,7 +63,7 @@ class FlightTracker {
     void pair_up(std::span<const Flight> seen);
     void take(const Flight& seen, std::int64_t time_ns, FlightTrack& track) const;
     [[nodiscard]] bool is_over(int edges_left, const Terrain& terrain, FlightTrack& track) const;
-    /// Tracks keep the memory of their edges when they go.
+    /// A removed track keeps the memory of its edges for later use.
     void remove(std::size_t track);
     FlightTrack& add();
 

@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNear_m = 0.3;  ///< no two doors lie so near to each other
+constexpr double kNear_m = 0.3;  ///< two doors are never so close to each other
 
 double square(double value) {
     return value * value;
 }
 
-/// Moves a pose; seen from the other side it is a new one.
+/// Moves a pose by `share`. A pose seen from the other side replaces it.
 void move(const FeaturePose& observation, double share, FeaturePose& pose) {
     const double turn_rad =
         std::remainder(observation.yaw_rad - pose.yaw_rad, 2.0 * std::numbers::pi);
@@ -61,7 +61,7 @@ void write_sigmas(const ObservationWeight& width, const ObservationWeight& sill,
     mean.width_sigma_m = width.sigma();
     mean.sill_sigma_m = sill.sigma();
 }
-/// The way through a door drifts with the machine, its width does not.
+/// The direction through a door drifts with the machine, its width does not.
 void let_drift(const Drift&, double, ObservationWeight&, const Door&) {}
 
 void take_mean(const LineFeature& observation,

@@ -14,8 +14,8 @@
 
 namespace surefoot::stairs {
 
-/// Follows what has a place and hardly an extent: doors, sills. Two are the same where their
-/// middles lie within 0.3 m. Rules: FeatureTracker.
+/// Tracks features with a position and almost no extent: doors and sills. Two features match if
+/// their middles lie within 0.3 m. Rules: see FeatureTracker.
 template <typename Place>
 class LocatedFeatureTracker {
   public:
@@ -27,16 +27,16 @@ class LocatedFeatureTracker {
                 bool first,
                 IdCounter& ids);
     void forget() { tracks_.clear(); }
-    /// Those that are shown, nearest first.
+    /// Writes the shown features, nearest first.
     void write(const Eigen::Vector2d& stance_m, std::vector<Place>& out);
 
   private:
     struct Track {
         Place place;
-        ObservationWeight across;  ///< of doors the width, of sills where they lie
-        ObservationWeight height;  ///< of the sill
+        ObservationWeight across;  ///< doors: width; sills: position across
+        ObservationWeight height;  ///< height of the sill
         bool shown = false;
-        int place_seen = 0;  ///< looks in a row that see its place and do not find it
+        int place_seen = 0;  ///< consecutive observations that see the place but not the feature
     };
 
     void take(const Place& seen, std::int64_t time_ns, Track& track) const;

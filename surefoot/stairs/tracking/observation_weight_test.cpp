@@ -39,7 +39,7 @@ TEST(ObservationWeight, a_mean_is_no_surer_than_its_looks_agree) {
     Rng rng(5);
     double mean = 0.0;
     for (int observation = 0; observation < 200; ++observation) {
-        const double off = 5.0 * kSigma * rng.normal() - mean;  // five times what it says
+        const double off = 5.0 * kSigma * rng.normal() - mean;  // five times the stated sigma
         mean += weight.take(kVar, off, 8.0) * off;
     }
     EXPECT_GT(weight.sigma(), 3.0 * kSigma);

@@ -5,13 +5,13 @@
 
 namespace surefoot::stairs {
 
-/// Mean of the last looks at a quantity whose errors change from look to look, and of which some
-/// looks know nothing although they say so.
+/// Mean of the last observations of a quantity. Their errors change between observations, and some
+/// are outliers in spite of a small stated sigma.
 ///
-/// About the weighted median (weights 1 / sigma) those looks count that lie within three of their
-/// sigmas, as they are sure: the mean of least variance. One bad look does not move it, and five in
-/// thirty hardly do. Unlike ObservationWeight it is surer than its looks: its sigma is the larger
-/// one of what theirs leave and of what their scatter leaves, with what all looks share beside it.
+/// Inliers lie within three of their sigmas of the weighted median (weights 1 / sigma). The mean is
+/// their minimum-variance mean. One outlier does not move it, five in thirty hardly do. Its sigma
+/// can be below those of the observations (unlike ObservationWeight): the larger one of the
+/// propagated sigma and the scatter, plus the shared error.
 class RobustMean {
   public:
     static constexpr int kMostObservations = 31;
@@ -21,11 +21,11 @@ class RobustMean {
         double sigma = 0.0;
     };
 
-    /// `sigma`: positive. Of more than `most_observations` (at most kMostObservations) the oldest
-    /// is forgotten.
+    /// Precondition: `sigma` is positive. Beyond `most_observations` (at most kMostObservations)
+    /// the oldest observation is dropped.
     void add(double value, double sigma, int most_observations);
     [[nodiscard]] bool empty() const { return count_ == 0; }
-    /// `shared`: one sigma of the errors that all looks share. NaN of nothing.
+    /// `shared`: one sigma of the error common to all observations. NaN if empty.
     [[nodiscard]] Mean mean(double shared) const;
 
   private:

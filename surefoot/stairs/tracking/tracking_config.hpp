@@ -6,18 +6,18 @@
 
 namespace surefoot::stairs {
 
-/// How features are followed from look to look (FeatureTracker). Looks: calls, one a mapped frame.
+/// Settings of FeatureTracker. One observation = one call = one mapped frame.
 struct TrackingConfig {
-    /// A mean is one of at most so many looks. The map has averaged already: more make places no
-    /// steadier, and lag behind what comes nearer.
+    /// A mean covers at most so many observations. The map already averages: more observations
+    /// steady it no further, and the mean lags behind an approaching feature.
     double mean_observations = 4.0;
-    /// A flight's going is one of more: it hangs on where each look sees the faces, whose errors
-    /// change from look to look, and neither drifts nor lags.
+    /// The going of a flight averages more: it depends on the visible riser faces. Their errors
+    /// change between observations, and a going neither drifts nor lags.
     int going_observations = RobustMean::kMostObservations;
     int level_observations =
         5;  ///< in a row that see level ground where a drop was, until it is gone
-    int missed_observations = 10;  ///< in a row that do not find what they see, drops excepted
-    int first_observations = 3;    ///< the same for what was found once only
+    int missed_observations = 10;  ///< consecutive misses in view that end a feature (not a drop)
+    int first_observations = 3;    ///< the same for a feature that was found only once
     double steps_observations =
         10.0;  ///< the number of steps is the one found most often in so many
 
