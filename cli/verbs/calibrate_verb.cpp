@@ -333,13 +333,13 @@ void add_calibrate_mono(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<CalibrateOptions>("mono",
                                     "calibrate one camera from images of a board",
-                                    "surefoot calibrate mono out/chess --eye left --board "
+                                    "surefoot calibrate mono out/chess --camera left --board "
                                     "chessboard:8x5:0.03 --out out/camera --json",
                                     calibrate);
     verb.option("source", o.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
         .required()
         .value("SOURCE");
-    verb.option("--eye", o.camera, "the camera to calibrate, if the source has two")
+    verb.option("--camera", o.camera, "the camera to calibrate, if the source has two")
         .one_of({"left", "right"});
     add_calibration(verb, o);
 }

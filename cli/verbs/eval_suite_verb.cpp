@@ -123,7 +123,7 @@ class SuiteRun {
 void print_summary(std::span<const SuiteRow> rows) {
     fmt::print("{:<24}{:>8}{:>6}{:>6}{:>10}{:>11}{:>9}{:>12}{:>8}{:>9}\n",
                "scene",
-               "carrier",
+               "motion model",
                "noise",
                "cases",
                "ATE mm",
@@ -205,14 +205,14 @@ void add_eval_suite(VerbGroup verbs) {
                s.quick,
                "run a few short scenes only, for a check after each change of the code");
     const Option thesis = suite.flag(
-        "--thesis",
+        "--lange2016",
         s.thesis,
         "run the experiments of the reference thesis (Lange 2016) on rebuilt scenes instead, and "
         "compare its values with ours: thesis.html, thesis.json, thesis.csv");
     suite
         .option("--runs",
                 s.runs,
-                "--thesis: names of the experiments, separated by commas (default: all)")
+                "--lange2016: names of the experiments, separated by commas (default: all)")
         .separated_by_commas()
         .value("NAMES")
         .needs(thesis);
@@ -223,7 +223,7 @@ void add_eval_suite(VerbGroup verbs) {
         .separated_by_commas()
         .value("NAMES");
     suite
-        .option("--carriers",
+        .option("--motion-models",
                 s.motion_models,
                 "motion models that move the camera through each scene; scene = the one in the "
                 "scene file (default). A combination that is not possible is named and left out")

@@ -166,7 +166,7 @@ void add_gate(VerbGroup verbs) {
                 o.explain_file,
                 "picture of the footprint, the corridor and the deciding cell")
         .value("F.png");
-    verb.option("--vouch",
+    verb.option("--attest",
                 o.attestation_radius_m,
                 "operator attestation: radius around base_link within which ground that was not "
                 "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "

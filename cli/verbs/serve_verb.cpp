@@ -614,7 +614,7 @@ Status Service::run() {
     Channel channel(std::move(*writer));
     GateChild::Start how{gate_arguments(options_, path), {}, *key};
     if (options_.attestation_radius_m > 0.0)
-        how.first_arguments = {"--vouch", fmt::format("{}", options_.attestation_radius_m)};
+        how.first_arguments = {"--attest", fmt::format("{}", options_.attestation_radius_m)};
     auto gate = GateChild::start(std::move(how));
     if (!gate) return gate.error();
     if (auto introduced = introduce(**source, loaded->access, gate->port()); !introduced)
@@ -682,7 +682,7 @@ void add_serve(VerbGroup verbs) {
         "serve",
         "run the whole chain live, with the gate process beside it, which answers over a WebSocket "
         "(docs/reference/rosbridge.md)",
-        "surefoot serve sim:walk_floor --vouch 1 --walk 9,9 --port 0 --once "
+        "surefoot serve sim:walk_floor --attest 1 --walk 9,9 --port 0 --once "
         "--set sim.sensor=analytic",
         serve);
     verb.option("source", o.source, "the source; see 'surefoot run --help'").required();
@@ -753,7 +753,7 @@ void add_serve(VerbGroup verbs) {
                 "largest number of messages per second of one client of the gate")
         .positive()
         .value("HZ");
-    verb.option("--vouch",
+    verb.option("--attest",
                 o.attestation_radius_m,
                 "operator attestation: radius around the machine within which ground that was not "
                 "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "

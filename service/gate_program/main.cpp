@@ -312,7 +312,7 @@ int main_with_arguments(int argc, char** argv) {
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
         ->type_name("HZ");
-    app.add_option("--vouch",
+    app.add_option("--attest,--vouch",
                    options.attestation_radius_m,
                    "operator attestation, given once when the gate is ready: radius around the "
                    "machine within which ground that was not measured counts as level. At most "

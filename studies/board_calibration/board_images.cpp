@@ -106,7 +106,7 @@ Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::st
     if (two_cameras && camera.empty()) {
         return usage_error(
             fmt::format("{}: the folder has images of two cameras (left*, right*); use calibrate "
-                        "stereo for both, or --eye left or --eye right for one of them",
+                        "stereo for both, or --camera left or --camera right for one of them",
                         folder));
     }
     std::vector<Entry> entries;

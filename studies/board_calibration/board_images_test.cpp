@@ -85,7 +85,7 @@ TEST(BoardImages, OneCameraOfTwoMustBeNamed) {
     const TemporaryFolder folder;
     write_grey(folder / "left1.png", 1);
     write_grey(folder / "right1.png", 101);
-    EXPECT_NE(given(folder.path(), false).error.find("--eye"), std::string::npos);
+    EXPECT_NE(given(folder.path(), false).error.find("--camera"), std::string::npos);
     const Given right = given(folder.path(), false, "right");
     ASSERT_EQ(right.images.size(), 1U) << right.error;
     EXPECT_EQ(right.images[0].left.at(0, 0), 101);

@@ -42,9 +42,9 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
                         session.address));
     }
     if (!session.stereo && session.camera.empty()) {
-        return usage_error(
-            fmt::format("{}: the device has two cameras; choose one with --eye left or --eye right",
-                        session.address));
+        return usage_error(fmt::format(
+            "{}: the device has two cameras; choose one with --camera left or --camera right",
+            session.address));
     }
     auto live = io::LiveCamera::open(std::move(device),
                                      *address,

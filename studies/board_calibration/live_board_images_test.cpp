@@ -92,7 +92,7 @@ TEST(LiveBoards, SayWhatIsMissing) {
     EXPECT_NE(no_size.status.error().message.find("WIDTHxHEIGHT"), std::string::npos);
     const Session no_camera = held(camera_with(1), {.address = "/dev/fake@32x8", .stereo = false});
     ASSERT_FALSE(no_camera.status);
-    EXPECT_NE(no_camera.status.error().message.find("--eye"), std::string::npos);
+    EXPECT_NE(no_camera.status.error().message.find("--camera"), std::string::npos);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 namespace surefoot::app {
 
-/// `surefoot eval suite --thesis`: repeats the experiments of the reference thesis (Lange 2016).
+/// `surefoot eval suite --lange2016`: repeats the experiments of the reference thesis (Lange 2016).
 /// Returns the exit code.
 int eval_thesis(const EvalSuiteOptions& options);
 

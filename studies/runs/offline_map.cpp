@@ -115,8 +115,8 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
                                         std::vector<std::string>& assumed) {
     const double limit_m = kTenthMm_m * machine.limits.attestation_radius_tenth_mm;
     if (!(radius_m <= limit_m)) {
-        return usage_error(
-            fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
+        return usage_error(fmt::format(
+            "--attest {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
     }
     gate::AttestedArea area;
     area.active = true;

@@ -332,7 +332,8 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (record.waited_frames > 0) {
         text += fmt::format(
             "the odom frame starts {} frames after the source, because these frames were too "
-            "bright, too dark or without ground (mount.wait_for_exposure_s, mount.wait_for_ground_s, "
+            "bright, too dark or without ground (mount.wait_for_exposure_s, "
+            "mount.wait_for_ground_s, "
             "mount.wait_for_search_s)\n",
             record.waited_frames);
     }

@@ -114,7 +114,8 @@ Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
     }
     if (scenes.empty())
         return usage_error(
-            "--carriers: none of these motion models can follow the paths of these scenes; give "
+            "--motion-models: none of these motion models can follow the paths of these scenes; "
+            "give "
             "another motion model or scene");
     return scenes;
 }

@@ -90,7 +90,7 @@ TEST(SuitePlan, AWayThatACarrierCannotGoIsLeftOut) {
     options.scenes = {"walk_descend_backwards"};
     const auto none = plan_suite(options, {});
     ASSERT_FALSE(none.ok());
-    EXPECT_NE(none.error().message.find("--carriers"), std::string::npos);
+    EXPECT_NE(none.error().message.find("--motion-models"), std::string::npos);
 }
 
 TEST(SuitePlan, ImpossibleChoicesAreSentences) {

@@ -221,7 +221,7 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "variance") return millimetre_style("Sigma of the height");
     if (name == "drift") return millimetre_style("Horizontal drift");
     if (name == "clearance") return plain_style("Clearance", "m", ColorMap::magma);
-    if (name == "count") return plain_style("Count", "looks", ColorMap::viridis);
+    if (name == "count") return plain_style("Count", "observations", ColorMap::viridis);
     if (name == "confidence") return share_style("Confidence");
     if (name == "density_ratio") return plain_style("Density ratio", "", ColorMap::magma);
     if (name == "normal_x") return direction_style("Normal, x");
