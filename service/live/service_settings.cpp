@@ -16,12 +16,30 @@ namespace {
 
 /// Longer suffixes first, because "_m_s2" also ends with "_s2".
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kUnits{
-    {{"_m_s2", "m/s\u00b2"}, {"_deg_s", "deg/s"}, {"_rad_s", "rad/s"},   {"_sigmas", "sigma"},
-     {"_sigma", "sigma"},    {"_percent", "%"},   {"_frames", "frames"}, {"_cells", "cells"},
-     {"_observations", "observations"},    {"_m_s", "m/s"},     {"_px2", "px\u00b2"},  {"_deg", "deg"},
-     {"_rad", "rad"},        {"_m2", "m\u00b2"},  {"_mm", "mm"},         {"_ms", "ms"},
-     {"_ns", "ns"},          {"_px", "px"},       {"_hz", "Hz"},         {"_mb", "MB"},
-     {"_dn", "grey values"}, {"_m", "m"},         {"_s", "s"},           {"_g", "g"}}};
+    {{"_m_s2", "m/s\u00b2"},
+     {"_deg_s", "deg/s"},
+     {"_rad_s", "rad/s"},
+     {"_sigmas", "sigma"},
+     {"_sigma", "sigma"},
+     {"_percent", "%"},
+     {"_frames", "frames"},
+     {"_cells", "cells"},
+     {"_observations", "observations"},
+     {"_m_s", "m/s"},
+     {"_px2", "px\u00b2"},
+     {"_deg", "deg"},
+     {"_rad", "rad"},
+     {"_m2", "m\u00b2"},
+     {"_mm", "mm"},
+     {"_ms", "ms"},
+     {"_ns", "ns"},
+     {"_px", "px"},
+     {"_hz", "Hz"},
+     {"_mb", "MB"},
+     {"_dn", "grey values"},
+     {"_m", "m"},
+     {"_s", "s"},
+     {"_g", "g"}}};
 
 constexpr const char* kSpeed = "service.speed";
 
