@@ -57,7 +57,8 @@ class Climb {
         return Eigen::Rotation2Dd(-angle_rad_) * (world_m - Eigen::Vector2d(distance_m_, 0.0)) -
                Eigen::Vector2d(0.0, lateral_m_);
     }
-    /// Whether a place is at least 0.1 m from the walls of the flight, and observed from the path.
+    /// Whether a place is at least 0.1 m from the walls of the flight, on the judged part of the
+    /// path.
     [[nodiscard]] bool on_the_way(const Eigen::Vector2d& place_m) const {
         return place_m.x() > -kBefore_m + 0.7 && place_m.x() < length_m_ + kBeyond_m &&
                std::abs(place_m.y()) < half_width_m_ - 0.1;
