@@ -1,6 +1,6 @@
-# The two commands of the README, and what is long. Set-up included: both work on a fresh Debian 12.
+# The two commands of the README (demo, test), and long jobs. Each installs its packages first and works on a fresh Debian 12.
 SHELL := /bin/bash
-# One cache for all clones: paths below the clone count as relative.
+# Paths below the clone are relative for ccache, so all clones share one cache.
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_NOHASHDIR := true
 BUILD := build/release
@@ -13,7 +13,7 @@ JOBS ?= $(shell nproc)
 setup:
 	@tools/setup develop
 
-# Tests, benchmarks and lab/ too; `make demo` leaves them out.
+# Builds tests, benchmarks and lab/ too; `make demo` leaves them out.
 build: setup
 	@tools/build_page
 	@grep -qs '^SUREFOOT_DEVELOPER:BOOL=ON' $(BUILD)/CMakeCache.txt || cmake --preset release -DSUREFOOT_DEVELOPER=ON > /dev/null
@@ -33,9 +33,9 @@ demo:
 test: build
 	@tools/setup page
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
-	@echo "$$(grep -cE 'skipped 1 check' $(BUILD)/Testing/Temporary/LastTest.log) checks skipped for want of data"
+	@echo "$$(grep -cE 'skipped 1 check' $(BUILD)/Testing/Temporary/LastTest.log) checks skipped, data missing"
 
-# Readers, gate, its service and log, REX link and stairs under AddressSanitizer and UndefinedBehaviorSanitizer.
+# Tests of readers, gate, gate process, audit log, REX link and stairs with AddressSanitizer and UndefinedBehaviorSanitizer.
 asan: setup
 	@test -f build/asan-ubsan/build.ninja || cmake --preset asan-ubsan > /dev/null
 	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test stairs_test gate_process_test rex_link_test
@@ -44,7 +44,7 @@ asan: setup
 check:
 	@tools/check
 
-# The documentation site and the C++ reference, in build/docs. Broken links and errors in comments of headers stop the build.
+# Builds the documentation site and the C++ reference in build/docs. Fails on broken links and on errors in header comments.
 docs:
 	@tools/setup docs
 	@mkdocs build --strict --quiet

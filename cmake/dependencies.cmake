@@ -1,4 +1,4 @@
-# Everything comes from Debian 12 (tools/setup names the packages).
+# All dependencies are packages of Debian 12; tools/setup lists them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(${CMAKE_CURRENT_LIST_DIR}/opencv_modules.cmake)
 find_package(Ceres 2.1 REQUIRED)

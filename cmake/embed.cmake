@@ -1,5 +1,5 @@
-# surefoot_embed(OUTPUT PATTERN HEADER NAMESPACE TYPE FUNCTION): files that travel inside the program,
-# so that it needs no installed data. See embed_resources.cmake.
+# surefoot_embed(OUTPUT PATTERN HEADER NAMESPACE TYPE FUNCTION): embeds files into the program,
+# so that it needs no installed data. See embed_resources.cmake for the arguments.
 function(surefoot_embed output pattern header namespace type function)
   file(GLOB files CONFIGURE_DEPENDS ${pattern})
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_resources.cmake)

@@ -1,5 +1,5 @@
-# Writes OUTPUT: a C++ source that defines NAMESPACE::FUNCTION(), declared in HEADER, a list of TYPE
-# {name, text} with every file that matches PATTERN. A name is folder/file.
+# Writes OUTPUT, a C++ source that defines NAMESPACE::FUNCTION() (declared in HEADER). It returns a list of
+# TYPE {name, text} with every file that matches PATTERN. A name is folder/file.
 file(GLOB files ${PATTERN})
 list(SORT files)
 set(entries "")

@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 get_property(_modules GLOBAL PROPERTY SUREFOOT_MODULES)
 install(TARGETS ${_modules} EXPORT surefoot_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-# Helpers of tests and headers of OpenCV's types are not for users.
+# Test helpers and headers that need OpenCV are not installed.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/surefoot DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*_testing.hpp" EXCLUDE PATTERN "charuco.hpp" EXCLUDE)
 install(EXPORT surefoot_targets NAMESPACE surefoot:: FILE surefoot-targets.cmake

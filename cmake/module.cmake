@@ -1,6 +1,6 @@
 # surefoot_module(NAME [DEPS module...] [LINK target...] [OPENCV component...] [NOT_INSTALLED])
-# One static library per module: every *.cpp beside the CMakeLists.txt and in the rooms below it, and
-# one test program of its *_test.cpp. A thing is thing.hpp, thing.cpp, thing_test.cpp: adding one needs no edit here.
+# One static library per module, from every *.cpp in the folder of the CMakeLists.txt and below, and
+# one test program from its *_test.cpp. New files need no edit here.
 function(surefoot_module name)
   cmake_parse_arguments(ARG "NOT_INSTALLED" "" "DEPS;LINK;OPENCV;TEST_DEPS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
@@ -59,7 +59,7 @@ function(surefoot_test name)
   if(SUREFOOT_SANITIZE)
     set(test_timeout_s 1800)  # sanitizers slow code down five to twenty times
   endif()
-  # Tests run in the source folder; paths in the code are relative, so that ccache serves every clone.
+  # Tests run in the source folder. Paths in the code are relative, so that all clones share the ccache.
   gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     PROPERTIES TIMEOUT ${test_timeout_s} ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1")

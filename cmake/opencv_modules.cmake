@@ -1,6 +1,6 @@
-# OpenCV by single modules: Debian's OpenCVConfig.cmake comes only with the whole libopencv-dev (673 MB),
-# the modules that we use are half of that. Their headers flood C++20 builds with deprecated-enum
-# warnings, hence SYSTEM.
+# Links single OpenCV modules. Debian's OpenCVConfig.cmake needs the whole libopencv-dev (673 MB);
+# the used modules are half of that. SYSTEM suppresses the many deprecated-enum warnings of their
+# headers in C++20.
 find_path(SUREFOOT_OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 foreach(_module core imgproc imgcodecs calib3d features2d video videoio aruco)
   find_library(SUREFOOT_OPENCV_${_module} opencv_${_module} REQUIRED)

@@ -3,9 +3,9 @@ if(SUREFOOT_SANITIZE)
   add_compile_options(-fsanitize=${_sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   add_link_options(-fsanitize=${_sanitizers})
   if("undefined" IN_LIST SUREFOOT_SANITIZE)
-    # Not part of it, but undefined: a number beyond all integers as one.
+    # Not part of "undefined": the conversion of a floating-point number beyond the integer's range.
     add_compile_options(-fsanitize=float-cast-overflow)
-    # core.CheckedIndex asks whether it really stops.
+    # The test core.CheckedIndex checks that this sanitizer stops the program.
     add_compile_definitions(SUREFOOT_CHECKS_FLOAT_CASTS)
   endif()
 endif()

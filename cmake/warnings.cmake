@@ -1,4 +1,4 @@
-# One interface target that carries how we compile: warnings, and IEEE arithmetic without contraction,
+# Compile options of all our targets: warnings, and IEEE arithmetic without contraction,
 # because map and gate decisions depend on the last bit.
 add_library(surefoot_compile_options INTERFACE)
 target_compile_options(surefoot_compile_options INTERFACE

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a user gives to one verb alone, joystick scripts and lists of stairs, from any
-// bytes. SUREFOOT_FUZZ_READER names the function under test.
+// Files that only one verb of the command line reads: joystick scripts and lists of stairs. Input:
+// any bytes. SUREFOOT_FUZZ_READER names the function under test.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,7 +14,8 @@ namespace {
 
 using namespace surefoot;
 
-/// Times do not go back, and the joystick says at each what its line says.
+/// The times of an accepted script never decrease, and at each time the joystick returns the
+/// command of its line.
 [[maybe_unused]] void fuzz_joystick_script(std::string_view bytes) {
     const auto script = app::parse_joystick_script(bytes, "f");
     must_explain(script);
@@ -28,7 +29,7 @@ using namespace surefoot;
     }
 }
 
-/// What is accepted has a list, and no count below 0.
+/// An accepted file has a list, and no count is negative.
 [[maybe_unused]] void fuzz_stairs_file(std::string_view bytes) {
     const auto listed = app::parse_stairs(bytes, "f");
     must_explain(listed);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as an audit log give a summary, or damage with a message. The hashes would keep the
-// fuzzer out of the payloads, so the first byte chooses: the bytes are a file, or the payload of a
-// valid frame. Each readable record is decided again by the gate.
+// Any bytes as an audit log give a summary, or damage with a message. The first byte chooses
+// whether the bytes are a whole file or the payload of a valid frame, because the fuzzer cannot
+// guess the hashes of frames. The gate decides each readable record again.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -16,7 +16,7 @@ namespace {
 using namespace surefoot;
 using namespace surefoot::gate_process;
 
-/// One that may take a step forward.
+/// A machine that may only step forward.
 Machine small_machine() {
     Machine m;
     m.sole_depth_tenth_mm = 9900;
@@ -47,7 +47,7 @@ const FileHead& file_head() {
     return head;
 }
 
-/// A file with a head and one frame of this payload.
+/// A file with a valid head and one frame with this payload.
 std::string framed(FrameKind kind, FrameEncoding encoding, std::string_view payload) {
     static const std::string head = format_file_head(file_head());
     const auto size = static_cast<std::uint32_t>(head.size());
@@ -63,7 +63,7 @@ std::string framed(FrameKind kind, FrameEncoding encoding, std::string_view payl
     return file;
 }
 
-/// A record of the machine above; the search need not find its hash.
+/// A record of the machine above. The fuzzer does not have to guess the machine's hash.
 std::string own_record(std::string_view bytes) {
     std::string record(sizeof(std::uint64_t), '\0');
     std::memcpy(record.data(), &file_head().machine_hash, sizeof(std::uint64_t));

@@ -20,7 +20,7 @@ namespace {
 
 using namespace surefoot;
 
-/// A file of this extension, gone with the program.
+/// A temporary file with this extension; removed at the end of the program.
 class File {
   public:
     explicit File(const char* extension)
@@ -52,7 +52,7 @@ File& file_of(std::uint8_t choice) {
     return files[choice % std::size(files)];
 }
 
-/// All points, block by block, or nothing where that fails.
+/// Reads all points block by block. Returns false on an error.
 bool read_blocks(io::CloudStream& stream, std::vector<Eigen::Vector3d>& points_m) {
     points_m.clear();
     const Status status = stream.each_block([&](const io::PointCloud& block) -> Status {

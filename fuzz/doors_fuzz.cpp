@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decides who may enter, from any bytes: the file of tokens, the key file, the head of a
-// request to the gate's socket, and the names by which a browser reaches the page. Nobody becomes
-// more than the tokens say. SUREFOOT_FUZZ_READER names the function under test.
+// Access control with any bytes: the token file, the key file, the head of a request to the gate's
+// socket, and the host names of the page. No input gives a role that the tokens do not grant.
+// SUREFOOT_FUZZ_READER names the function under test.
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -31,7 +31,8 @@ std::string_view take_line(std::string_view& rest) {
     return line;
 }
 
-/// Accepted tokens are usable, give each its role, and read back from what is written of them.
+/// Each accepted token is usable and gives its role. Writing and reading the tokens again returns
+/// the same ones.
 [[maybe_unused]] void fuzz_tokens(std::string_view bytes) {
     const auto access = parse_tokens(bytes, "f");
     must_explain(access);
@@ -46,8 +47,8 @@ std::string_view take_line(std::string_view& rest) {
     must(again.ok() && *again == *access);
 }
 
-/// Three lines: target, Origin, Authorization (an empty one: the request has none). Only the
-/// operator's whole token makes an operator, and a page of a strange origin never enters.
+/// The input has three lines: target, Origin, Authorization (empty = no such header). Only the
+/// whole operator token gives the role operator. A page of a foreign origin is never admitted.
 [[maybe_unused]] void fuzz_admission(std::string_view bytes) {
     static const Access access{"", kRiderToken, kOperatorToken, Role::observer};
     static const std::vector<std::string> origins{"https://robot.example"};
@@ -69,7 +70,7 @@ std::string_view take_line(std::string_view& rest) {
     must(!knock.origin || *knock.origin == origins[0] || is_loopback_origin(*knock.origin));
 }
 
-/// A key that is accepted is 32 digits, and says all of them.
+/// An accepted key has 32 digits, and the key contains all of them.
 [[maybe_unused]] void fuzz_key_file(std::string_view bytes) {
     static const int file = ::memfd_create("key", 0);
     static const std::string path = "/proc/self/fd/" + std::to_string(file);

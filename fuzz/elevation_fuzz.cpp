@@ -30,7 +30,7 @@ constexpr int kMostOperations = 16;
 
 template <typename T>
 bool same_cells(const grid::SlidingLayer<T>& a, const Image<T>& b) {
-    // Mostly so, and quick; NaN may have other bits.
+    // Fast path for equal bytes. The loop below accepts different bit patterns of NaN.
     if (std::memcmp(a.data(), b.data(), b.size() * sizeof(T)) == 0) return true;
     for (std::size_t i = 0; i < b.size(); ++i) {
         const bool both_unknown = a.data()[i] != a.data()[i] && b.data()[i] != b.data()[i];
@@ -77,7 +77,7 @@ ElevationConfig config_of(Choices& choices) {
     return config;
 }
 
-/// What the last byte of an input says of the lines of sight; 0 is a map without clean-up.
+/// Decodes the last input byte into the settings of the visibility clean-up; 0 = no clean-up.
 void set_sight(std::uint8_t byte, ElevationConfig& config) {
     config.visibility.cleanup = (byte & 1U) != 0U;
     config.visibility.drops = (byte & 2U) == 0U;
@@ -138,8 +138,8 @@ class Play {
         plain_.follow(T_odom_body_, covariance);
     }
 
-    /// Points around the machine, many of them in a few cells, as one sees ground and what stands
-    /// on it; some are none.
+    /// Fuses points around the machine, many of them in a few cells, like ground and obstacles on
+    /// it. Some points are invalid.
     void cloud() {
         std::vector<MeasuredPoint> points;
         const int patches = 1 + choices_.below(4);
@@ -175,8 +175,8 @@ class Play {
              "counts of a cloud differ from the plain map");
     }
 
-    /// Level ground in most cells of the window, seen from above its middle: lines of sight pass
-    /// over and through what is remembered higher up.
+    /// Fuses level ground in most cells of the window, seen from above its middle. Rays pass over
+    /// higher remembered cells and through them.
     void floor() {
         const Pose T_body_sensor{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
         const Pose T_sensor_odom = (T_odom_body_ * T_body_sensor).inverse();
@@ -234,7 +234,7 @@ class Play {
              "counts of an image differ from the plain map");
     }
 
-    /// A remembered patch somewhere near the window, of one kind of cell with a few holes.
+    /// Inserts a remembered patch near the window: cells of one kind with a few holes.
     void region() {
         grid::MapRegion region;
         region.resolution_m = config_.resolution_m;
@@ -267,14 +267,14 @@ class Play {
         const auto filled = map_.insert(region, T_odom_body_, placement);
         const OnTarget other(target_);
         const auto again = twin_.insert(region, T_odom_body_, placement);
-        must(filled.ok() == again.ok(), "a region is refused by one of two equal maps");
-        must(!(filled.ok() && region.problem()), "an impossible region is taken");
+        must(filled.ok() == again.ok(), "only one of two equal maps accepts a region");
+        must(!(filled.ok() && region.problem()), "the map accepted an invalid region");
         must_explain(filled);
         if (!filled.ok()) return;
-        must(*filled == *again, "another number of cells was filled by one of two equal maps");
+        must(*filled == *again, "two equal maps filled different numbers of cells");
         must(config_.height_drift.enabled ||
                  *filled == plain_.insert(region, T_odom_body_, placement),
-             "another number of cells was filled");
+             "the map and the plain map filled different numbers of cells");
     }
 
     void clear() {
@@ -283,7 +283,7 @@ class Play {
         plain_.clear();
     }
 
-    /// Mostly forward, sometimes back, sometimes years.
+    /// Time of the next frame: usually later, sometimes earlier, sometimes by years.
     std::int64_t next_time_ns() {
         constexpr std::int64_t kYear_ns = 31'536'000'000'000'000;
         const int way = choices_.below(16);
@@ -292,19 +292,20 @@ class Play {
     }
 
     void compare() const {
-        must(map_.geometry().origin_m == plain_.geometry().origin_m, "the window went elsewhere");
+        must(map_.geometry().origin_m == plain_.geometry().origin_m,
+             "the windows of map and plain map differ");
         if (config_.height_drift.enabled) {
             compare_aligned();
             return;
         }
         const grid::MapRegion plain = plain_.layers();
         must(same_layers(map_.layers(), plain), "the map differs from the plain map");
-        must(same_layers(twin_.layers(), plain), "executor or target change the map");
+        must(same_layers(twin_.layers(), plain), "the map depends on executor or target");
         const Image<float> free_above_m = plain_.free_above_m();
         must(same_cells(map_.layers().free_above_m, free_above_m),
-             "lines of sight lie elsewhere than over the plain map");
+             "free-space rays differ from the plain map");
         must(same_cells(twin_.layers().free_above_m, free_above_m),
-             "executor or target change the lines of sight");
+             "free-space rays depend on executor or target");
         for (std::size_t i = 0; i < plain.height_m.size(); ++i) must_be_whole(plain, i);
     }
 
@@ -314,9 +315,10 @@ class Play {
         must(std::memcmp(&a.offset_m, &b.offset_m, sizeof(double)) == 0 &&
                  std::memcmp(&a.sigma_m, &b.sigma_m, sizeof(double)) == 0 && a.cells == b.cells &&
                  a.moved_cells == b.moved_cells && a.reason == b.reason,
-             "executor or target change what is said of the height drift");
-        must(std::isfinite(a.offset_m) && a.sigma_m >= 0.0, "a height drift is no number");
-        grid::MapRegion twin = plain_.layers();  // of the same size
+             "the height drift depends on executor or target");
+        must(std::isfinite(a.offset_m) && a.sigma_m >= 0.0,
+             "a height drift is not finite or its sigma is negative");
+        grid::MapRegion twin = plain_.layers();  // any region of the same size
         const ElevationLayers& layers = twin_.layers();
         twin.height_m = layers.height_m.copy();
         twin.height_var_m2 = layers.height_var_m2.copy();
@@ -328,10 +330,10 @@ class Play {
         twin.clearance_m = layers.clearance_m.copy();
         twin.confidence = layers.confidence.copy();
         twin.density_ratio = layers.density_ratio.copy();
-        must(same_layers(map_.layers(), twin), "executor or target change the map");
+        must(same_layers(map_.layers(), twin), "the map depends on executor or target");
         const Image<float> free_above_m = layers.free_above_m.copy();
         must(same_cells(map_.layers().free_above_m, free_above_m),
-             "executor or target change the lines of sight");
+             "free-space rays depend on executor or target");
         for (std::size_t i = 0; i < twin.height_m.size(); ++i) must_be_whole(twin, i);
     }
 
@@ -353,21 +355,21 @@ class Play {
         if (std::isnan(height_m)) {
             must(!counted && map.seen_ns.data()[i] == 0 && std::isnan(var_m2) &&
                      std::isnan(drift_m) && std::isnan(confidence),
-                 "an unknown cell claims to know something");
+                 "a cell of unknown height has other data");
             return;
         }
         must(std::isfinite(height_m), "a height is not finite");
         must(var_m2 > 0.0F, "a variance is not positive");
         must(drift_m >= 0.0F, "a drift is negative or NaN");
-        must(confidence >= 0.0F && confidence <= 1.0F, "a confidence is no share");
-        must(counted, "a height that nobody measured");
+        must(confidence >= 0.0F && confidence <= 1.0F, "a confidence is outside 0 to 1");
+        must(counted, "a cell with a height has no measurement");
     }
 
     Choices& choices_;
     int target_;
     ElevationConfig config_;
     ElevationMap map_;
-    ElevationMap twin_;  ///< blocks backwards, another instruction set
+    ElevationMap twin_;  ///< processes blocks backwards, on another instruction set
     PlainMap plain_;
     Backwards backwards_;
     Pose T_odom_body_;

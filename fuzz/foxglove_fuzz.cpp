@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary messages of a client of Foxglove, and the same bytes as news of the gate: whatever
-// comes, every text that leaves is one of the three that there are, every message is one of a
-// subscription, and no more is answered than was asked. The first byte is the time between lines,
-// which are messages.
+// Any bytes as messages of a Foxglove client and as news of the gate. Every text that the service
+// sends is one of the three known operations. Every message belongs to a subscription. The client
+// gets at most one answer per request. The first byte is the time between lines; each further line
+// is one message.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ void check(const FoxgloveClient& client, const SocketMessage& message) {
                                 kFoxgloveChannels.end(),
                                 [&](FoxgloveChannel c) { return client.listens_to(c); }));
     }
-    const Json text = Json::parse(message.bytes);  // throws where it is no JSON: a finding
+    const Json text = Json::parse(message.bytes);  // throws on invalid JSON: a finding
     must(text["op"] == "serverInfo" || text["op"] == "advertise" || text["op"] == "status");
 }
 

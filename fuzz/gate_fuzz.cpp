@@ -42,8 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bytes.into(&query.sin_yaw, sizeof query.sin_yaw);
     std::int64_t now_ns = 0;
     bytes.into(&now_ns, sizeof now_ns);
-    // Header and first cells; a valid seal half of the time, so that the search gets behind the
-    // checksum.
+    // Header and first cells. Half of the inputs get a valid checksum, so that the fuzzer reaches
+    // the code behind it.
     std::uint8_t sealed = 0;
     bytes.into(&sealed, sizeof sealed);
     bytes.into(static_cast<void*>(&map->frame_time_ns), 128);
@@ -51,6 +51,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     gate::GateHealth health;
     health.state = gate::GateState::ready;
     const gate::Verdict verdict = gate::decide(machine, query, *map, health, now_ns);
-    must(verdict.decision != gate::Decision::ok);  // a default machine may go nowhere
+    must(verdict.decision != gate::Decision::ok);  // the default machine allows no movement
     return 0;
 }

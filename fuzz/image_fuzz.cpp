@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images and camera streams from any bytes: each ends in an image of the size that its header says,
-// or in an error with a sentence. SUREFOOT_FUZZ_READER names the function under test.
+// Images and camera streams from any bytes: each gives an image of the size in its header, or an
+// error with a message. SUREFOOT_FUZZ_READER names the function under test.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -23,10 +23,10 @@ namespace {
 
 using namespace surefoot;
 
-/// Larger images only cost time; that their size is limited is tested in io.
+/// Larger images only cost time; tests of io check the size limit.
 constexpr std::int64_t kMostPixels = 1 << 22;
 constexpr int kMostFrames = 64;
-constexpr int kWidth = 16;  ///< of one eye
+constexpr int kWidth = 16;  ///< width of the left or right image
 constexpr int kHeight = 8;
 
 template <typename Image>
@@ -48,7 +48,7 @@ void read_image(std::string_view bytes) {
     read_image(bytes);
 }
 
-/// Heights from a picture: one for each pixel, none that is impossible.
+/// Heights from an image: one per pixel, each of them possible.
 [[maybe_unused]] void fuzz_dem_image(std::string_view bytes) {
     const Result<io::ImageHeader> header = io::check_image(bytes, "f");
     if (header && std::int64_t{header->width} * header->height > kMostPixels) return;
@@ -74,7 +74,7 @@ std::uint32_t crc32(std::string_view bytes) {
     return ~crc;
 }
 
-/// Damage behind right checksums, so that it reaches the decoder. (W3C PNG, 5.3)
+/// Gives damaged chunks correct checksums, so that the damage reaches the decoder (W3C PNG, 5.3).
 [[maybe_unused]] void fuzz_png(std::string_view bytes) {
     std::string png(bytes);
     for (std::size_t at = 8; at + 12 <= png.size();) {
@@ -98,7 +98,7 @@ camera::StereoRig small_rig() {
     return rig;
 }
 
-/// Takes frames until the end; a source must come to one, whatever failed in between.
+/// Reads frames to the end. A source must end, even after errors.
 void drain(camera::FrameSource& source, bool ends_at_an_error) {
     for (int i = 0; i < kMostFrames; ++i) {
         const auto frame = source.next();
@@ -119,8 +119,8 @@ void drain(camera::FrameSource& source, bool ends_at_an_error) {
     if (source) drain(**source, false);
 }
 
-/// A script of accidents and buffers from the bytes: what (one byte), flags, stamp and counter (one
-/// byte each, added up), length (two bytes), then as many of the bytes that follow.
+/// Builds a script of camera events and buffers. Each step: event (1 byte), flags (1 byte),
+/// increments of stamp and counter (1 byte each), length (2 bytes), then that many data bytes.
 [[maybe_unused]] void fuzz_live_camera(std::string_view bytes) {
     io::testing::FakeCamera camera;
     camera.width = 2 * kWidth;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes must end in a region without a problem or in an error with a sentence; what was read is
-// written to bytes that read back, and merges with itself without becoming surer.
+// Any bytes give a valid region or an error with a message. A region that was read can be written
+// and read again, and merging it with itself does not make it more certain.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,7 @@ void check(std::string_view bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     check(bytes);
-    // Almost no input has the right checksum, so what lies behind it is tried as well.
+    // Few inputs have a correct checksum, so the same bytes are tried with one as well.
     std::string sealed(bytes.substr(0, size < 8 ? 0 : size - 8));
     io::store_le(sealed, io::map_checksum(sealed));
     check(sealed);

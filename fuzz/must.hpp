@@ -8,7 +8,7 @@ namespace surefoot {
 
 /// Reports a finding and aborts if `holds` is false. `what` names the violated property; the head
 /// comment of each target lists its properties.
-inline void must(bool holds, const char* what = "what the target says at its head does not hold") {
+inline void must(bool holds, const char* what = "a property in the head comment does not hold") {
     if (holds) return;
     std::fprintf(stderr, "finding: %s\n", what);
     std::abort();
@@ -17,7 +17,7 @@ inline void must(bool holds, const char* what = "what the target says at its hea
 /// Requires that a failed result has an error message.
 template <typename Outcome>
 void must_explain(const Outcome& outcome) {
-    must(outcome.ok() || !outcome.error().message.empty(), "an error without a sentence");
+    must(outcome.ok() || !outcome.error().message.empty(), "an error without a message");
 }
 
 }  // namespace surefoot

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a browser sends to the page, from any bytes: the messages of its socket, and the names under
-// which it says it reaches the page. SUREFOOT_FUZZ_READER names the function under test.
+// Input of a browser from any bytes: messages of the page's socket, and the host names of its
+// requests. SUREFOOT_FUZZ_READER names the function under test.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -38,7 +38,7 @@ void must_be_wish(const PlaybackWish& wish) {
     must(!wish.frame || *wish.frame >= 0);
 }
 
-/// What is understood lies within what the page may ask for.
+/// Every accepted request is within the limits of the page.
 [[maybe_unused]] void fuzz_page_request(std::string_view bytes) {
     static const std::vector<std::string> layers{"elevation", "slope", "step"};
     const auto request = parse_request(bytes, layers);
@@ -53,8 +53,8 @@ bool is_plain(char c) {
            std::string_view("-.:[]%").find(c) != std::string_view::npos;
 }
 
-/// Two lines: Host and Origin. The first byte says whether the page listens beyond this machine.
-/// What a header of an answer repeats of them holds nothing but letters of a host.
+/// Two lines: Host and Origin. The first byte says whether the page listens on other interfaces
+/// than loopback. Headers of the answer repeat only characters of a host name.
 [[maybe_unused]] void fuzz_page_door(std::string_view bytes) {
     if (bytes.empty()) return;
     PageAddress page;

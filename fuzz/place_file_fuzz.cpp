@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes must end in a place without a problem or in an error with a sentence; what was read is
-// written to bytes that read back the same.
+// Any bytes give a valid place or an error with a message. A place that was read is the same after
+// writing and reading it again.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -31,7 +31,7 @@ void check(std::string_view bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     check(bytes);
-    // Almost no input has the right checksum, so what lies behind it is tried as well.
+    // Few inputs have a correct checksum, so the same bytes are tried with one as well.
     std::string sealed(bytes.substr(0, size < 8 ? 0 : size - 8));
     io::store_le(sealed, io::map_checksum(sealed));
     check(sealed);

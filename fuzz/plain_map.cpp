@@ -13,7 +13,7 @@ namespace {
 
 using namespace surefoot::elevation;
 
-// Trust in what hangs over a cell, and the weights of a look: as elevation_cells.cpp says.
+// Confidence in surfaces above a cell and weights of an observation, as in elevation_cells.cpp.
 constexpr float kFaceDensity = 3.0F;
 constexpr int kSeenAbove = 2;
 constexpr int kSureAbove = 4;
@@ -89,7 +89,8 @@ FusionCounts PlainMap::add(const camera::RectifiedRig& rig,
     if (!T_odom_body.all_finite()) return counts;
     Samples samples;
     if (DepthSampler::can(config_)) {
-        // Heights in floats are the sampler's own; what follows them is what is looked at here.
+        // Both maps use the sampler, because its heights are rounded to floats. This test compares
+        // the steps after it.
         CellSamples found;
         DepthSampler().sample(config_, rig, T_odom_body, depth, geometry_, serial(), found, counts);
         for (int block = 0; block < found.blocks(); ++block) {
@@ -177,7 +178,7 @@ void PlainMap::fuse(const Samples& samples,
     view_ = views_.look_from(T_odom_body);
     RayEndpoints ends;
     ends.reset(geometry_, camera_m);
-    std::vector<std::pair<grid::Cell, float>> agreed;  // what a look before said as well
+    std::vector<std::pair<grid::Cell, float>> agreed;  // cells that an earlier observation confirms
     for (const auto& [index, heights] : samples) {
         const auto measured = reduce_cell(config_.reduction, heights.z_m, heights.var_m2);
         if (!measured || !std::isfinite(measured->z_m) || !std::isfinite(measured->var_m2)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes must end in a value or in an error with a sentence: no crash, no endless loop, no huge
-// allocation. SUREFOOT_FUZZ_READER names the function under test.
+// Any bytes give a value or an error with a message: no crash, no endless loop, no huge allocation.
+// SUREFOOT_FUZZ_READER names the function under test.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -45,7 +45,7 @@ using namespace surefoot;
 [[maybe_unused]] void fuzz_vtk(std::string_view bytes) {
     must_explain(io::parse_vtk(bytes, "f"));
 }
-/// Pieces of a file are files: what is read whole is read piece by piece, too.
+/// Reading in pieces accepts every file that reading at once accepts.
 [[maybe_unused]] void fuzz_cloud_rows(std::string_view bytes) {
     const struct {
         std::optional<io::CloudRows> rows;
@@ -74,7 +74,7 @@ using namespace surefoot;
     const auto whole = io::parse_text_cloud(bytes, "f.txt");
     must_explain(whole);
     must_explain(io::parse_text_cloud(bytes, "f.pts"));
-    // Pieces of whole lines hold what the file holds.
+    // Reading the file in pieces of whole lines gives the same points.
     io::TextCloudParser parser("f.txt");
     std::size_t points = 0;
     bool fine = true;
@@ -114,11 +114,11 @@ using namespace surefoot;
         must(i == 0 || pose.time_ns > file->poses[i - 1].time_ns);
     }
 }
-/// Work that costs much more than reading is done for one input in so many.
+/// Expensive checks run for one input in so many.
 constexpr std::size_t kSeldom = 16;
 constexpr std::size_t kVerySeldom = 256;
 
-/// A rig that is accepted is sound, and what can be written of it reads back.
+/// An accepted rig is valid, and its written form reads back.
 void must_be_sound(const camera::StereoRig& rig, std::size_t input_bytes) {
     must(!rig.problem());
     must(io::parse_rig_yaml(io::format_rig_yaml(rig), "again").ok());
@@ -128,8 +128,8 @@ void must_be_sound(const camera::StereoRig& rig, std::size_t input_bytes) {
     }
     if (const auto text = io::format_kalibr_rig(rig); text)
         must_explain(io::parse_kalibr_rig(*text, "again"));
-    // These plan a rectification, along the border of the image: a fisheye of 672 x 376 px takes
-    // 0.3 s without sanitizers, and seconds with them.
+    // These checks plan a rectification along the image border. For a fisheye of 672 x 376 px this
+    // takes 0.3 s without sanitizers, and seconds with them.
     if (input_bytes % kVerySeldom != 0) return;
     camera::StereoRig small = rig;
     small.left.width = std::min(small.left.width, 48);
@@ -164,7 +164,7 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
     must_be_sound(io::parse_zed_rig(bytes, "f", io::ImageSize{1280, 720}), bytes);
     must_explain(io::parse_zed_rig(bytes, "f"));
 }
-/// Both cameras in one input, separated by "---" at the start of a line.
+/// Both camera files in one input, separated by "---" at the start of a line.
 [[maybe_unused]] void fuzz_ros_rig(std::string_view bytes) {
     const std::size_t cut = bytes.find("\n---\n");
     const std::string left(bytes.substr(0, cut));
@@ -186,7 +186,7 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
 [[maybe_unused]] void fuzz_orbslam_rig(std::string_view bytes) {
     must_be_sound(io::parse_orbslam_rig(bytes, "f"), bytes);
 }
-/// Any text: what it is recognised as must read it, or say why not.
+/// Any text: the reader of the recognised format must read it or return a message.
 [[maybe_unused]] void fuzz_rig_file(std::string_view bytes) {
     must_be_sound(io::parse_rig_file(std::string(bytes), "f", io::ImageSize{640, 480}), bytes);
     must_explain(io::parse_rig_file(std::string(bytes), "f"));
@@ -201,7 +201,7 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
     const auto machine = io::parse_machine(bytes, "f");
     must_explain(machine);
     if (!machine) return;
-    must(machine->machine.problem() == nullptr);  // what is accepted is usable
+    must(machine->machine.problem() == nullptr);  // an accepted machine is usable
     for (const io::Deviation& deviation : machine->deviations) {
         must(!deviation.signed_by.empty() && deviation.value != deviation.rated);
     }
@@ -211,12 +211,12 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
     must_explain(model);
     if (!model) return;
     const std::vector<double> zero(model->moving_joints().size(), 0.0);
-    for (const io::ModelLink& link : model->links) {  // one tree: every link has its place
+    for (const io::ModelLink& link : model->links) {  // every link has a place in one tree
         must(model->T_base_link(link.name, zero).all_finite());
     }
 }
-/// A small snapshot with any fields, sealed: it is not written, or what is written reads back as
-/// the same, or is refused for a value that no enumerator has.
+/// Seals a small snapshot with any fields. Either writing it fails, or it reads back the same, or
+/// reading fails because of a value without an enumerator.
 void must_come_back(std::string_view bytes) {
     static const auto snapshot = std::make_unique<grid::MapSnapshot>();
     const auto take = [&bytes](auto& value) {
@@ -245,7 +245,8 @@ void must_come_back(std::string_view bytes) {
     const auto snapshot = io::parse_snapshot(bytes, "f");
     must_explain(snapshot);
     must(!snapshot || grid::is_intact(**snapshot));
-    // A checksum hides all that lies behind it from a search; it costs 0.9 MB of hashing, too.
+    // A checksum protects the content, so the fuzzer rarely reaches it; hashing 0.9 MB is slow,
+    // too.
     if (!bytes.empty() && static_cast<std::uint8_t>(bytes.front()) % kSeldom == 0)
         must_come_back(bytes.substr(1));
 }

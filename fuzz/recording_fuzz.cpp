@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lists of a recording from any bytes: which image has which stamp, which images belong
-// together, and IMU samples. Each text ends in rows that a recording can use, or in an error with a
-// sentence. SUREFOOT_FUZZ_READER names the function under test.
+// Lists of a recording from any bytes: stamps of images, pairs of images, IMU samples. Each text
+// gives rows that a recording can use, or an error with a message. SUREFOOT_FUZZ_READER names the
+// function under test.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ namespace {
 
 using namespace surefoot;
 
-/// The year 2261: sums and differences of two stamps up to here fit into 64 bits.
+/// In the year 2261. Sums and differences of two stamps up to here fit into 64 bits.
 constexpr std::int64_t kLastStamp_ns = 9'200'000'000'000'000'000;
 constexpr std::int64_t kTolerance_ns = 20'000'000;
 
@@ -36,14 +36,14 @@ std::size_t lines_of(std::string_view text) {
                                         std::count(text.begin(), text.end(), '\r'));
 }
 
-/// A row names a file, and a line of the text.
+/// A row contains a valid stamp, a file name and a line number of the text.
 void must_be_row(const io::CsvRow& row, std::string_view text) {
     must_be_stamp(row.time_ns);
     must(!row.value.empty());
     must(row.line >= 1 && static_cast<std::size_t>(row.line) <= lines_of(text));
 }
 
-/// Partners are within the tolerance, and no image has two.
+/// Partners differ by at most the tolerance, and every image has at most one partner.
 void must_pair(const std::vector<std::int64_t>& left_ns,
                const std::vector<std::int64_t>& right_ns) {
     const io::Partners partners = io::pair_by_time(left_ns, right_ns, kTolerance_ns);
@@ -68,7 +68,7 @@ void must_be_rows(const Result<std::vector<io::CsvRow>>& rows, std::string_view 
         times_ns.push_back(row.time_ns);
         names.push_back(row.value);
     }
-    // The first half against the second, as if two cameras had written them.
+    // Pairs the first half with the second, as if two cameras had written them.
     const auto half = times_ns.begin() + static_cast<std::ptrdiff_t>(times_ns.size() / 2);
     must_pair({times_ns.begin(), half}, {half, times_ns.end()});
     must(io::fifth_of_frame_time_ns(times_ns) >= 0);
@@ -83,7 +83,7 @@ void must_be_rows(const Result<std::vector<io::CsvRow>>& rows, std::string_view 
     must_be_rows(io::parse_euroc_frames(bytes, "f"), bytes);
 }
 
-/// The depth image is the one that is called so.
+/// The depth image of a row is in the column with that name.
 [[maybe_unused]] void fuzz_associations(std::string_view bytes) {
     const auto rows = io::parse_associations(bytes, "f");
     must_explain(rows);
@@ -99,7 +99,7 @@ void must_be_rows(const Result<std::vector<io::CsvRow>>& rows, std::string_view 
     }
 }
 
-/// A stamp for each line that is not empty.
+/// One stamp for each line that is not empty.
 [[maybe_unused]] void fuzz_timestamps(std::string_view bytes) {
     const auto times_ns = io::parse_timestamps(bytes, "f");
     must_explain(times_ns);
@@ -117,8 +117,8 @@ void must_be_samples(const std::vector<ImuSample>& samples) {
     }
 }
 
-/// The same rows as a file that is read at once, and as one that grows. The first byte says up to
-/// which of its stamps the growing one is read first.
+/// The same rows from a whole file and from a growing one. The first byte chooses how many of the
+/// stamps are there at the first reading.
 [[maybe_unused]] void fuzz_imu_samples(std::string_view bytes) {
     if (bytes.empty()) return;
     const auto choice = static_cast<std::uint8_t>(bytes.front());
@@ -129,7 +129,7 @@ void must_be_samples(const std::vector<ImuSample>& samples) {
 
     static const int file = ::memfd_create("imu", 0);
     static const std::string path = "/proc/self/fd/" + std::to_string(file);
-    // A line counts once its end is there.
+    // A line is complete only with its line end.
     const std::string_view ended = bytes.substr(0, bytes.rfind('\n') + 1);
     const std::size_t cut = ended.empty() ? 0 : (choice * ended.size()) / 256;
     const auto write = [](std::string_view part, std::size_t at) {

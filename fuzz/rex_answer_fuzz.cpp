@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes from the network never become an OK that nobody gave: whatever comes, the parser ends in an
-// answer within its ranges or in an error with a sentence, a text that was cut is none, and a link
-// that waits takes no damaged refusal, and no damaged answer to somebody else, for its OK.
+// Bytes from the network never become an OK that the gate did not send. The parser gives an answer
+// within its ranges or an error with a message. It refuses a truncated text. A waiting link does
+// not accept a damaged refusal, or a damaged answer to another client, as OK.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +27,8 @@ std::string answer_text(const char* nonce, const char* verdict, const char* reas
            R"(,"sequence":1,"text":"so it is","valid_for_ms":300,"verdict":")" + verdict + "\"}}";
 }
 
-/// Does a link that has just asked its first question, sequence 1, take the bytes for its OK?
+/// Whether a link that waits for the answer to its first question (sequence 1) accepts the bytes as
+/// OK.
 bool is_taken_for_ok(std::string_view bytes) {
     RexLink link{RexLinkConfig{}};
     (void)link.connected(kNonce, 0);
@@ -51,7 +52,7 @@ void any_bytes(std::string_view bytes) {
         must(!parse_answer(whole.substr(0, whole.size() - cut)));
 }
 
-/// Up to three bytes are replaced, left out or put in, three choices each; then the end may be cut.
+/// Replaces, deletes or inserts up to three bytes (three choices each), then may truncate the text.
 std::string damaged(std::string text, std::string_view choices) {
     for (int i = 0; i < 3 && choices.size() >= 4 && !text.empty(); ++i, choices.remove_prefix(4)) {
         const auto number = [&](std::size_t at) {
@@ -74,7 +75,7 @@ void damaged_answers(std::string_view choices) {
     static const std::string error = answer_text("5eed5eed5eed5eed", "ERROR", "\"BLIND\"", -1);
     static const std::string others = answer_text("0123456789abcdef", "OK", "", 0);
     static const std::string ok = answer_text("5eed5eed5eed5eed", "OK", "", 0);
-    must(is_taken_for_ok(ok));  // or nothing below says anything
+    must(is_taken_for_ok(ok));  // precondition of the checks below
     for (const std::string* text : {&no, &error, &others})
         must(!is_taken_for_ok(damaged(*text, choices)));
     const std::string text = damaged(ok, choices);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary messages to one session: whatever comes, no reply and no topic says OK but where the
-// gate did, in this very call, to this connection and sequence. The first byte chooses the gate's
-// mood, lines are messages, and the second byte is the time between them.
+// Any messages to one session. A reply or topic says OK only if the gate said OK in the same call,
+// for this connection and sequence. The first byte chooses the behaviour of the gate, the second
+// one the time between messages; each further line is a message.
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -19,11 +19,11 @@ using gate_process::Json;
 
 constexpr std::uint64_t kConnection = 77;
 
-/// Remembers to whom it said OK in the present call.
+/// Records the query of the current call and whether it was allowed.
 struct Witness : gate_process::testing::ScriptedGate {
     [[nodiscard]] gate_process::Answer ask_step(const gate_process::StepQuestion& question,
                                                 std::int64_t now_ns) override {
-        must(!asked);  // one message, one question
+        must(!asked);  // one query per message
         asked = question;
         gate_process::Answer answer = ScriptedGate::ask_step(question, now_ns);
         allowed = question.connection == kConnection && answer.verdict.allows_step(now_ns) &&
@@ -54,7 +54,7 @@ bool is(const Json& values, const char* key, const Json& value) {
     return values.is_object() && values.contains(key) && values[key] == value;
 }
 
-/// Does this say that a step is allowed? In any of the ways that a client may read it.
+/// Whether a client may read this as permission to step, in any of the documented forms.
 bool says_ok(const Json& values) {
     return is(values, "resultCode", 0) || is(values, "result_code", 0) ||
            is(values, "verdict", "OK");
@@ -69,7 +69,7 @@ void check_verdict(const Witness& gate, const Json& values) {
 }
 
 void check_reply(const Witness& gate, const std::string& text) {
-    const Json reply = Json::parse(text);  // throws where it is no JSON: a finding
+    const Json reply = Json::parse(text);  // throws on invalid JSON: a finding
     if (!is(reply, "op", "service_response")) return;
     check_verdict(gate, reply["values"]);
     const std::string service = reply["service"];
@@ -86,7 +86,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     limits.messages = {.per_s = 100, .burst = 8};
     limits.refusals = {.per_s = 100, .burst = 8};
     const gate_process::Access access = gate_process::testing::three_tokens();
-    // Any role; what it does not allow must not reach the gate.
+    // Any role. A message that the role does not permit must not reach the gate.
     const auto role = static_cast<gate_process::Role>((data[0] >> 4U) % 4U);
     gate_process::RosbridgeSession session(kConnection, gate, limits, {role, &access});
     std::string_view rest(reinterpret_cast<const char*>(data) + 2, size - 2);

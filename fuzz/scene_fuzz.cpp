@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a scene file: a scene whose way has an end and whose first pose is finite, or an
-// error with a sentence. SUREFOOT_FUZZ_READER names the function under test.
+// Any bytes as a scene file give a scene with a finite path and a finite first pose, or an error
+// with a message. SUREFOOT_FUZZ_READER names the function under test.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any heights, radii and changed rectangles: rating what a change affects gives the bytes of rating
-// the whole map, on every instruction set and in any order of blocks; the plain filters know the
-// same cells and agree to the tolerances of traversability_fast_test; a cell of unknown height is
-// not traversable, and no rating lies outside of 0 to 1.
+// Any heights, radii and changed rectangles. Updating the rating after a change gives the same
+// bytes as rating the whole map, on every instruction set and in any order of blocks. The plain
+// filters rate the same cells and agree within the tolerances of traversability_fast_test. A cell
+// of unknown height is not traversable, and all ratings are within 0 to 1.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -22,8 +22,8 @@ using fuzz::Choices;
 using fuzz::OnTarget;
 
 constexpr int kMostChanges = 3;
-// As in traversability_fast_test. A normal on the other side of a rounding turns a slope near 0 by
-// 3.5e-4 rad: no critical slope here is below 1 rad.
+// Tolerances of traversability_fast_test. A normal with another rounding changes a slope near 0 by
+// 3.5e-4 rad, so no critical slope here is below 1 rad.
 constexpr float kTolerance = 3e-7F;
 constexpr float kSlopeTolerance = 4e-4F;
 
@@ -52,7 +52,7 @@ bool same_bytes(const TraversabilityLayers& a, const TraversabilityLayers& b) {
     return equal;
 }
 
-/// Two ways to one figure differ by rounding alone.
+/// The fast and the plain filters differ only by rounding.
 void must_be_close(const TraversabilityLayers& fast, const TraversabilityLayers& plain) {
     for_each_layer(fast, plain, [&](const grid::Layer& one, const grid::Layer& other) {
         const bool of_slope = &one == &fast.slope || &one == &fast.traversability;
@@ -60,8 +60,9 @@ void must_be_close(const TraversabilityLayers& fast, const TraversabilityLayers&
         for (std::size_t i = 0; i < one.size(); ++i) {
             const float a = one.data()[i];
             const float b = other.data()[i];
-            must(std::isnan(a) == std::isnan(b), "the plain filters know other cells");
-            must(std::isnan(a) || std::abs(a - b) <= tolerance, "the plain filters disagree");
+            must(std::isnan(a) == std::isnan(b), "fast and plain filters rate different cells");
+            must(std::isnan(a) || std::abs(a - b) <= tolerance,
+                 "fast and plain filters differ by more than the tolerance");
         }
     });
 }
@@ -80,7 +81,7 @@ TraversabilityConfig config_of(Choices& choices, double resolution_m) {
     return config;
 }
 
-/// A tile of ground: level, tilted, a step or single heights that may be anything.
+/// Changes a tile of ground: level, tilted, a step, or single arbitrary heights.
 void change(Choices& choices, const CellRect& rect, grid::Layer& height_m) {
     const int kind = choices.below(5);
     const float z_m = choices.number(0.05F);
@@ -104,7 +105,7 @@ void must_be_ratings(const grid::Layer& height_m, const TraversabilityLayers& la
              {&layers.slope, &layers.step, &layers.roughness, &layers.traversability}) {
             const float rating = layer->data()[i];
             must(std::isnan(rating) || (rating >= 0.0F && rating <= 1.0F),
-                 "a rating beyond 0 to 1");
+                 "a rating is outside 0 to 1");
         }
         must(known || !(layers.traversability.data()[i] > 0.0F),
              "a cell of unknown height is traversable");
@@ -137,7 +138,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const OnTarget another(choices.byte());
         Traversability(config).rate(height_m.view(), resolution_m, backwards, other);
     }
-    must(same_bytes(layers, other), "a change, a target or an order of blocks decides");
+    must(same_bytes(layers, other),
+         "the result depends on the update, the target or the order of blocks");
     Traversability(config, Way::plain).rate(height_m.view(), resolution_m, serial(), other);
     must_be_close(layers, other);
     return 0;

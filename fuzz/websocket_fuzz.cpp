@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary bytes to the server over a socket of this machine: as they are, behind a handshake, or
-// cut into masked frames. The client then stops sending; the server must end the connection, forget
-// it, and have said OK no more often than the gate did.
+// Any bytes to the server over a loopback socket: as they are, after a handshake, or cut into
+// masked frames. The client then stops sending. The server must close and forget the connection,
+// and say OK at most as often as the gate.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -27,7 +27,7 @@ const char* const kHandshake =
     "GET / HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
     "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n\r\n";
 
-/// The server and its gate, made once: nothing of a connection may outlive it.
+/// Server and gate, created once. No state of a connection may remain after it.
 struct Rig {
     Rig() {
         ServerConfig config;
@@ -41,7 +41,7 @@ struct Rig {
     std::unique_ptr<WebsocketServer> server;
 };
 
-/// A socket to the server, from ever another address of 127/8: ports of one run out.
+/// Connects from a new address of 127/8 each time, because one address runs out of ports.
 int connect_from(std::uint32_t number, std::uint16_t port) {
     const int handle = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in from{};
@@ -57,8 +57,8 @@ int connect_from(std::uint32_t number, std::uint16_t port) {
     return -1;
 }
 
-/// The system may be short of something for a moment; a server that accepts nobody any more is a
-/// finding.
+/// Retries, because the system may lack resources for a moment. A server that accepts no connection
+/// any more is a finding.
 int connect_to(std::uint16_t port) {
     static std::uint32_t number = 0;
     constexpr int kTries = 500;
@@ -68,11 +68,11 @@ int connect_to(std::uint16_t port) {
         if (handle >= 0) return handle;
         usleep(kPause_us);
     }
-    std::perror("cannot connect for five seconds");
+    std::perror("cannot connect to the server within five seconds");
     std::abort();
 }
 
-/// Frames whose heads the bytes choose: opcode and end in one byte, length in the next.
+/// Builds frames. The bytes choose their heads: opcode and FIN in one byte, length in the next.
 std::string frames_of(std::string_view bytes) {
     constexpr std::size_t kHead = 2;
     constexpr std::size_t kShort = 126;
@@ -103,13 +103,13 @@ std::string bytes_to_send(std::uint8_t kind, std::string_view bytes) {
     }
 }
 
-/// Sends all, stops sending, and reads until the server has closed.
+/// Sends the bytes, stops sending, and reads until the server closes.
 std::string converse(WebsocketServer& server, std::string_view bytes) {
     const int handle = connect_to(server.port());
     (void)send(handle, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     shutdown(handle, SHUT_WR);
     std::string received;
-    constexpr int kPatience = 1'000'000;  // far beyond every deadline: it hangs
+    constexpr int kPatience = 1'000'000;  // far beyond every deadline: the server hangs
     for (int i = 0;; ++i) {
         must(i != kPatience);
         server.poll();
@@ -123,8 +123,8 @@ std::string converse(WebsocketServer& server, std::string_view bytes) {
     return received;
 }
 
-/// What the service says itself: the payloads of its text frames. A pong repeats what the ping
-/// brought, whatever that is; replies to a handshake are no frames and end before them.
+/// Payloads of the text frames that the service wrote itself. A pong only repeats the ping. Replies
+/// to a handshake are not frames and come first.
 std::string texts_of(std::string_view received) {
     const std::size_t end_of_reply = received.find("\r\n\r\n");
     if (end_of_reply == std::string_view::npos) return {};
@@ -132,7 +132,7 @@ std::string texts_of(std::string_view received) {
     std::string texts;
     while (received.size() >= 2) {
         const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(received[i]); };
-        std::uint64_t size = at(1) & 0x7fU;  // a server masks nothing
+        std::uint64_t size = at(1) & 0x7fU;  // a server does not mask frames
         std::size_t head = 2;
         const std::size_t more = size == 126 ? 2 : size == 127 ? 8 : 0;
         if (received.size() < head + more) break;
@@ -143,7 +143,7 @@ std::string texts_of(std::string_view received) {
         }
         const auto opcode = at(0) & 0x0fU;
         const std::string_view payload = received.substr(head, size);
-        if (opcode <= 2) texts += payload;  // text, binary, and what continues them
+        if (opcode <= 2) texts += payload;  // text, binary, and continuations
         received.remove_prefix(head + payload.size());
     }
     return texts;
@@ -168,7 +168,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                  bytes_to_send(data[0], {reinterpret_cast<const char*>(data) + 1, size - 1})));
     const std::uint64_t allowed = service.gate.report_.allowed - allowed_before;
     must(count_of(received, R"("resultCode":0)") + count_of(received, R"("result_code":0)") <=
-         2 * allowed);  // a reply, and the topic where it was subscribed to
+         2 * allowed);  // one reply each, and one topic message if subscribed
     const ServerCounts counts = service.server->counts();
     must(counts.clients == 0 && counts.handshakes == 0);
     service.gate.questions.clear();

@@ -1,4 +1,4 @@
-"""The small changes that tools/mutate makes to C++ code: it splits a file into words and lists every change of them.
+"""Generates the mutants of tools/mutate: splits a C++ file into tokens and lists all small changes.
 
 A change is (kind, start, end, replacement) on the text of one file; KINDS names the kinds. A Mutant is the file with one change.
 """
@@ -23,8 +23,8 @@ NO_STATEMENT = CONTROL | {"return", "else", "do", "case", "default", "using", "c
 
 
 def words_of(text):
-    """Without comments, directives and blanks. `spaced`: blanks on both sides, as the format writes two-sided operators;
-    angle brackets of templates, references, pointers and signs never have them."""
+    """Tokens without comments, directives and blanks. `spaced`: blanks on both sides, as clang-format writes binary operators.
+    Angle brackets of templates, references, pointers and signs never have them."""
     words = []
     for match in WORDS.finditer(text):
         if match.lastgroup == "skip":
@@ -36,7 +36,7 @@ def words_of(text):
 
 
 class Source:
-    """One file as words, with its brackets and what each brace encloses."""
+    """One file as tokens, with its brackets and the kind of each brace."""
 
     def __init__(self, text):
         self.text, self.words = text, words_of(text)
@@ -92,7 +92,7 @@ class Source:
         return any(self.kind.get(i) in ("function", "control") for i in stack)
 
     def brace(self, i):
-        """The innermost brace around a word that is a scope, not a list of values."""
+        """The innermost brace around a token that opens a scope, not a list of values."""
         i = self.around[i]
         while i is not None and self.kind.get(i, "values") == "values":
             i = self.around[i]
@@ -104,7 +104,7 @@ class Source:
         return i
 
     def end_of_statement(self, i):
-        """Index of its semicolon, or None."""
+        """Index of the semicolon of a statement, or None."""
         while i < len(self.words):
             text = self.at(i)
             if text == ";":
@@ -135,7 +135,7 @@ def is_comparison(word):
 
 
 def condition_mutants(source, first, last):
-    """Negates the words first..last, unless that is done anyway: to one comparison, to one `!`."""
+    """Negates the tokens first..last, except a single comparison or `!`, which other changes negate."""
     inside = source.words[first:last + 1]
     joined = any(word.text in ("&&", "||") and word.spaced for word in inside)
     if joined or not (any(map(is_comparison, inside)) or inside[0].text == "!" or ";" in (w.text for w in inside)):
@@ -144,7 +144,7 @@ def condition_mutants(source, first, last):
 
 
 def start_of_operand(source, i):
-    """First word of what stands left of a question mark."""
+    """First token of the condition before a question mark."""
     while True:
         before = source.at(i - 1)
         if before in CLOSING:
@@ -230,7 +230,7 @@ def mutants_of(text):
             home = source.brace(i)
             in_template = (before == "<" and not words[i - 1].spaced) or (after == ">" and not words[i + 1].spaced)
             is_size = before == "[" and words[i - 2].kind == "name" and words[i - 3].kind == "name"
-            # Of whole numbers x < 0 + 1 is x <= 0, which is tried anyway.
+            # For integers x < 0 + 1 equals x <= 0, which is another change.
             is_bound = before in ("<", ">=") and words[i - 1].spaced and word.text.isdigit()
             if not in_template and not is_size and not is_bound and (home is None or source.kind[home] != "enum"):
                 yield "constant", word.start, word.end, f"({word.text} + 1)"
@@ -249,7 +249,7 @@ class Mutant:
     def __init__(self, file, text, kind, start, end, replacement):
         self.file, self.kind, self.start = file, kind, start
         dropped = text[start:end]
-        if not replacement:  # lines keep their numbers
+        if not replacement:  # keeps the line numbers
             replacement = "\n" * dropped.count("\n")
         self.text = text[:start] + replacement + text[end:]
         self.line = text.count("\n", 0, start) + 1
@@ -257,7 +257,7 @@ class Mutant:
         self.before = " ".join(text[first:text.find("\n", end)].split())
         last = start + len(replacement)
         self.after = " ".join(self.text[first:self.text.find("\n", last)].split())
-        # Results stay valid while the definition around the change is the same.
+        # A result stays valid while the definition around the change is unchanged.
         begin = max(text.rfind("\n}", 0, start), 0)
         block = text[begin:text.find("\n}", end)]
         self.key = digest(file, block, str(start - begin), str(end - begin), replacement.strip())

@@ -1,7 +1,7 @@
-"""What `make docs` does to a page before MkDocs renders it.
+"""Prepares a page before MkDocs renders it (`make docs`).
 
-Links that leave docs/ (to sources and to files at the top of the repository) become plain text: the site holds the
-documents alone. A link to a file that does not exist stops the build.
+Links that leave docs/ (to sources and to files at the top of the repository) become plain text, because the site
+contains only the documents. A link to a file that does not exist stops the build.
 """
 import os
 import pathlib
@@ -21,7 +21,7 @@ LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#]+)(#[^)\s]*)?\)")
 
 
 def on_config(config):
-    """The navigation: one section a folder, the pages to read first at its top."""
+    """The navigation: one section per folder, with the most important pages first."""
     docs = ROOT / "docs"
     config["nav"] = [{"Home": "index.md"}]
     for folder, title in SECTIONS.items():
@@ -34,7 +34,7 @@ def on_config(config):
 
 
 def on_files(files, config):
-    """What Doxygen reads is not part of the site."""
+    """Removes files for Doxygen from the site."""
     for file in [file for file in files if file.src_path in ("Doxyfile", "api_main_page.dox")]:
         files.remove(file)
     return files

@@ -1,13 +1,13 @@
-"""Open floor, edges and block tops of a height map, found from its heights alone, and how they are rated.
+"""Finds open floor, edges and block tops of a height map from its heights alone, and evaluates their ratings.
 
-Nothing here is fitted to the ratings, and no height is typed in: the floor is the most common height, the noise is
-that of the floor itself, and what is an edge and how far the filters reach is read from the configuration of the run.
+Nothing is fitted to the ratings, and no height is given: the floor is the most common height, the noise is that of the
+floor, and the definition of an edge and the reach of the filters come from the configuration of the run.
 
 * noise: 1.4826 times the median difference from the median of the floor's neighbours, over sqrt(2);
-* floor: cells within 5 sigma of the plane through the most common height (fitted to its own cells, again and again);
-* edge: a cell beside one (of eight) that is at least `step.critical_m` higher or lower: more than the step that the
-  filter calls impassable, within one cell;
-* open floor: floor within reach of whose filters nothing else is known;
+* floor: cells within 5 sigma of the plane through the most common height (fitted repeatedly to its own cells);
+* edge: a cell beside one (of eight) that is at least `step.critical_m` higher or lower: more than an impassable
+  step within one cell;
+* open floor: floor cells with only floor within the reach of the filters;
 * flat top: a cell at least the critical step above the floor, with half of the cells within the reach of the filters
   known and all of these within 5 sigma of one plane; level if that plane leans at most LEVEL_DEG.
 """
@@ -23,13 +23,13 @@ LEVEL_DEG = 8.0
 
 
 def read_grid(path):
-    """Cell size [m] and rows from the smallest y, NaN = unknown."""
+    """Reads cell size [m] and rows from the smallest y; NaN = unknown."""
     head, rows = read_asc(pathlib.Path(path))
     return head["cellsize"], [[math.nan if z is None else z for z in row] for row in reversed(rows)]
 
 
 def setting(config, group, key):
-    """A number of the configuration that the run wrote beside its layers."""
+    """A number of the configuration that the run wrote next to its layers."""
     found = re.search(rf"^  {group}:\n(?:    .*\n)*?    {key}: *([-0-9.e]+)", config, re.MULTILINE)
     return float(found.group(1))
 
@@ -76,7 +76,7 @@ class Ground:
         return ((cell[0] + dx, cell[1] + dy) for dx, dy in self.disc)
 
     def flat_tops(self):
-        """Cell -> lean [rad] of the plane around it."""
+        """Maps a cell to the tilt [rad] of the plane around it."""
         tops = {}
         for cell, over in self.over_floor.items():
             near = [d for d in self.around(cell) if d in self.height]
@@ -89,7 +89,7 @@ class Ground:
 
 
 def plane(cells, height):
-    """z = a x + b y + c by least squares, over cell indices."""
+    """Least-squares plane z = a x + b y + c over cell indices."""
     n = len(cells)
     mx, my = sum(c[0] for c in cells) / n, sum(c[1] for c in cells) / n
     mz = sum(height[c] for c in cells) / n
@@ -104,7 +104,7 @@ def plane(cells, height):
 
 
 def measure(dem_path, rated):
-    """Figures of one height map and the folder of its ratings."""
+    """Results of one height map and the folder of its ratings."""
     config = (pathlib.Path(rated) / "config.yaml").read_text()
     critical_m = setting(config, "step", "critical_m")
     reach_m = max(setting(config, "step", "first_radius_m") + setting(config, "step", "second_radius_m"),
@@ -113,7 +113,7 @@ def measure(dem_path, rated):
     cell_m, heights = read_grid(dem_path)
     _, ratings = read_grid(pathlib.Path(rated) / "traversability.asc")
     ground = Ground(heights, cell_m, critical_m, reach_m)
-    safe = lambda cells: sum(1 for x, y in cells if ratings[y][x] >= threshold)  # NaN is not
+    safe = lambda cells: sum(1 for x, y in cells if ratings[y][x] >= threshold)  # NaN is not safe
     open_floor, tops = ground.open_floor(), ground.flat_tops()
     level = {c for c, lean in tops.items() if lean <= math.radians(LEVEL_DEG)}
     return {"sigma_m": ground.sigma_m, "floor": len(open_floor), "floor_safe": safe(open_floor),

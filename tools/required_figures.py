@@ -1,7 +1,7 @@
 """Lists the required figures of a measured page that are missed and not listed in state/known_misses.txt.
 
-A page says what is required in tables whose header is HEADER: "yes" or "**no**" in the last column, "-" where nothing
-is required. The names in the first column are unique within a page.
+A page lists its requirements in tables with the header HEADER. The last column is "yes" or "**no**", or "-" without a
+requirement. The names in the first column are unique within a page.
 """
 import pathlib
 import sys
@@ -11,7 +11,7 @@ KNOWN_MISSES = pathlib.Path(__file__).resolve().parent.parent / "state" / "known
 
 
 def figures(text):
-    """(what, found, required, met) of every row of such tables, as they stand."""
+    """Returns (what, found, required, met) of every row of such tables."""
     rows, inside = [], False
     for line in text.splitlines():
         if line == HEADER:
@@ -31,7 +31,7 @@ def known_misses(text, page):
 
 
 def complaints(rows, known):
-    """A sentence for each problem of the page; empty when there is none."""
+    """One message for each problem of the page; empty = no problem."""
     found = [] if rows else ["the page holds no required figure at all"]
     names = [row[0] for row in rows]
     found += [f"{name}: stands there {names.count(name)} times" for name in dict.fromkeys(names) if names.count(name) > 1]
@@ -53,7 +53,7 @@ def check(page):
         print(f"{page.name}: {sentence}", file=sys.stderr)
     for row in rows:
         if row[0] in known and row[3] == "yes":
-            print(f"{page.name}: {row[0]}: met this time ({row[1]}); if it stays so, take it out of {KNOWN_MISSES.name}")
+            print(f"{page.name}: {row[0]}: met this time ({row[1]}); if that repeats, remove it from {KNOWN_MISSES.name}")
     print(f"{page.name}: {len(rows)} figures, {len(known)} known misses, {len(found)} complaints")
     return 1 if found else 0
 

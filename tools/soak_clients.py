@@ -1,7 +1,7 @@
-"""The clients of tools/soak: a well-behaved one whose every query is timed, an operator, ordinary ones, rude ones.
+"""The clients of tools/soak: a well-behaved one with timed queries, an operator, ordinary and misbehaving ones.
 
-Usage: soak_clients.py witness|crowd FOLDER SEED. Where the gate listens now stands in FOLDER/port. Both run until they
-are ended, and write what they met into FOLDER.
+Usage: soak_clients.py witness|crowd FOLDER SEED. FOLDER/port contains the present port of the gate. Both run until
+they are terminated, and write their results into FOLDER.
 """
 import json
 import os
@@ -31,7 +31,7 @@ def port_of(folder):
 
 
 def path_of(folder, role):
-    """With the token of a role; without one for a guest."""
+    """Path of the socket with the token of a role; a guest has no token."""
     if role is None:
         return "/"
     lines = (folder / "tokens").read_text().splitlines()
@@ -39,7 +39,7 @@ def path_of(folder, role):
 
 
 def connect(folder, timeout_s, role=None):
-    """A client of the gate of now; waits until there is one."""
+    """Connects to the present gate; waits until one exists."""
     while True:
         try:
             return RosbridgeClient(port_of(folder), timeout_s, path_of(folder, role))
@@ -48,7 +48,7 @@ def connect(folder, timeout_s, role=None):
 
 
 def witness(folder, seed):
-    """Asks ten times a second. A line per question: sent, received (0 = never) [steady ns], verdict, first reason,
+    """Asks ten times a second. Writes a line per question: sent, received (0 = never) [steady ns], verdict, first reason,
     decided, valid until [steady ns of the gate], port."""
     commands = random.Random(seed)
     with open(folder / "queries.csv", "a", buffering=1) as log:
@@ -73,7 +73,7 @@ def witness(folder, seed):
 
 
 class Crowd:
-    """All other clients, a thread each. What they did is counted."""
+    """Runs all other clients, one thread each, and counts their actions."""
 
     def __init__(self, folder, seed):
         self.folder = folder
@@ -86,7 +86,7 @@ class Crowd:
             self.counts[what] = self.counts.get(what, 0) + times
 
     def operator(self):
-        """Re-arms after a fault, and attests the ground again where its attestation has ended with a gate."""
+        """Re-arms after a fault, and attests the ground again after a restart of the gate."""
         while True:
             client = connect(self.folder, 5.0, "operator")
             try:
@@ -102,7 +102,7 @@ class Crowd:
                 client.close()
 
     def ordinary(self, number):
-        """Asks twice a second and listens to the topics."""
+        """An ordinary client: asks twice a second and listens to the topics."""
         while True:
             client = connect(self.folder, 5.0)
             try:
@@ -116,7 +116,7 @@ class Crowd:
                 client.close()
 
     def rude(self):
-        """One bad manner after the other, some seconds apart."""
+        """A misbehaving client: one kind of misbehaviour after the other, some seconds apart."""
         manners = random.Random(f"rude {self.seed}")
         deeds = (self.nonsense, self.half_a_frame, self.flood, self.sleeper, self.vanish, self.no_websocket, self.huge)
         while True:
@@ -126,7 +126,7 @@ class Crowd:
                 deed(manners)
                 self.note(deed.__name__)
             except GONE:
-                self.note(deed.__name__)  # being thrown out is what it asked for
+                self.note(deed.__name__)  # the gate is expected to disconnect it
 
     def client(self):
         return RosbridgeClient(port_of(self.folder), 5.0)
@@ -154,7 +154,7 @@ class Crowd:
         client.close()
 
     def sleeper(self, manners):
-        """Wants everything and reads nothing."""
+        """Subscribes to everything and reads nothing."""
         client = self.client()
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         for topic in ("/surefoot/verdict", "/surefoot/health", "/diagnostics"):
@@ -165,7 +165,7 @@ class Crowd:
         client.close()
 
     def vanish(self, manners):
-        """Goes in the middle of a conversation, with a reset instead of a goodbye."""
+        """Ends a conversation with a TCP reset."""
         client = self.client()
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         for _ in range(manners.randrange(1, 20)):
@@ -180,14 +180,14 @@ class Crowd:
             plain.recv(4096)
 
     def huge(self, manners):
-        """A message of ten megabytes is announced, and begun."""
+        """Announces a message of ten megabytes and sends its beginning."""
         client = self.client()
         client.socket.sendall(bytes([129, 0xff]) + struct.pack(">Q", 10 << 20) + b"mask" + bytes(manners.randrange(1, 99999)))
         time.sleep(0.5)
         client.close()
 
     def storms(self):
-        """Opens many connections when FOLDER/storm gives a number."""
+        """Opens as many connections as FOLDER/storm says."""
         order = self.folder / "storm"
         while True:
             time.sleep(0.1)

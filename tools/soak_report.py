@@ -7,16 +7,16 @@ import statistics
 import subprocess
 
 MS = 1_000_000
-ANSWER_MS = 250.0  # an answer comes within this time, or after a stop of the gate within this time from its end
-FRESH_MS = 250.0  # no OK later than this after the last frame: hazard table, ERROR-class faults
-AUDIT_MS = 1500.0  # no OK later than this after the log took nothing any more: "behind" is 1 s
-WARM_S = 1800.0  # of a process, before its memory counts: until then it meets sizes and faults that it had not yet
+ANSWER_MS = 250.0  # limit for an answer, from the question or from the end of a stop of the gate
+FRESH_MS = 250.0  # latest OK after the last frame (hazard table, faults of class ERROR)
+AUDIT_MS = 1500.0  # latest OK after the log stopped accepting records; it is "behind" after 1 s
+WARM_S = 1800.0  # start of a process that is not judged: in it new sizes and faults still take memory
 MOST_MB_PER_H = 1.0
 MOST_HANDLES_PER_H = 1.0
-BLOCK_S = 300.0  # handles: the fewest in such a time, so that passing crowds do not count
+BLOCK_S = 300.0  # block for handles: the fewest in it count, so that short crowds do not
 PERCEPTION_GONE = ("perception_pause", "perception_hang", "perception_kill")
-ASKED_AGAIN_S = 0.3  # the first question over a connection that is dead comes so late at most
-ORPHAN_S = 6.0  # a killed perception takes its gate with it; the next gate listens within this time
+ASKED_AGAIN_S = 0.3  # latest first question over a dead connection
+ORPHAN_S = 6.0  # a killed perception ends its gate; the next gate listens within this time
 Sample = collections.namedtuple("Sample", "elapsed_s name pid rss_kb anon_kb threads handles ticks shm_files shm_kb "
                                           "audit_kb load")
 Query = collections.namedtuple("Query", "sent received verdict reason decided valid_until port")  # times: steady ns
@@ -24,7 +24,7 @@ Fault = collections.namedtuple("Fault", "kind begin end perception gate port")
 
 
 def rows(path, row):
-    """Lines as named tuples, numbers as numbers."""
+    """Reads the lines as named tuples; converts numbers."""
     def value(text):
         try:
             return int(text)
@@ -40,7 +40,7 @@ def rows(path, row):
 
 
 def slope(points):
-    """Least squares over groups of (x, y) that each have a level of their own; None for too few."""
+    """Least-squares slope of groups of (x, y) with one offset per group; None = too few points."""
     over = under = 0.0
     for group in points:
         if len(group) < 2:
@@ -53,7 +53,7 @@ def slope(points):
 
 
 def lives(samples, name):
-    """Samples of each process of that name that lived long enough, warm ones alone."""
+    """Samples of each long-lived process of that name, without its first WARM_S."""
     by_pid = collections.defaultdict(list)
     for sample in samples:
         if sample.name == name:
@@ -62,7 +62,7 @@ def lives(samples, name):
 
 
 def fewest(life, field):
-    """(time [h], fewest in a block) of a life. Whole blocks alone: the fewest of a short one are more."""
+    """(time [h], fewest in a block) of a process. Only whole blocks, because a short block has a higher minimum."""
     blocks = collections.defaultdict(list)
     for s in life:
         blocks[int((s.elapsed_s - life[0].elapsed_s) // BLOCK_S)].append(s)
@@ -99,19 +99,19 @@ def overlaps(query, fault, before_s=0.0, after_s=0.0):
 
 
 def is_lost_rightly(query, faults):
-    """The gate was killed, or ended with a killed perception, or stood."""
+    """Whether the gate was killed, ended with a killed perception, or was stopped."""
     for fault in faults:
         if fault.kind in ("gate_kill", "gate_pause") and overlaps(query, fault, 0.1, ASKED_AGAIN_S):
             return True
         if fault.kind == "audit_unwritable" and overlaps(query, fault, 3.0, ASKED_AGAIN_S):
-            return True  # it begins when the new gate is there
+            return True  # the new gate begins to listen
         if fault.kind == "perception_kill" and overlaps(query, fault, 0.1, ORPHAN_S):
             return True
     return False
 
 
 def latency_ms(query, faults):
-    """From the question, or from the end of a stop of the gate."""
+    """Waiting time from the question, or from the end of a stop of the gate."""
     begin = query.sent
     for fault in faults:
         if fault.kind == "gate_pause" and overlaps(query, fault, 0.05):
@@ -120,7 +120,7 @@ def latency_ms(query, faults):
 
 
 def near(faults, query):
-    """Those that may matter for a query: within a minute."""
+    """Faults within a minute of a query: only these can matter."""
     return [f for f in faults if f.begin - 60e9 < query.sent < f.end + 60e9]
 
 
@@ -152,7 +152,7 @@ def judge_queries(queries, faults):
 
 
 def first_inhibits_ms(queries, faults):
-    """From the stop of perception to the first answer that is no OK, where the one before it was one."""
+    """Times from the stop of perception to the first answer that is not OK, if the answer before was OK."""
     found = []
     answers = [q for q in queries if q.verdict not in ("LOST", "TIMEOUT")]
     for fault in faults:
@@ -167,7 +167,7 @@ def first_inhibits_ms(queries, faults):
 
 
 def silences_s(queries, faults):
-    """After each killed gate: from the last answer to the next one."""
+    """Time from the last answer to the next one for each killed gate."""
     found = []
     answers = [q for q in queries if q.verdict not in ("LOST", "TIMEOUT")]
     for fault in faults:
@@ -193,7 +193,7 @@ def audit_of(folder):
 
 
 def processor_share(samples):
-    """Of one core, perception and gate together."""
+    """Processor time of perception and gate together, as a share of one core."""
     ticks = 0
     for name in ("perception", "gate"):
         for pid in {s.pid for s in samples if s.name == name}:
@@ -245,12 +245,12 @@ def evaluate(folder):
 
 
 def failures(found):
-    """What is not as it must be, in words."""
+    """The reasons why a soak fails, in words."""
     said = [f"{times} times {what}" for what, times in found["missed"].items()]
     if found["surprises"]:
-        said.append(f"perception ended {found['surprises']} times by itself")
+        said.append(f"perception ended {found['surprises']} times without an injected fault")
     if found["gate_surprises"]:
-        said.append(f"the gate ended {found['gate_surprises']} times by itself")
+        said.append(f"the gate ended {found['gate_surprises']} times without an injected fault")
     for name in ("perception", "gate"):
         for field, most, unit in (("mb_per_h", MOST_MB_PER_H, "MB"), ("handles_per_h", MOST_HANDLES_PER_H, "handles"),
                                   ("threads_per_h", MOST_HANDLES_PER_H, "threads")):
@@ -259,20 +259,20 @@ def failures(found):
                 said.append(f"{name} grows by {per_h:.2f} {unit} an hour")
     first, last = found["handles_alone"]
     if first is None or last is None or last > first:
-        said.append(f"the gate alone has {last} handles at the end, {first} at the begin")
+        said.append(f"the gate without clients has {last} handles at the end, but {first} at the beginning")
     if found["shm_files_most"] > 1:
-        said.append(f"{found['shm_files_most']} files in shared memory")
+        said.append(f"{found['shm_files_most']} files in shared memory, the limit is 1")
     if found["audit"].get("damage") or found["audit"].get("different"):
-        said.append("the audit log is damaged or does not give its verdicts again")
+        said.append("the audit log is damaged, or its replay gives other verdicts")
     if not found["verdicts"].get("OK"):
-        said.append("nothing was allowed")
+        said.append("the gate allowed no step")
     return said
 
 
 def sentence(found):
     return (f"soak: {found['hours']:.2f} h, {sum(found['faults'].values())} faults, {found['queries']} questions, "
             f"missed deadlines {sum(found['missed'].values())}, " +
-            ("; ".join(found["failures"]) if found["failures"] else "all flat"))
+            ("; ".join(found["failures"]) if found["failures"] else "no growth"))
 
 
 def number(value, digits=1):
@@ -284,37 +284,37 @@ def lines_of(found):
     audit = found["audit"]
     lines = [
         f"Seed {found['seed']}, {found['hours']:.2f} h at commit {found['commit']}, load average "
-        f"{found['load_average']['mean']:.1f} (at most {found['load_average']['max']:.1f}) on a machine that others used "
-        f"too, gate and well-behaved client {found['urgent']} nice values more urgent than other sessions; perception and gate took {100 * found['processor_share']:.0f} % of one core. "
+        f"{found['load_average']['mean']:.1f} (at most {found['load_average']['max']:.1f}) on a machine with other users. "
+        f"Gate and well-behaved client were {found['urgent']} nice values more urgent than other sessions. Perception and gate took {100 * found['processor_share']:.0f} % of one core. "
         f"{'Passed.' if found['passed'] else 'NOT passed: ' + '; '.join(found['failures']) + '.'}",
         "", "| | perception | gate |", "|---|---|---|"]
     for text, field, digits in (
-            ("processes, one after the other", "processes", 0),
-            ("longest one without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
-            ("its resident memory at the begin [MB]", "mb_first", 1), ("at the end [MB]", "mb_last", 1),
-            ("**slope [MB per hour]**", "mb_per_h", 2), ("of that not shared", "own_mb_per_h", 2),
-            ("slope of all lives beyond 30 minutes, not shared", "own_mb_per_h_of_all", 2),
-            ("most resident memory of any [MB]", "mb_most", 1),
+            ("number of processes, one after the other", "processes", 0),
+            ("longest life of a process without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
+            ("its resident memory at the beginning [MB]", "mb_first", 1), ("its resident memory at the end [MB]", "mb_last", 1),
+            ("**slope of its resident memory [MB per hour]**", "mb_per_h", 2), ("slope of its memory that is not shared [MB per hour]", "own_mb_per_h", 2),
+            ("the same over all lives beyond 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
+            ("largest resident memory of any process [MB]", "mb_most", 1),
             ("**slope of handles [per hour]** (fewest in each 5 minutes)", "handles_per_h", 2),
-            ("fewest and most handles", None, 0), ("slope of threads [per hour]", "threads_per_h", 2)):
+            ("smallest and largest number of handles", None, 0), ("slope of threads [per hour]", "threads_per_h", 2)):
         cells = [f"{number(found[name]['handles_least'], 0)}, {number(found[name]['handles_most'], 0)}" if field is None
                  else number(found[name][field], digits) for name in ("perception", "gate")]
         lines.append(f"| {text} | {cells[0]} | {cells[1]} |")
     lines += ["", "| | |", "|---|---|",
               f"| questions of the well-behaved client | {found['queries']} |",
               "| answers | " + ", ".join(f"{k} {v}" for k, v in found["verdicts"].items()) + " |",
-              f"| latency p50, p99, p99.9, most [ms] | " + ", ".join(number(latency[k]) for k in latency) + " |",
+              f"| latency p50, p99, p99.9, largest [ms] | " + ", ".join(number(latency[k]) for k in latency) + " |",
               f"| **missed deadlines** | {sum(found['missed'].values())}" +
               "".join(f", {what}: {times}" for what, times in found["missed"].items()) + " |",
-              f"| perception stopped or killed while OK was said: first inhibit at most, asked ten times a second [ms] | "
+              f"| perception stopped or killed while the gate said OK: longest time to the first inhibit, asked ten times a second [ms] | "
               f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
-              f"| killed gate: longest silence [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
-              "| handles of the gate with no client, at the begin and at the end | "
+              f"| gate killed: longest time without an answer [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
+              "| handles of the gate without clients, at the beginning and at the end | "
               f"{found['handles_alone'][0]}, {found['handles_alone'][1]} |",
-              f"| files in shared memory at most | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
-              f"| audit folder at most (64 MB allowed) [MB] | {number(found['audit_mb_most'])} |",
-              f"| verdicts of the log given again, different | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
-              f"| gaps in the log, verdicts in them | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
+              f"| largest number of files in shared memory | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
+              f"| largest size of the audit folder (limit 64 MB) [MB] | {number(found['audit_mb_most'])} |",
+              f"| verdicts of the log replayed: equal, different | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
+              f"| gaps in the log, verdicts lost in them | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
               "", "| fault | times |", "|---|---|"]
     lines += [f"| {kind} | {times} |" for kind, times in found["faults"].items()]
     lines += ["", "| clients | times |", "|---|---|"]
@@ -323,7 +323,7 @@ def lines_of(found):
 
 
 def fill(page, found):
-    """Puts the figures between the markers of a page."""
+    """Replaces the figures between the markers of a page."""
     begin, end = "<!-- soak: begin -->", "<!-- soak: end -->"
     text = page.read_text()
     head, rest = text.split(begin)

@@ -1,9 +1,9 @@
 """Compares `surefoot depth` and its stated sigma with real rectified pairs of known disparity.
 
-Judged are pixels that both cameras see. Where the truth of the right camera exists, they are those whose two truths agree within
-1 px; else those of the pair's mask. What is wrong by more than 2 px is counted as the benchmark of these pairs does:
-pixels without a match take the smaller neighbour of their row. Trusted: outlier probability of at most one half; no
-trusted pixel is left out, however wrong it is. The truth's rounding (uniform over a step) is added to sigma.
+Only pixels that both cameras see are judged. If the truth of the right camera exists, both truths must agree within 1 px; else
+the pair's mask decides. Errors above 2 px are counted as in the benchmark of these pairs: pixels without a match take the
+smaller neighbour in their row. Trusted = outlier probability of at most one half; all trusted pixels count. The rounding of
+the truth (uniform over a step) is added to sigma.
 """
 import dataclasses
 
@@ -20,11 +20,11 @@ class Pair:
     folder: str
     right: str
     truth: str
-    scale: float  # the truth holds this times the disparity
+    scale: float  # stored truth / disparity
     disparities: int
     right_truth: str = ""
     mask: str = ""
-    judges_sigma: bool = True  # a truth in whole pixels, always rounded down, cannot
+    judges_sigma: bool = True  # False for a truth that is truncated to whole pixels
 
 
 PAIRS = (
@@ -39,7 +39,7 @@ PAIRS = (
 
 
 def read_pfm(path):
-    """Rows from the upper one on; unknown = +inf."""
+    """Reads the rows from the top; unknown = +inf."""
     with open(path, "rb") as file:
         kind, size, scale = file.readline().strip(), file.readline().split(), float(file.readline())
         width, height = map(int, size)
@@ -51,12 +51,12 @@ def read_pfm(path):
 def grey(path):
     image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
     if image is None:
-        raise SystemExit(f"{path} is no picture that can be read")
+        raise SystemExit(f"{path}: not a readable image")
     return image
 
 
 def true_disparity(pair, folder):
-    """[px], NaN = unknown, or not seen by both cameras."""
+    """True disparities [px]; NaN = unknown or not seen by both cameras."""
     values = grey(folder / pair.truth)
     truth = np.where(values > 0, values / pair.scale, np.nan)
     if pair.mask:
@@ -70,7 +70,7 @@ def true_disparity(pair, folder):
 
 
 def filled(disparity):
-    """Unknown pixels take the smaller of their nearest known neighbours along the row."""
+    """Fills unknown pixels with the smaller of the nearest known neighbours in the row."""
     def from_left(image):
         u = np.where(np.isfinite(image), np.arange(image.shape[1]), 0)
         u = np.maximum.accumulate(u, axis=1)
@@ -79,7 +79,7 @@ def filled(disparity):
 
 
 def measure(pair, folder, out):
-    """Figures of a folder `out` that `surefoot depth` wrote, in percent of the judged pixels."""
+    """Results for the output folder `out` of `surefoot depth`, in percent of the judged pixels."""
     truth = true_disparity(pair, folder)
     disparity, sigma, outlier = (read_pfm(out / f"{name}.pfm") for name in ("disparity", "sigma", "outlier_probability"))
     judged, known = np.isfinite(truth), np.isfinite(disparity)

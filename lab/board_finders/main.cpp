@@ -72,7 +72,8 @@ cv::Mat mat_of(const GreyImage& image) {
             const_cast<std::uint8_t*>(image.data())};  // only read
 }
 
-/// Whether corners in any order are true ones, each another, and three quarters of all.
+/// Whether each found corner matches a different true corner, and at least three quarters of
+/// the true corners are found. The order of the corners does not matter.
 bool are_right(const Corners& found, const Corners& truth, double& median_px) {
     std::vector<bool> taken(truth.size(), false);
     std::vector<double> errors;
@@ -90,7 +91,8 @@ bool are_right(const Corners& found, const Corners& truth, double& median_px) {
     return true;
 }
 
-/// Our points as the true ones with their numbers; boards that look alike turned may be turned.
+/// The same for our finder, which numbers its corners: each corner must match the true one with
+/// its number. A board that looks the same after a rotation may be rotated.
 bool are_ours_right(const Board& board,
                     const calibration::BoardView& view,
                     const Corners& truth,
@@ -113,7 +115,7 @@ class Table {
         out_.print("set,image,finder,found,right,median_px,ms,problem\n");
     }
 
-    /// All finders on one image; `truth` is empty where nobody knows it.
+    /// Runs all finders on one image. `truth` is empty if the true corners are unknown.
     void add(const std::string& set,
              const std::string& name,
              const Board& board,
@@ -214,7 +216,7 @@ void images(const std::string& set, const std::string& folder, const Board& boar
     for (const auto& path : paths) {
         const cv::Mat read = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
         if (read.empty()) continue;
-        // Pictures of both cameras side by side are two.
+        // A wide image holds the pictures of both cameras side by side.
         const int parts = read.cols > 2 * read.rows ? 2 : 1;
         const int width = read.cols / parts;
         for (int part = 0; part < parts; ++part) {
@@ -233,7 +235,7 @@ void images(const std::string& set, const std::string& folder, const Board& boar
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
-    cv::setNumThreads(1);  // as in the program
+    cv::setNumThreads(1);  // as in the surefoot program
     const std::string how = argc > 2 ? argv[2] : "";
     const bool only_ours = argc > 3 && std::string(argv[argc - 1]) == "ours";
     if (how == "rendered" && argc >= 5) {

@@ -44,7 +44,8 @@ const char* name_of(LensKind kind) {
     return calibration::kLensKindNames[static_cast<std::size_t>(kind)];
 }
 
-/// One line of lenses.csv, or a word on stdout where the views did not determine the lens.
+/// Writes one line of lenses.csv. If the views do not determine the lens, prints the error to
+/// stdout instead.
 void compare_lens(const std::string& board_text,
                   LensKind kind,
                   std::uint64_t seed,
@@ -83,14 +84,16 @@ void compare_lens(const std::string& board_text,
               without,
               seen == 0 ? 0.0 : sum / seen,
               std::sqrt(largest));
-    fmt::print("{} {} seed {}: {} of {} beyond, {} without an image, mean square {:.2f} of 2\n",
-               name_of(kind),
-               board_text,
-               seed,
-               beyond,
-               seen + without,
-               without,
-               seen == 0 ? 0.0 : sum / seen);
+    fmt::print(
+        "{} {} seed {}: {} of {} pixels beyond 3 sigma, {} not mapped, mean square {:.2f} (2 is "
+        "expected)\n",
+        name_of(kind),
+        board_text,
+        seed,
+        beyond,
+        seen + without,
+        without,
+        seen == 0 ? 0.0 : sum / seen);
 }
 
 /// One line of rigs.csv.
@@ -117,12 +120,14 @@ void compare_rig(LensKind kind, std::uint64_t seed, fmt::ostream& out) {
               1e3 * errors.sigmas[3 + turn],
               errors.mahalanobis_sq,
               estimate->row_rms_px);
-    fmt::print("{} rig seed {}: baseline {:+.3f} of sigma {:.3f} mm, distance^2 {:.1f} of 6\n",
-               name_of(kind),
-               seed,
-               1e3 * errors.baseline_m,
-               1e3 * errors.baseline_sigma_m,
-               errors.mahalanobis_sq);
+    fmt::print(
+        "{} rig seed {}: baseline error {:+.3f} mm, sigma {:.3f} mm, Mahalanobis^2 {:.1f} (6 is "
+        "expected)\n",
+        name_of(kind),
+        seed,
+        1e3 * errors.baseline_m,
+        1e3 * errors.baseline_sigma_m,
+        errors.mahalanobis_sq);
 }
 
 int measure(const std::filesystem::path& folder,

@@ -36,12 +36,12 @@ struct Lag {
 };
 
 constexpr float kWrongMatch_px = 1.5F;
-/// What is fused.
+/// Largest outlier probability of a pixel that the map fuses.
 constexpr auto kTrusted =
     static_cast<float>(elevation::PixelFilterConfig{}.max_outlier_probability);
 
-/// Errors of the disparity on flat floor, pixel by pixel; NaN where there is none that is likely
-/// right, and where it is wrong nevertheless.
+/// Disparity errors on flat floor, pixel by pixel. NaN: no trusted match, or an error of
+/// kWrongMatch_px or more.
 Image<float> disparity_errors(const ZedBench& bench) {
     const auto& depth = bench.depth();
     Image<float> errors(depth.disparity_px.width(), depth.disparity_px.height());
@@ -50,13 +50,14 @@ Image<float> disparity_errors(const ZedBench& bench) {
         const double truth_px = fb / static_cast<double>(bench.true_depth_m().data()[i]);
         const bool good = depth.outlier_probability.data()[i] <= kTrusted;
         const float error_px = depth.disparity_px.data()[i] - static_cast<float>(truth_px);
-        // Wrong matches are another matter than scatter: a few would decide every sum of squares.
+        // Wrong matches are excluded: a few of them would dominate every sum of squares.
         errors.data()[i] = good && std::abs(error_px) < kWrongMatch_px ? error_px : NAN;
     }
     return errors;
 }
 
-/// Pixels by the cell of floor that they show: how much less than a pixel's do cell means scatter?
+/// Errors grouped by map cell at one range. Shows how much less a cell mean scatters than a
+/// single pixel.
 struct RangeBin {
     double pixel_sq = 0.0;
     std::int64_t pixels = 0;
@@ -117,9 +118,9 @@ struct FloorSums {
     std::vector<Lag> along_rows = std::vector<Lag>(kLags);
     std::vector<Lag> along_columns = std::vector<Lag>(kLags);
     std::vector<RangeBin> bins = std::vector<RangeBin>(kRangeBins);
-    double cross = 0.0;   ///< errors of two frames from the same place, multiplied
-    double square = 0.0;  ///< their mean square
-    int pixels = 0;       ///< of floor that both eyes see
+    double cross = 0.0;   ///< product of the errors of two frames from the same pose
+    double square = 0.0;  ///< mean of the squared errors of both frames
+    int pixels = 0;       ///< floor pixels that both cameras see
     int matched = 0;
     std::vector<float> trusted_sigma_px;
 };
@@ -130,7 +131,7 @@ void add_lag(Lag& lag, float a, float b) {
     ++lag.count;
 }
 
-/// The lower two thirds of the image: floor nearer than about 3 m.
+/// Adds the lower two thirds of the image, which show floor nearer than about 3 m.
 void add_lags(const Image<float>& errors, const Image<float>& again, FloorSums& sums) {
     for (int v = errors.height() / 3; v < errors.height(); ++v) {
         for (int u = 0; u < errors.width(); ++u) {
@@ -150,7 +151,8 @@ void add_lags(const Image<float>& errors, const Image<float>& again, FloorSums& 
     }
 }
 
-/// How much of what both eyes see, in the same part of the image, is matched and trusted?
+/// Counts the pixels that both cameras see in the same part of the image, and how many of them
+/// are matched and trusted.
 void add_matches(const ZedBench& bench, FloorSums& sums) {
     const auto& depth = bench.depth();
     const double fb = bench.rectified().depth_to_disparity_px_m();
@@ -165,7 +167,7 @@ void add_matches(const ZedBench& bench, FloorSums& sums) {
     }
 }
 
-/// Flat floor of a pattern, two frames from the same place with other noise.
+/// Adds two frames of flat floor with one pattern, from the same pose and with different noise.
 void add_floor(ZedBench& bench, sim::Pattern pattern, int seed, FloorSums& sums) {
     Rng rng(mix_seed(static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(pattern)));
     sim::Scene scene;

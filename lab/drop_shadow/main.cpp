@@ -53,7 +53,7 @@ struct Lengths {
     double rendered_m = 0.0;
 };
 
-/// How far behind the edge both eyes see the lower ground again.
+/// Distance behind the edge at which both cameras see the lower ground again, by rays.
 double length_by_rays(const sim::Scene& scene,
                       const camera::StereoRig& rig,
                       const Pose& T_world_body,
@@ -65,7 +65,8 @@ double length_by_rays(const sim::Scene& scene,
     return ground_m.x() - edge_m.x();
 }
 
-/// Nearest lower ground among the pixels of the rendered depth image, behind the edge.
+/// The same distance in the rendered depth image: its nearest pixel of lower ground behind the
+/// edge.
 double length_in_image(const ZedBench& bench, const Pose& T_world_body, const Vector3d& edge_m) {
     const camera::RectifiedRig& rig = bench.rectified();
     const Pose T_world_camera = T_world_body * rig.T_body_camera;
@@ -85,7 +86,7 @@ double length_in_image(const ZedBench& bench, const Pose& T_world_body, const Ve
     return nearest_m - edge_m.x();
 }
 
-/// What lies in one fifth of the strip.
+/// Points in one fifth of the strip behind the edge.
 struct Fill {
     std::vector<bool> pieces = std::vector<bool>(kPieces, false);
     std::vector<double> heights_m;

@@ -72,19 +72,19 @@ namespace {
 
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
-constexpr int kSafeEvery = 10;       ///< on maps
-constexpr int kSafeEveryOfRuns = 5;  ///< which last seconds
+constexpr int kSafeEvery = 10;       ///< for maps
+constexpr int kSafeEveryOfRuns = 5;  ///< for runs: each takes seconds
 
-/// A gate to be asked, and the errors of the map that it is asked about.
+/// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {
     std::string name;
     Machine machine;
-    int map = 0;  ///< those with the same number are asked about the same map
-    std::optional<MapNoise> noise = std::nullopt;  ///< none: a clean map
-    double shift_m = 0.0;  ///< 1 sigma, both axes: the machine stands beside where it believes
+    int map = 0;                                   ///< variants with the same number share one map
+    std::optional<MapNoise> noise = std::nullopt;  ///< nullopt: a map without errors
+    double shift_m = 0.0;  ///< sigma of the offset from the believed position, per axis
 };
 
-/// A scene whose movement is clearly dangerous, or clearly safe.
+/// A scene with a movement that is clearly dangerous or clearly safe.
 struct Question {
     HazardScene scene;
     sim::SafetyAnswer truth;
@@ -96,8 +96,8 @@ bool can_stand(const sim::SafetyAnswer& truth) {
     return !truth.has(sim::Danger::no_stance) && !truth.has(sim::Danger::not_level_here);
 }
 
-/// Scene number `index` of a campaign; draws are 0 and the scene is not to be used when none of
-/// many came out clear.
+/// Draws scene number `index` of a campaign. Draws is 0 if no draw was clear; the caller must
+/// not use that scene.
 Question draw(Hazard kind,
               bool relief_only,
               std::uint64_t seed,
@@ -147,7 +147,7 @@ class Tally {
     std::map<std::pair<std::string, std::string>, int> counts_;
 };
 
-/// Where the machine believes to stand on a map.
+/// Query for `command` from the pose that the machine believes.
 gate::Query query_of(int command, const Pose& T_odom_body) {
     const double yaw = yaw_rad(T_odom_body);
     return gate::make_query(static_cast<std::uint8_t>(command),
@@ -224,7 +224,7 @@ void count_refusal(const gate::Verdict& verdict, const std::string& variant, Tal
     }
 }
 
-/// A safe movement in a scene with a hazard.
+/// Counts the verdict on a safe movement in a scene with a hazard.
 void count_beside(const gate::Verdict& verdict, const std::string& variant, Tally& tally) {
     tally.add(variant, "beside_safe");
     if (verdict.decision == gate::Decision::ok) return;
@@ -232,7 +232,8 @@ void count_beside(const gate::Verdict& verdict, const std::string& variant, Tall
     tally.add(variant, fmt::format("beside:{}", gate::to_string(verdict.primary)));
 }
 
-/// One verdict beside the truth. `prefix`: "" for the scene's own movement, "all_" for the rest.
+/// Counts one verdict against the truth. `prefix`: "" for the scene's own movement, "all_" for
+/// all movements.
 void count_verdict(const gate::Verdict& verdict,
                    bool truly_safe,
                    const std::string& variant,
@@ -247,7 +248,7 @@ void count_verdict(const gate::Verdict& verdict,
     if (truly_safe && !ok && prefix.empty()) count_refusal(verdict, variant, tally);
 }
 
-/// A map with everything that is asked of it.
+/// A map and the data that queries on it need.
 struct AskedMap {
     const grid::MapSnapshot& snapshot;
     grid::GridGeometry geometry;
@@ -277,7 +278,7 @@ void ask_own(const Question& question, const AskedMap& map, const Variant& varia
         tally.add(variant.name, question.truth.safe ? "thesis_refused" : "thesis_missed");
 }
 
-/// The truths of all movements from where the machine stands, made once a scene.
+/// True safety of every movement from the machine's pose; computed once per scene.
 std::vector<sim::SafetyAnswer> all_truths(const sim::Scene& scene,
                                           const Machine& machine,
                                           const Pose& T_world_body) {
@@ -311,7 +312,7 @@ MapNoise overconfident(MapNoise noise) {
     return noise;
 }
 
-/// The maps of a campaign.
+/// Variants of the tier `maps`.
 std::vector<Variant> map_variants(const Machine& machine) {
     return {{"noise 0", machine, 0},
             {"noise 1", machine, 1, MapNoise()},
@@ -332,7 +333,8 @@ Pose believed_pose(const Question& question, double shift_m) {
     return pose;
 }
 
-/// Drifts that the gate's limit for a cell (25 mm) lets pass, stated as they are.
+/// Variants of the tier `drift`: drifts below the gate's limit for a cell (25 mm), stated
+/// correctly.
 std::vector<Variant> drift_variants(const Machine& machine) {
     std::vector<Variant> all;
     int map = 0;
@@ -350,7 +352,7 @@ std::vector<Variant> drift_variants(const Machine& machine) {
     return all;
 }
 
-/// Asks about the scenes of one tier.
+/// Runs the scenes of one tier and counts the verdicts.
 class Campaign {
   public:
     Campaign(std::string tier,
@@ -364,7 +366,7 @@ class Campaign {
           rig_(camera::Rectifier::make(*sim::rig_preset("zed_vga")).value().rig()),
           rater_(*traversability::preset("rex_zed")) {}
 
-    /// The scenes of one chunk, hazards and safe ones.
+    /// Runs the scenes of one chunk, with and without hazards.
     [[nodiscard]] Status run_chunk(Hazard kind,
                                    std::uint64_t seed,
                                    std::uint64_t from,
@@ -441,7 +443,7 @@ class Campaign {
         if (question.draws == 0) return {};
         const Look look = tier_ == "depth" ? Look::analytic : Look::images;
         const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
-        // A map that cannot be made is a result.
+        // A run that fails to make a map is counted as a result.
         if (!run) {
             fmt::print(stderr,
                        "{} {}: {}\n",
@@ -457,7 +459,8 @@ class Campaign {
         rater_.rate(heights.view(), geometry.resolution_m, serial_, rating_);
         const AskedMap asked{
             *snapshot_, geometry, rating_.traversability.view(), run->pipeline->T_odom_body()};
-        // Where the run really ended, a millimetre or two from where it was to end.
+        // The run ends within a millimetre or two of the planned pose; the truth uses the real
+        // end.
         const auto truths = all_truths(run->source->truth().scene, machine_, run->T_world_body);
         question.truth = truths[static_cast<std::size_t>(question.scene.command - 1)];
         const bool still = question.truth.clear_cut && can_stand(question.truth) &&
@@ -481,7 +484,7 @@ class Campaign {
     std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
 };
 
-/// Every limit looser by a factor, as far as a machine file may state it.
+/// Multiplies every limit by `factor`, up to the largest value that a machine file may state.
 void loosen(GateLimits& limits, double factor) {
     const auto times = [factor](std::int32_t& limit, std::int32_t most) {
         limit = std::min(most, static_cast<std::int32_t>(std::lround(factor * limit)));
@@ -499,9 +502,9 @@ void loosen(GateLimits& limits, double factor) {
         std::max(500, static_cast<std::int32_t>(limits.drop_band_tenth_mm / factor));
 }
 
-/// The noise, and single limits: those of sureness at noise 1, those of what a foot or a body
-/// passes on the overconfident map, where nothing else refuses. Labels are those of the machine as
-/// it is.
+/// Variants of the tier `curve`: scaled noise, and single changed limits. Limits on uncertainty
+/// are tested at noise 1; limits of feet and body on the overconfident map, where no other rule
+/// refuses. Labels give the unscaled limits.
 std::vector<Variant> curve_variants(const Machine& machine) {
     std::vector<Variant> all;
     int map = 0;
@@ -545,14 +548,14 @@ std::vector<Variant> curve_variants(const Machine& machine) {
     return all;
 }
 
-/// A scene again, with the cells that the gate saw.
+/// Repeats one scene and writes the cells that the gate reads.
 int show_again(const std::string& folder,
                const std::string& kind_name,
                const std::string& seed,
                const Machine& machine) {
     const auto* const at = std::find(std::begin(kHazardNames), std::end(kHazardNames), kind_name);
     if (at == std::end(kHazardNames))
-        return app::report(usage_error("no kind of hazard: " + kind_name));
+        return app::report(usage_error("unknown kind of hazard: " + kind_name));
     const auto kind = static_cast<Hazard>(at - std::begin(kHazardNames));
     const HazardScene scene = make_hazard_scene(
         kind, false, std::strtoull(seed.c_str(), nullptr, 10), machine, Placing::anywhere);

@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 10 * kMs;
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
-/// A gate that is not ready by then never will be.
+/// Time limit for the gate to become ready.
 constexpr std::int64_t kPatience_ns = 30'000'000'000;
-/// All is well at least so long before the fault, and so long at most.
+/// Shortest time without a fault before the injection, and its longest random addition.
 constexpr std::int64_t kWell_ns = 120 * kMs;
 constexpr std::int64_t kWellMore_ns = 250 * kMs;
 constexpr std::uint64_t kClient = 7;
-constexpr std::uint64_t kChooser = 8;  ///< asks which movement is allowed
+constexpr std::uint64_t kChooser = 8;  ///< client that asks which movements are allowed
 
 std::string channel_path(std::uint64_t seed) {
     const auto folder = std::filesystem::exists("/dev/shm")
@@ -31,12 +31,12 @@ std::string channel_path(std::uint64_t seed) {
     return (folder / fmt::format("surefoot_fault_bench_{}_{}", ::getpid(), seed)).string();
 }
 
-/// Half steps and turns: their feet stay within 0.6 m of base_link.
+/// Whether the movement is a half step or a turn: its feet stay within 0.6 m of base_link.
 bool is_short(const Movement& movement) {
     return movement.forward_tenth_mm <= 2000 && movement.forward_tenth_mm >= -2000;
 }
 
-/// The first reason that says more than that the gate is not ready.
+/// First reason that is more specific than "the gate is not ready".
 gate::Reason cause_of(const gate::Verdict& verdict) {
     for (int i = 0; i < gate::kReasonCount; ++i) {
         const auto reason = static_cast<gate::Reason>(i);
@@ -67,7 +67,7 @@ GateBench::GateBench(const Machine& machine,
       next_tick_ns_(kStart_ns + kTick_ns),
       end_ns_(kStart_ns + kPatience_ns) {
     auto writer = gate_process::SnapshotWriter::create({path_, {}});
-    if (!writer) {  // no shared memory, no bench
+    if (!writer) {  // the system has no shared memory: report the error
         fmt::print(stderr, "{}\n", writer.error().message);
         std::exit(1);
     }
@@ -132,7 +132,7 @@ void GateBench::begin_watching() {
                                                : plan_.any_movement || is_short(movement);
         if (movement.configured && wanted) commands.push_back(code);
     }
-    // The first that is allowed of those in an order that is drawn.
+    // Takes the first allowed movement in a random order.
     std::uint64_t asked = 0;
     while (!commands.empty() && command_ == 0) {
         const std::size_t i = rng_.below(commands.size());

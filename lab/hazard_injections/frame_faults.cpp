@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults at the frames of a camera, through all that `surefoot serve` does with them: LiveSession,
-// pipeline, channel, gate. A REX that stands in a small room; small images or modelled depth.
+// Faults in the frames of a camera. They pass through the whole chain of `surefoot serve`:
+// LiveSession, pipeline, channel, gate. A REX stands in a small room. The input is small images or
+// analytic depth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 
-/// A room with a floor, and perhaps something in it.
+/// Scene text: a room with a floor and an optional solid.
 std::string room(const std::string& solid) {
     return "variants:\n  bench:\n    description: a room to stand in\n"
            "parameters:\n"
@@ -45,7 +46,7 @@ std::string room(const std::string& solid) {
            "    - {x_m: -0.25, y_m: 0, yaw_deg: 0, move: back}\n";
 }
 
-/// What the camera delivers while all is well.
+/// Fault-free output of a camera.
 struct Recording {
     camera::StereoRig rig;
     camera::SourceInfo info;
@@ -56,15 +57,15 @@ enum class Sight : std::uint8_t { images, depth };
 
 struct Shot {
     Sight sight = Sight::depth;
-    std::string solid = {};  ///< in the room
+    std::string solid = {};  ///< additional solid in the room
     int frames = 48;
     sim::KnockConfig knock = {};
     bool imu = true;
-    bool known_start = false;  ///< where odom lies is not measured, but told
-    double scale = 0.25;       ///< of the ZED's pixels, for depth
+    bool known_start = false;  ///< odom starts at the true pose instead of a measured one
+    double scale = 0.25;       ///< image scale of the ZED, for depth
 };
 
-/// The ZED's view with fewer pixels.
+/// Rig of the ZED with fewer pixels.
 camera::StereoRig small_rig(double scale) {
     camera::StereoRig rig = *sim::rig_preset("zed_vga");
     auto& lens = std::get<camera::PinholeRadTan>(rig.left.model);
@@ -107,7 +108,7 @@ Result<Recording> record(const Shot& shot, std::uint64_t seed) {
     }
 }
 
-/// Recordings that were made before, by what they show and their seed.
+/// Caches recordings by name and seed.
 class Archive {
   public:
     Result<const Recording*> get(const std::string& name, const Shot& shot, std::uint64_t seed) {
@@ -124,18 +125,17 @@ class Archive {
     std::map<std::string, std::map<std::uint64_t, std::unique_ptr<Recording>>> kept_;
 };
 
-/// What a fault does to perception.
+/// Effect of a fault on perception.
 struct Fault {
     std::string variant;
-    /// Changes a frame, the k-th since the fault began; false = it never arrives.
+    /// Changes the k-th frame since the fault began. false: the frame is lost.
     std::function<bool(StereoFrame& frame, int k)> damage = {};
-    std::int64_t stall_ns = 0;          ///< perception hangs so long, once
-    std::int64_t until_ns = kNever_ns;  ///< since the fault: all is well again
+    std::int64_t stall_ns = 0;          ///< duration of one stall of perception
+    std::int64_t until_ns = kNever_ns;  ///< end of the fault, relative to its begin
 };
 
-/// The camera in simulated time: the next frame is waited for, the gate is asked meanwhile. Frames
-/// that came while the last one was being processed are given up but for the newest, as a live
-/// camera does.
+/// Camera in simulated time. It waits for the next frame while the gate is queried. As a live
+/// camera does, it drops all frames that arrived during processing except the newest one.
 class FaultySource final : public camera::FrameSource {
   public:
     FaultySource(const Recording& recording, GateBench& bench, const Fault& fault)
@@ -172,8 +172,9 @@ class FaultySource final : public camera::FrameSource {
     int faulty_ = 0;
 };
 
-/// The clock of the pipeline's stages: each reading lets 5 ms pass, so that a full frame takes
-/// 45 ms, what the ZED's frames take on one thread. The library takes a plain function.
+/// Clock of the pipeline's stages. Each reading advances the time by 5 ms, so that a full frame
+/// takes 45 ms: the time of a ZED frame on one thread. Global, because the library takes a plain
+/// function.
 GateBench* running = nullptr;
 std::int64_t* stall_ns = nullptr;
 
@@ -205,19 +206,19 @@ Result<Outcome> perceive(const io::MachineFile& file,
     FaultySource source(recording, bench, fault);
     app::LiveSession session(
         *pipeline, source, bench.writer(), 1, [&bench] { return bench.now_ns(); });
-    // What ends a session with an error ends perception: from then on the gate hears nothing.
+    // A session that ends with an error ends perception: the gate receives no more snapshots.
     std::ignore = session.run(0.0, [] { return true; });
     bench.pass_until(kNever_ns - kSecond_ns);
     running = nullptr;
     return bench.outcome();
 }
 
-/// What is drawn for one run.
+/// Draws the fault of one run.
 using Draw = std::function<Fault(Rng& rng, const Recording& recording)>;
 
 struct Setup {
     Shot shot;
-    std::string name;  ///< of what is recorded
+    std::string name;  ///< name of the recording
     GateBench::Plan plan;
     Draw draw;
 };
@@ -232,13 +233,13 @@ GateBench::Plan standing() {
 // --- H1 to H4: the images ---
 
 Fault stop(Rng& rng, const Recording&) {
-    // Fewer than three lost frames are waited for: the last one is not too old yet.
+    // At least 4 frames: with fewer than three lost frames the last map is not too old yet.
     const int frames = rng.below(2) == 0 ? 1'000'000 : 4 + static_cast<int>(rng.below(10));
     return {frames > 100 ? "stops for good" : fmt::format("{} frames lost", frames),
             [frames](StereoFrame&, int k) { return k >= frames; }};
 }
 
-/// The ring of buffers between camera and reader is read on and on, and nothing new is written.
+/// The reader reads the ring of buffers again and again, but the camera writes nothing new.
 Fault freeze(Rng& rng, const Recording& recording) {
     const int ring = 1 + static_cast<int>(rng.below(4));
     return {fmt::format("the last {} images again and again", ring),
@@ -274,7 +275,7 @@ Fault corrupt(Rng& rng, const Recording& recording) {
                         return true;
                     }};
         case 1:
-            return {"one eye of the frame before", [&recording](StereoFrame& frame, int) {
+            return {"one camera shows the frame before", [&recording](StereoFrame& frame, int) {
                         frame.right =
                             recording.frames[static_cast<std::size_t>(frame.index - 1)].right;
                         return true;
@@ -282,7 +283,7 @@ Fault corrupt(Rng& rng, const Recording& recording) {
         case 2: {
             const bool sideways = rng.below(2) == 0;
             const int by = 8 + static_cast<int>(rng.below(static_cast<std::uint64_t>(rows - 16)));
-            return {fmt::format("right eye moved by {} {}", by, sideways ? "columns" : "rows"),
+            return {fmt::format("right image moved by {} {}", by, sideways ? "columns" : "rows"),
                     [sideways, by](StereoFrame& frame, int) {
                         shift(frame.right, sideways ? by : 0, sideways ? 0 : by);
                         return true;
@@ -302,7 +303,7 @@ Fault corrupt(Rng& rng, const Recording& recording) {
     }
 }
 
-/// A grey cover with the noise of a camera, over the left part of an image.
+/// Draws a grey cover with camera noise over the left part of an image.
 void cover(GreyImage& image, double share, int grey_dn, Rng& rng) {
     const int columns = static_cast<int>(std::lround(share * image.width()));
     for (int v = 0; v < image.height(); ++v)
@@ -311,7 +312,7 @@ void cover(GreyImage& image, double share, int grey_dn, Rng& rng) {
                 std::clamp(grey_dn + std::lround(rng.normal()), 0L, 255L));
 }
 
-/// Box filter, three times: nearly a Gaussian.
+/// Approximates a Gaussian blur by three box filters.
 void blur(GreyImage& image, int radius_px) {
     for (int round = 0; round < 3; ++round) {
         for (const bool along : {true, false}) {
@@ -332,7 +333,7 @@ void blur(GreyImage& image, int radius_px) {
 
 Fault blind(Rng& rng, const Recording&) {
     const std::uint64_t seed = rng.next_u64();
-    const int cameras = 1 + static_cast<int>(rng.below(3));  // left, right, both
+    const int cameras = 1 + static_cast<int>(rng.below(3));  // 1 = left, 2 = right, 3 = both
     const char* which = cameras == 1 ? "left" : cameras == 2 ? "right" : "both";
     if (rng.below(4) == 0) {
         const int radius_px = 8 + static_cast<int>(rng.below(12));
@@ -369,7 +370,7 @@ Fault overexpose(Rng& rng, const Recording&) {
             }};
 }
 
-/// The first seconds in the sun, and then all is well.
+/// Over-exposed images in the first seconds, as in sunlight; then no fault.
 Fault warm_up(Rng& rng, const Recording&) {
     const double lasts_s = rng.uniform(1.0, 2.0);
     Fault fault{fmt::format("over-exposed for the first {:.1f} s", lasts_s),
@@ -445,8 +446,8 @@ Fault bad_depth(Rng& rng, const Recording&) {
                             1e30F,
                             1e-38F};
     const float value = values[rng.below(std::size(values))];
-    // The least positive sigma is left out: no number is wrong with it, and the map has a floor for
-    // what it makes of it.
+    // The smallest positive sigma is left out: it is a valid number, and the map limits the
+    // variance from below.
     const bool sigma = rng.below(3) == 0 && value != 1e-38F;
     return {fmt::format("every {} is {}", sigma ? "sigma" : "disparity", value),
             [=](StereoFrame& frame, int) {
@@ -467,7 +468,8 @@ Fault wrong_stamps(Rng& rng, const Recording& recording) {
             }};
 }
 
-/// Frames of another recording from the fault on: the same place, and somebody in it.
+/// Replaces the frames from the fault on by another recording of the same room with a person in
+/// it.
 Draw showing(const Recording& other, std::string variant) {
     return [&other, variant = std::move(variant)](Rng&, const Recording&) {
         return Fault{variant, [&other](StereoFrame& frame, int) {
@@ -483,7 +485,7 @@ class Runs {
     Runs(const io::MachineFile& file, int scenes)
         : file_(file), scenes_(static_cast<std::uint64_t>(scenes)) {}
 
-    /// One run of a setup.
+    /// Runs one setup.
     Result<Outcome> run(const Setup& setup, std::uint64_t seed, bool faulty) {
         auto recording = archive_.get(setup.name, setup.shot, scene_of(seed));
         if (!recording) return recording.error();
@@ -510,13 +512,13 @@ class Runs {
     Archive archive_;
 };
 
-/// The mount turns at a moment of the recording; the run's own moment is set to it.
+/// The camera mount turns at a fixed time of the recording; the run's start is chosen to match.
 Result<Outcome> Runs::knocked(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     constexpr double kAt_s = 1.9;
     Shot shot;
     shot.frames = 140;
-    shot.scale = 0.5;  // the plane of the ground wants points
+    shot.scale = 0.5;  // the ground plane needs enough points
     const double by_deg = rng.uniform(1.0, 5.0) * (rng.below(2) == 0 ? -1.0 : 1.0);
     const bool roll = rng.below(2) == 0;
     if (faulty) shot.knock = {kAt_s, roll ? by_deg : 0.0, roll ? 0.0 : by_deg, 0.0};
@@ -531,7 +533,7 @@ Result<Outcome> Runs::knocked(std::uint64_t seed, bool faulty) {
     return perceive(file_, *recording, plan, std::move(fault), seed);
 }
 
-/// Somebody is there, in the way of the body, from one frame to the next.
+/// A person appears in the path of the body from one frame to the next.
 Result<Outcome> Runs::person(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     Setup setup{{}, "depth", standing(), {}};
@@ -551,7 +553,7 @@ Result<Outcome> Runs::person(std::uint64_t seed, bool faulty) {
     return run(setup, seed, faulty);
 }
 
-/// No plane that could be the floor is in view at the start.
+/// At the start no plane is in view that could be the floor.
 Result<Outcome> Runs::no_ground(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     Shot shot;
@@ -593,7 +595,7 @@ std::vector<Injection> frame_injections(const io::MachineFile& file, int scenes)
         shot.sight = sight;
         shot.known_start = sight == Sight::images && !plan.from_the_start;
         const Setup setup{shot,
-                          shot.known_start         ? "images, start told"
+                          shot.known_start         ? "images, known start pose"
                           : sight == Sight::images ? "images"
                                                    : "depth",
                           plan,
@@ -629,13 +631,13 @@ std::vector<Injection> frame_injections(const io::MachineFile& file, int scenes)
          "corrupted frames",
          images,
          true,
-         "torn, one eye late, right eye moved by rows or columns, snow",
+         "torn, one camera late, right image moved by rows or columns, snow",
          with(Sight::images, corrupt)},
         {"H3",
          "covered or smeared",
          images,
          true,
-         "one eye or both: 90-100 % covered by any grey, or blurred over 17 px and more",
+         "one camera or both: 90-100 % covered by any grey, or blurred over 17 px and more",
          with(Sight::images, blind)},
         {"H4",
          "over-exposed while walking",

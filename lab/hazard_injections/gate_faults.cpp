@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults at the gate's own borders: the snapshots that it reads, the clocks, the configuration, the
-// log, and what clients say. Perception is level ground at 15 Hz, 45 ms behind its frames.
+// Faults at the inputs of the gate: snapshots, clocks, configuration, log, and queries of
+// clients. Perception is simulated as level ground at 15 Hz, 45 ms after each frame.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -29,12 +29,12 @@ constexpr std::int64_t kProcessing_ns = 45 * kMs;
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A box on the ground, turned.
+/// A rotated box on the ground.
 struct Place {
     Eigen::Vector2d center_m;
     double yaw_rad = 0.0;
 
-    /// Along and across.
+    /// A map point in the axes of the box: along and across.
     [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p_m) const {
         const Eigen::Vector2d d = p_m - center_m;
         const double c = std::cos(yaw_rad);
@@ -49,7 +49,7 @@ struct Place {
     }
 };
 
-/// Level ground with the machine somewhere on it, as perception publishes it.
+/// Level ground with the machine on it, as perception publishes it.
 struct Perceived {
     const Machine& machine;
     GateBench& bench;
@@ -57,19 +57,19 @@ struct Perceived {
     gate::testing::Terrain terrain;
     Place body;
 
-    /// base_link after the movement that is asked for.
+    /// base_link after the queried movement.
     [[nodiscard]] Place target() const {
         const Movement& m = machine.movements[bench.command()];
         Place place = body.at(m.forward_tenth_mm * 1e-4, m.left_tenth_mm * 1e-4);
         place.yaw_rad += std::atan2(m.sin_turn, m.cos_turn);
         return place;
     }
-    /// One of the landing feet.
+    /// One landing foot, chosen at random.
     [[nodiscard]] Place landing() {
         const GroundBox& foot = rng.below(2) == 0 ? machine.left_foot : machine.right_foot;
         return target().at(foot.center_x_tenth_mm * 1e-4, foot.center_y_tenth_mm * 1e-4);
     }
-    /// Is a point under a foot that stands?
+    /// Whether a point lies under a standing foot, with a margin.
     [[nodiscard]] bool is_stood_on(const Eigen::Vector2d& p_m) const {
         constexpr double kMargin_m = 0.03;
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
@@ -81,7 +81,8 @@ struct Perceived {
         }
         return false;
     }
-    /// `change(u, v, along_m, across_m)` for every cell, seen from a place.
+    /// Calls `change(u, v, along_m, across_m)` for every cell; the coordinates are relative to
+    /// `place`.
     template <typename Change>
     void each_cell(const Place& place, Change change) {
         for (int v = 0; v < terrain.geometry.ny; ++v) {
@@ -91,7 +92,7 @@ struct Perceived {
             }
         }
     }
-    /// A value within a disc.
+    /// Sets all cells within a disc to a value.
     void disc(grid::Layer& layer, const Place& place, double radius_m, double value) {
         each_cell(place, [&](int u, int v, double x, double y) {
             if (std::hypot(x, y) <= radius_m) layer.at(u, v) = static_cast<float>(value);
@@ -99,12 +100,12 @@ struct Perceived {
     }
 };
 
-/// What is wrong with the snapshots from the fault on.
+/// Fault of the snapshots.
 struct Fault {
     std::string variant;
-    std::function<void(MapSnapshot&)> change = {};  ///< before it is sealed
-    std::function<void(MapSnapshot&)> damage = {};  ///< after it was sealed
-    std::unique_ptr<MapSnapshot> other = {};        ///< instead of the clean one
+    std::function<void(MapSnapshot&)> change = {};  ///< applied before sealing
+    std::function<void(MapSnapshot&)> damage = {};  ///< applied after sealing
+    std::unique_ptr<MapSnapshot> other = {};        ///< replaces the clean snapshot
 };
 using Draw = std::function<Fault(Perceived&)>;
 
@@ -113,7 +114,7 @@ Place somewhere(Rng& rng) {
             rng.uniform(-std::numbers::pi, std::numbers::pi)};
 }
 
-/// Publishes snapshots until the bench is over; from the fault on what `draw` says.
+/// Publishes snapshots until the bench ends. From the fault on they are those of `draw`.
 void perceive(Perceived& perceived, const Draw& draw) {
     GateBench& bench = perceived.bench;
     Pose& T_odom_body = perceived.terrain.input.T_odom_body;
@@ -141,7 +142,7 @@ void perceive(Perceived& perceived, const Draw& draw) {
     }
 }
 
-/// A run whose fault lies in the snapshots.
+/// A run with a fault in the snapshots.
 std::function<Result<Outcome>(std::uint64_t, bool)> with_snapshots(const Machine& machine,
                                                                    Draw draw) {
     return [machine, draw = std::move(draw)](std::uint64_t seed, bool faulty) -> Result<Outcome> {
@@ -155,7 +156,7 @@ std::function<Result<Outcome>(std::uint64_t, bool)> with_snapshots(const Machine
     };
 }
 
-/// A run whose fault lies elsewhere: `prepare` sets the bench up.
+/// A run with another fault: `prepare` sets the bench up.
 using Prepare = std::function<void(GateBench&, Rng&)>;
 std::function<Result<Outcome>(std::uint64_t, bool)> with_bench(const Machine& machine,
                                                                GateBench::Plan plan,
@@ -184,7 +185,8 @@ GateBench::Plan at_once() {
 
 // --- H8, H16, H20: numbers of a snapshot ---
 
-/// What base_link cannot have done since the snapshot before (readiness.hpp), and stays there.
+/// base_link jumps farther than it can move between two snapshots (readiness.hpp), and stays
+/// there.
 Fault jump(Perceived& p) {
     const auto shift = [](double x_m, double y_m, double z_m, std::string what) {
         return Fault{std::move(what), [=](MapSnapshot& map) {
@@ -252,7 +254,7 @@ Fault bad_number(Perceived& p) {
             return {fmt::format("pose at {} tenths of a mm", far),
                     [=](MapSnapshot& map) { map.body_x_tenth_mm = far; }};
         }
-        case 2: {  // a bit of any byte, and the checksums are those of before
+        case 2: {  // flips one bit of any byte; the checksums stay as they were
             const std::size_t byte =
                 offsetof(MapSnapshot, version) +
                 p.rng.below(offsetof(MapSnapshot, height_tenth_mm) +
@@ -310,7 +312,7 @@ Fault unknown(Perceived& p) {
                                   : fmt::format("a disc of {:.0f} mm", 2e3 * radius_m));
 }
 
-/// Ground falls beyond a line through a landing foot, perhaps smeared into a ramp.
+/// The ground drops beyond a line through a landing foot; the drop may be smeared into a ramp.
 Fault drop(Perceived& p) {
     const double drop_m = p.rng.uniform(0.075, 1.0);
     const double smear_m = p.rng.below(2) == 0 ? 0.0 : p.rng.uniform(0.0, 0.5);
@@ -330,8 +332,8 @@ Fault unsure(Perceived& p) {
     return rebuilt(p, fmt::format("sigma of {:.0f} mm under a landing foot", 1e3 * sigma_m));
 }
 
-/// A table: its top as ground, or hanging over ground that was seen under it. Where the feet stand
-/// there is floor.
+/// A table: its top as ground, or hanging over ground that was seen under it. There is floor
+/// under the standing feet.
 Fault overhang(Perceived& p) {
     const double top_m = p.rng.uniform(0.4, 1.2);
     const Place table = p.target().at(p.rng.uniform(-0.2, 0.2), p.rng.uniform(-0.2, 0.2));
@@ -346,14 +348,14 @@ Fault overhang(Perceived& p) {
                    fmt::format("{:.0f} mm high, {}", 1e3 * top_m, hangs ? "hangs" : "as ground"));
 }
 
-/// All of the ground at another height, the ground under the feet too.
+/// All ground is higher or lower, also the ground under the feet.
 Fault raised(Perceived& p) {
     const double by_m = p.rng.uniform(0.1, 1.0) * (p.rng.below(2) == 0 ? -1.0 : 1.0);
     p.terrain.height.fill(static_cast<float>(by_m));
     return rebuilt(p, fmt::format("{:.0f} mm", 1e3 * by_m));
 }
 
-/// Beside the feet, within the body where it ends.
+/// A wall beside the feet, within the width of the body at the target.
 Fault wall(Perceived& p) {
     const double beside_m = p.rng.uniform(0.30, 0.44) * (p.rng.below(2) == 0 ? -1.0 : 1.0);
     const double half_length_m = p.rng.uniform(0.2, 1.0);
@@ -394,7 +396,7 @@ void repeat_sequences(GateBench& bench, Rng& rng) {
     });
 }
 
-/// A question as text, and what may be wrong with one.
+/// Damages the text of a query; `variant` describes how.
 std::string broken_text(const std::string& whole, Rng& rng, std::string& variant) {
     switch (rng.below(5)) {
         case 0: {
@@ -451,7 +453,7 @@ void restart(GateBench& bench, Rng& rng) {
     bench.set_begin([&bench] { bench.restart_gate(); });
 }
 
-/// The log's disk is full, or fails; an assured gate.
+/// The log of an assured gate fails: its disk is full or broken.
 void fill_disk(GateBench& bench, Rng& rng) {
     struct Log {
         std::shared_ptr<gate_process::testing::Platter> platter =
@@ -492,7 +494,7 @@ void unknown_command(const Machine& machine, GateBench& bench, Rng& rng) {
             codes.push_back(static_cast<std::uint8_t>(code));
     }
     const auto draws = std::make_shared<Rng>(rng.next_u64());
-    bench.outcome().variant = "codes that no movement has, drawn anew each time";
+    bench.outcome().variant = "codes without a movement, a new random one each time";
     bench.set_ask([&bench, draws, codes](std::int64_t now_ns, bool faulty) {
         if (!faulty) return bench.ask_step(now_ns);
         return bench.ask_step(
@@ -502,7 +504,7 @@ void unknown_command(const Machine& machine, GateBench& bench, Rng& rng) {
 
 // --- H26, H27: configurations ---
 
-/// The text of a machine file with one thing wrong. What was done is said in `variant`.
+/// Makes one error in the text of a machine file; `variant` describes it.
 std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) {
     std::vector<std::string> lines;
     for (std::size_t at = 0; at < whole.size();) {
@@ -510,7 +512,7 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
         lines.emplace_back(whole.substr(at, end - at));
         at = end + 1;
     }
-    // Lines that say something about one key.
+    // Lines that set one key.
     std::vector<std::size_t> keyed;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::size_t colon = lines[i].find(": ");
@@ -527,7 +529,7 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
     switch (rng.below(5)) {
         case 0:
             line.erase(first + 1 + rng.below(key.size() - 1), 1);
-            variant = "key " + key + " has lost a letter";
+            variant = "key " + key + " without one letter";
             break;
         case 1:
             line.clear();
@@ -551,7 +553,7 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
     return text;
 }
 
-/// A gate that would start with the broken file is asked as any other.
+/// If the gate accepts the broken file, it is queried as in every other run.
 Result<Outcome> start_with(const Result<io::MachineFile>& file,
                            const gate::ReadinessLimits& limits,
                            const std::string& variant,
@@ -561,7 +563,7 @@ Result<Outcome> start_with(const Result<io::MachineFile>& file,
     refused.variant = variant;
     refused.latency_ns = 0;
     refused.reason = gate::Reason::config;
-    if (!file) return refused;  // no start: nobody answers
+    if (!file) return refused;  // the gate did not start: no query gets an answer
     GateBench::Plan plan;
     plan.faulty = faulty;
     plan.deadline_ns = 0;
@@ -586,13 +588,13 @@ Result<Outcome> wrong_file(std::uint64_t seed, bool faulty) {
     return start_with(io::parse_machine(given, "rex.yaml"), {}, variant, seed, faulty);
 }
 
-/// Another configuration while the gate runs.
+/// The configuration changes while the gate runs.
 Fault other_configuration(Perceived& p) {
     const std::uint64_t hash = p.rng.next_u64();
     return {"another hash", [hash](MapSnapshot& map) { map.config_hash = hash; }};
 }
 
-/// Every limit set to what would switch its rule off.
+/// Sets each limit to a value that would switch its rule off.
 Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, bool faulty) {
     io::MachineFile file = whole;
     gate::ReadinessLimits limits;
@@ -713,7 +715,7 @@ std::vector<Injection> gate_injections(const io::MachineFile& file) {
          "ground that is not where the soles are",
          "cells of the map",
          true,
-         "all of the map 0.1-1 m higher or lower, base_link where it was",
+         "whole map 0.1-1 m higher or lower, base_link unchanged",
          snapshots(raised)},
         {"H16",
          "time stamps",
@@ -731,13 +733,13 @@ std::vector<Injection> gate_injections(const io::MachineFile& file) {
          "repeated and old questions",
          "client",
          true,
-         "copies of a question, or up to ten too old",
+         "copies of a question, or questions that are up to ten too old",
          bench(at_once(), repeat_sequences)},
         {"H19",
          "broken messages",
          "text of a client",
          true,
-         "cut anywhere, two at once, 5 MB, wrong type, no UTF-8; each text anew",
+         "cut anywhere, two at once, 5 MB, wrong type, invalid UTF-8; a new text each time",
          bench(at_once(), break_messages)},
         {"H20",
          "bad numbers in a map",
@@ -746,7 +748,7 @@ std::vector<Injection> gate_injections(const io::MachineFile& file) {
          "NaN, infinity, 1e300 or 0 as yaw, far poses, absurd heights, a flipped bit",
          snapshots(bad_number)},
         {"H22",
-         "gate process starts anew",
+         "gate process restarts",
          "process, modelled",
          true,
          "no OK within 1.9 s: it warms up for 2 s",
@@ -781,7 +783,7 @@ std::vector<Injection> gate_injections(const io::MachineFile& file) {
          "unknown directions",
          "client",
          true,
-         "all codes that no movement has",
+         "all codes without a movement",
          bench(at_once(), [machine](GateBench& b, Rng& rng) { unknown_command(machine, b, rng); })},
     };
 }

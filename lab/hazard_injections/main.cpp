@@ -43,9 +43,9 @@ struct Tally {
     int counted = 0;
     int controls = 0;
     int controls_ok = 0;
-    int late_runs = 0;  ///< with an OK that came too late
-    int late = 0;       ///< such OKs
-    int slow = 0;       ///< first inhibit after the demanded time, or never
+    int late_runs = 0;  ///< number of runs with an OK that came too late
+    int late = 0;       ///< number of OKs that came too late
+    int slow = 0;       ///< number of first inhibits after the deadline, or missing
     std::int64_t slowest_ns = 0;
 };
 
@@ -132,8 +132,9 @@ int inject_all(const std::vector<std::string>& words) {
         const auto wanted = io::split(words[3], ",");
         for (const auto& hazard : wanted) {
             if (std::ranges::find(injections, hazard, &Injection::hazard) == injections.end())
-                return app::report(usage_error(
-                    fmt::format("HAZARDS: no injection belongs to hazard '{}'", hazard)));
+                return app::report(usage_error(fmt::format(
+                    "HAZARDS: no injection belongs to hazard '{}'; see docs/reference/hazards.md",
+                    hazard)));
         }
         std::erase_if(injections, [&](const Injection& injection) {
             return std::ranges::find(wanted, injection.hazard) == wanted.end();

@@ -41,14 +41,14 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Of one axis of a corner, see corners_accuracy_test.cpp.
+/// Standard deviation of a corner coordinate per axis, see corners_accuracy_test.cpp.
 constexpr double kCornerNoise_px = 0.35;
 constexpr double kWindow_s = 1.0;
 constexpr std::array kMethods = {"vision alone", "loose fusion", "tight fusion"};
 constexpr std::size_t kLoose = 1;
 constexpr std::size_t kTight = 2;
 
-/// A frame's motion, and where the left camera truly was.
+/// Estimated motion of a frame, and the true pose of the left camera if known.
 struct Step {
     MotionEstimate motion;
     std::optional<Pose> T_world_camera;
@@ -59,7 +59,7 @@ struct Nees {
     int windows = 0;
 };
 
-/// Over windows of one second, one after the other, between frames with a true pose.
+/// NEES of consecutive windows of one second between frames with a true pose.
 Nees nees_of(const std::vector<Step>& steps, const Pose& T_camera_body) {
     Nees nees;
     std::optional<Pose> T_world_begin;
@@ -87,8 +87,9 @@ Nees nees_of(const std::vector<Step>& steps, const Pose& T_camera_body) {
     return nees;
 }
 
-/// Rms over the frames of the noise of a position, all axes together: white noise leaves 18/35 of
-/// its variance about the middle of a parabola through five values (Savitzky and Golay 1964).
+/// Noise of the true positions: rms over the frames, all axes together. White noise leaves
+/// 18/35 of its variance around the middle of a parabola through five values (Savitzky and Golay
+/// 1964).
 double noise_m(const Trajectory& truth) {
     constexpr std::array kWeights = {-3.0 / 35, 12.0 / 35, 17.0 / 35, 12.0 / 35, -3.0 / 35};
     constexpr double kLeft = 18.0 / 35;
@@ -142,7 +143,7 @@ Status report(const std::string& recording,
     return {};
 }
 
-/// The three methods side by side.
+/// Runs the three methods on the same input.
 class Contest {
   public:
     Contest(const odometry::OdometryConfig& config,
@@ -153,7 +154,7 @@ class Contest {
           loose_(config.imu),
           tight_(config, rectifier, rig.imu) {}
 
-    /// `update` feeds the frame to the odometry that it is given.
+    /// `update` passes the frame to one odometry.
     template <typename Update>
     void follow(const Update& update,
                 std::span<const ImuSample> imu,
@@ -189,7 +190,7 @@ Status run_corners(fmt::ostream& out) {
     odometry::OdometryConfig config;
     config.sigma_px = kCornerNoise_px;
 
-    // Frames without truth, where the grid is out of view, part the parts.
+    // Frames without truth (the grid is out of view) separate the parts.
     const auto& truth = recording->T_world_camera;
     const auto gap = std::find(truth.begin(), truth.end(), std::nullopt);
     const auto after = std::find_if(gap, truth.end(), [](const auto& T) { return T.has_value(); });

@@ -39,13 +39,13 @@ constexpr Drop kDrops[] = {{"kerb 75 mm", 0.075, 1},
                            {"kerb 150 mm", 0.150, 1},
                            {"stairs down 180/310", 0.180, 5}};
 
-/// A rule for which pixels are fused.
+/// Decides which pixels the map fuses.
 struct Rule {
     std::string name;
     ElevationConfig config;
 };
 
-/// The defaults, and what changes when one thing is another.
+/// The default rule, and variants with one changed setting each.
 std::vector<Rule> rules() {
     std::vector<Rule> all;
     const auto add = [&](const std::string& name, const auto& change) {
@@ -86,7 +86,7 @@ struct Cell {
     Sight sight = Sight::partly;
 };
 
-/// Cells around the edge, at most 0.5 m to either side of the camera.
+/// Cells around the edge, up to 0.5 m to either side of the camera.
 std::vector<Cell> cells_around(const sim::Scene& scene,
                                const ZedBench& bench,
                                const std::vector<Pose>& poses,
@@ -110,7 +110,7 @@ std::vector<Cell> cells_around(const sim::Scene& scene,
 struct Counts {
     int hidden = 0;
     int invented = 0;
-    int invented_wrong = 0;  ///< more than 20 mm from the ground that is really there
+    int invented_wrong = 0;  ///< more than 20 mm off the true ground
     int invented_sure = 0;   ///< with a sigma of at most 10 mm
     int visible = 0;
     int visible_known = 0;
@@ -139,7 +139,7 @@ Counts count(const elevation::ElevationMap& map, const std::vector<Cell>& cells)
     return counts;
 }
 
-/// One look over an edge, or ten on the way to it (over 0.9 m).
+/// One frame in front of an edge, or ten frames on the last 0.9 m towards it.
 struct Look {
     const Drop& drop;
     double distance_m = 0.0;
@@ -147,7 +147,7 @@ struct Look {
     int frames = 1;
 };
 
-/// What every rule makes of the same frames, and the truth.
+/// Maps of all rules from the same frames, with the truth.
 struct Outcome {
     std::vector<elevation::ElevationMap> maps;
     std::vector<Cell> cells;
@@ -175,7 +175,7 @@ Outcome look_over_edge(ZedBench& bench, const Look& look, const std::vector<Rule
     return outcome;
 }
 
-/// A row of cells straight ahead.
+/// Prints a row of cells straight ahead.
 void print_profile(fmt::ostream& file, const Outcome& outcome, const std::vector<Rule>& rules) {
     const double row_y_m = (std::floor(0.19 / kCellSize_m) + 0.5) * kCellSize_m;
     for (std::size_t r = 0; r < rules.size(); ++r) {

@@ -45,21 +45,21 @@ namespace surefoot {
 namespace {
 
 constexpr double kRate_hz = 8.0;
-constexpr int kDepthEvery = 2;  ///< frames with depth
+constexpr int kDepthEvery = 2;  ///< every n-th frame has depth
 constexpr double kSecondPitch_deg = 65.0;
-constexpr double kLongExposure_s = 0.016;  ///< the control's longest
+constexpr double kLongExposure_s = 0.016;  ///< longest exposure of the simulated control
 
-/// What makes the odometry's images worse than those of a global shutter over carpet.
+/// Image defects of the odometry, compared with a global shutter over carpet.
 struct Condition {
     std::string name = "plain";
     double contrast = 1.0;  ///< factor on all textures
-    int blur_samples = 0;   ///< instants of an exposure of 16 ms; 0 = sharp
+    int blur_samples = 0;   ///< number of instants within an exposure of 16 ms; 0 = sharp
     bool rolling = false;
 };
 
 struct Setup {
     double pitch_deg = 32.0;
-    double height_m = 1.0;  ///< of the camera over the soles
+    double height_m = 1.0;  ///< camera height above the soles
     std::string script;
     sim::MotionScript motion;
     std::uint64_t seed = 1;
@@ -73,18 +73,18 @@ camera::StereoRig mounted(double pitch_deg, double camera_z_body_m, bool rolling
     return rig;
 }
 
-/// A map with what it needs to be fed exact depth by one or two cameras.
+/// A map and its inputs: exact depth from one or two cameras.
 struct Memory {
     int cameras = 1;
     elevation::ElevationMap map{elevation::ElevationConfig{}};
     std::vector<camera::RectifiedRig> rigs;
 };
 
-/// The moment at which a step is asked for.
+/// State at the time of a step query.
 struct Decision {
     int step = 0;
     std::int64_t time_ns = 0;
-    int lost_frames = 0;  ///< until then
+    int lost_frames = 0;  ///< since the start
 };
 
 struct Poses {
@@ -92,7 +92,7 @@ struct Poses {
     Pose T_world_body;  ///< true
 };
 
-/// Points 25 mm apart under both feet after a step, in the body frame before it.
+/// Points 25 mm apart under both feet after a step, in the body frame before the step.
 std::vector<Eigen::Vector2d> landing_points(const Machine& machine, const sim::StepEvent& step) {
     const Pose T_before_after = step.T_world_before.inverse() * step.T_world_after;
     std::vector<Eigen::Vector2d> points;
@@ -120,7 +120,7 @@ void look_up(const Setup& setup,
     const Poses& now = poses.at(decision.time_ns);
     const auto& layers = memory.map.layers();
     for (const Eigen::Vector2d& point : points_body_m) {
-        // Where the gate looks: by the estimated pose, level.
+        // The gate reads the map at the estimated pose, taken as level.
         const Eigen::Vector3d ahead = now.T_odom_body.rotation * Eigen::Vector3d::UnitX();
         const Eigen::Rotation2Dd turn(std::atan2(ahead.y(), ahead.x()));
         const Eigen::Vector2d at = now.T_odom_body.translation_m.head<2>() + turn * point;
@@ -267,8 +267,8 @@ std::vector<Setup> mounts(std::uint64_t seed, double noise) {
 }
 
 std::vector<Setup> conditions(std::uint64_t seed, double noise) {
-    constexpr double kPoor = 0.3;  // of the contrast
-    constexpr int kInstants = 3;   // the frame's ringing smears by about a pixel
+    constexpr double kPoor = 0.3;  // factor on the contrast
+    constexpr int kInstants = 3;   // the machine vibrates by about a pixel per exposure
     std::vector<Setup> all;
     const auto add = [&](const Condition& condition) {
         all.push_back(
@@ -283,7 +283,7 @@ std::vector<Setup> conditions(std::uint64_t seed, double noise) {
 
 using Set = std::vector<Setup> (*)(std::uint64_t seed, double noise);
 
-/// None where no set has that name.
+/// Returns nullptr for an unknown name.
 Set set_of(const std::string& name) {
     if (name == "grid") return grid;
     if (name == "mounts") return mounts;
@@ -307,7 +307,9 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     const double noise = argc > 4 ? std::atof(argv[4]) : 1.0;
     const Set set = set_of(argc > 5 ? argv[5] : "grid");
     if (!set) {
-        fmt::print(stderr, "landing_on_memory: {} is no set of walks\n", argv[5]);
+        fmt::print(stderr,
+                   "landing_on_memory: unknown set of walks '{}'; use grid, mounts or conditions\n",
+                   argv[5]);
         return 2;
     }
     const auto machine = app::load_machine("rex");

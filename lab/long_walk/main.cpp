@@ -36,7 +36,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kMostFrames = 250;  ///< of the way; kept in memory
+constexpr int kMostFrames = 250;  ///< frames of the path kept in memory
 constexpr int kDepthEvery = 5;
 constexpr double kNewNoise_grey = 1.5;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
@@ -67,7 +67,8 @@ Result<Way> render(sim::SceneOptions sim, Executor& executor) {
 }
 
 void add_noise(Rng& rng, GreyImage& image) {
-    // Normal numbers are dear: a table of them, entered anew in every row.
+    // Normal random numbers are slow. This table is filled once and read from a new random
+    // position in every row.
     static const std::vector<float> table = [] {
         Rng fill(1);
         std::vector<float> values(1 << 16);
@@ -83,7 +84,7 @@ void add_noise(Rng& rng, GreyImage& image) {
     }
 }
 
-/// Forth and back: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1, ...
+/// Index on the path, back and forth: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1, ...
 std::size_t place_on_way(std::int64_t index, std::size_t frames) {
     const auto period = 2 * (static_cast<std::int64_t>(frames) - 1);
     const std::int64_t phase = index % period;

@@ -33,7 +33,7 @@ namespace {
 
 constexpr double kReach_m = 1.2;
 
-/// Least and most of a cell; false over a void.
+/// Lowest and highest true height in a cell. Returns false over a void.
 bool range_in(const HazardScene& scene,
               const Eigen::Vector2d& center_m,
               double side_m,

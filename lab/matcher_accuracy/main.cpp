@@ -30,7 +30,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Disorders `values`; `share` of them are smaller.
+/// Quantile: `share` of the values are smaller. Reorders `values`.
 float quantile(std::vector<float>& values, double share) {
     if (values.empty()) return std::numeric_limits<float>::quiet_NaN();
     const auto at = values.begin() +
@@ -39,7 +39,8 @@ float quantile(std::vector<float>& values, double share) {
     return *at;
 }
 
-/// Rounded truth leaves residuals around zero; truth that was cut leaves them above it.
+/// Writes the quantiles of matched minus true disparity. Rounded truth centres them on zero;
+/// truncated truth shifts them up.
 void report_residuals(fmt::ostream& out,
                       const TruePair& pair,
                       const char* matcher,

@@ -28,7 +28,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Cost of the second best over that of the best, upside down: large = unsure.
+/// Inverse of the ratio of the second-best cost to the best one; large = unsure.
 Image<float> peak_doubt(const TruePair& pair) {
     stereo::SemiGlobalConfig config;
     config.disparities = pair.disparities;
@@ -43,9 +43,9 @@ Image<float> peak_doubt(const TruePair& pair) {
     return doubt;
 }
 
-/// What sigma said of matches, and how wrong they were; of one image, or of several together.
+/// Stated sigmas and real errors of matches, from one image or several.
 struct Confidences {
-    std::vector<float> errors_px;  ///< of all matches; their doubts in the same order
+    std::vector<float> errors_px;  ///< of all matches; the uncertainties below have the same order
     std::vector<float> sigmas_px;
     std::vector<float> peak_doubts;
     std::array<double, 3> within{};  ///< trusted matches within 1, 2, 3 sigma
@@ -66,7 +66,7 @@ void Confidences::add(const TruePair& pair) {
         const float error_px = depth.disparity_px.data()[i] - pair.truth_px.data()[i];
         if (std::isnan(error_px)) continue;
         errors_px.push_back(error_px);
-        // One number for both kinds of doubt: what is likely wrong counts as wrong by pixels.
+        // Combines sigma and outlier probability: a likely outlier counts as several pixels.
         const float p = depth.outlier_probability.data()[i];
         sigmas_px.push_back(depth.sigma_px.data()[i] + 4.0F * p);
         peak_doubts.push_back(doubt.data()[i]);
@@ -106,7 +106,7 @@ void Confidences::print(fmt::ostream& out, const char* kind, const std::string& 
               eval::sparsification(errors_px, peak_doubts).auc);
 }
 
-/// Each of them, then all of them together.
+/// Writes a line for each pair and one for all pairs together.
 void report_sigmas_of(fmt::ostream& out,
                       const std::string& name,
                       const std::vector<TruePair>& pairs) {
@@ -146,7 +146,7 @@ Status report_sigmas(const std::string& file,
                      std::uint64_t first_seed) {
     auto out = fmt::output_file(file);
     out.print("kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak\n");
-    // Truth in whole pixels says nothing.
+    // Truth in whole pixels cannot measure sub-pixel errors.
     std::erase_if(pairs, [](const TruePair& pair) { return pair.step_px >= 1.0; });
     report_sigmas_of(out, "real pairs", pairs);
     sim::SceneOptions options;

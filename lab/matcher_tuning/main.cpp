@@ -39,7 +39,7 @@ struct Images {
     std::vector<TruePair> pairs;
 };
 
-/// Scenes as the fitted ZED sees them, with settings on top, and with a seed each.
+/// Scenes seen by the fitted ZED with additional settings; each scene has its own seed.
 struct Series {
     const char* kind;
     std::vector<std::string> scenes;
@@ -74,7 +74,7 @@ std::vector<Series> held_out_series() {
     };
 }
 
-/// Only what both eyes see is judged.
+/// Renders the series. Only pixels that both cameras see keep their truth.
 Result<Images> render(const Series& series, std::uint64_t first_seed) {
     Images images{series.kind, {}};
     images.pairs.reserve(series.scenes.size());
@@ -97,7 +97,7 @@ Result<Images> render(const Series& series, std::uint64_t first_seed) {
     return images;
 }
 
-/// cones and cloth3 are for tuning, the others not.
+/// Splits the pairs: cones and cloth3 for tuning, the others for the scores.
 std::vector<Images> halves(std::vector<TruePair> pairs) {
     Images tuned{"tuned on", {}};
     Images kept{"pair", {}};
@@ -122,12 +122,12 @@ struct Loss {
     double simulated = 0.0;
 };
 
-/// By what a setting is chosen: both halves of the images of the tuning, or one of them alone.
+/// Criterion for the choice of a setting: both kinds of tuning images, or one of them alone.
 struct Aim {
     const char* set;
     double pairs;
     double simulated;
-    const char* kind;  ///< of the images on which it is shown; nothing = all
+    const char* kind;  ///< kind of the images that show the result; nullptr = all
     [[nodiscard]] bool judges(const std::string& images) const {
         return kind == nullptr || images == kind;
     }
@@ -139,7 +139,7 @@ constexpr Aim kAims[] = {{"chosen", 1.0, 1.0, nullptr},
                          {"for pairs", 1.0, 0.0, "pair"},
                          {"for simulated", 0.0, 1.0, "simulated"}};
 
-/// The best of a matcher's settings for each aim, and what it loses.
+/// Chooses the best setting of a matcher for each aim, and its loss.
 class Choice {
   public:
     Choice(const Candidate& candidate,
@@ -199,7 +199,7 @@ void report(fmt::ostream& out,
     }
 }
 
-/// Seeds are counted through all series.
+/// Renders all series; the seeds continue from one series to the next.
 Status add_series(const std::vector<Series>& all, std::uint64_t seed, std::vector<Images>& out) {
     for (const Series& series : all) {
         auto images = render(series, seed);
@@ -210,7 +210,8 @@ Status add_series(const std::vector<Series>& all, std::uint64_t seed, std::vecto
     return {};
 }
 
-/// Our whole matcher is put together here once more, so that its penalties can be set.
+/// `our_whole` rebuilds the pipeline's matcher so that its penalties can be set. Checks that
+/// both give the same disparities.
 bool is_the_chain(const TruePair& pair) {
     const Image<float> built_px = our_whole({})(pair);
     const Image<float> chain_px = chain()(pair);
@@ -227,7 +228,9 @@ Status run(const std::string& data,
     std::vector<Images> sets = halves(std::move(*pairs));
     const std::vector<TruePair> real = sets.front().pairs;
     if (!is_the_chain(real.front()))
-        return input_error("our whole matcher is not what the chain uses any more");
+        return input_error(
+            "our_whole no longer equals the pipeline's matcher; update "
+            "lab/stereo_pairs/rival_matchers.cpp");
     const Series for_tuning{"tuned on", {"demo_stairs", "sill_13", "kerb_down_150", "floor"}, {}};
     if (auto added = add_series({for_tuning}, first_tuning_seed, sets); !added) return added;
     const std::vector<TruePair> simulated = sets.back().pairs;

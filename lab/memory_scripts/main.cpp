@@ -60,8 +60,8 @@ constexpr std::uint8_t kBack = 17;
 constexpr std::uint8_t kTurnLeft = 25;
 constexpr double kToe_m = 0.24;
 constexpr double kStepAhead_m = 0.40;
-/// Of the movement of class stair: no REX goes so far back, but a shorter one would land on the
-/// strip behind the nosing, which its camera never sees.
+/// Length of the backward movement of class stair. A real REX makes no backward step of that
+/// length. A shorter one would land on the strip behind the nosing, which its camera never sees.
 constexpr double kStairBack_m = 0.60;
 constexpr double kAttested_m = 1.0;
 constexpr double kRate_hz = 0.5;  ///< a step takes ten seconds
@@ -77,22 +77,22 @@ struct Setup {
     Script script = Script::table;
     std::uint64_t seed = 0;
     double pitch_deg = 32.0;
-    double drift = 0.0;  ///< share of the way, without its sign
+    double drift = 0.0;  ///< share of the distance, without sign
     Stated stated = Stated::own;
     bool images = false;
 };
 
 struct Order {
     std::uint8_t command = 0;
-    bool asked = false;   ///< what the script is about
-    bool forced = false;  ///< made whatever the oracle says: it ends at an edge
-    bool stair = false;   ///< of the machine with stairs, and never made
+    bool asked = false;   ///< this order is the question of the script
+    bool forced = false;  ///< made even if the oracle forbids it: it ends at an edge
+    bool stair = false;   ///< movement of the machine with stairs; asked, never made
 };
 
 struct Plan {
     std::string yaml;
     std::vector<Order> orders;
-    bool ends_where_unsafe = false;  ///< a refused order ends the script
+    bool ends_where_unsafe = false;  ///< an order refused by the oracle ends the script
     double relief_m = 0.0;
     double size_m = 0.0;
 };
@@ -104,7 +104,7 @@ void add(std::vector<Order>& orders, Order order, int times = 1) {
 std::string scene_head(const char* name, Rng& rng) {
     constexpr const char* kLooks[] = {"carpet", "tiles", "wood", "concrete"};
     return fmt::format(
-        "name: {}\ndescription: a script of remembered ground\nlighting: {{ambient: {}, lamp: "
+        "name: {}\ndescription: steps onto remembered ground\nlighting: {{ambient: {}, lamp: "
         "{}}}\nmaterials:\n"
         "  ground: {{pattern: {}, albedo: {}, contrast: 0.6}}\n"
         "  board: {{pattern: wood, albedo: 0.55, contrast: 0.6, texel_m: 0.0015}}\n"
@@ -128,7 +128,7 @@ std::string scene_tail(double bottom_m) {
 constexpr const char* kFloor =
     "  - floor: {min_x_m: -3, min_y_m: -4, max_x_m: 8, max_y_m: 4, material: ground}\n";
 
-/// Its rim 0.5 to 0.9 m behind the body after the turn.
+/// A table whose edge is 0.5 to 0.9 m behind the body after the turn.
 Plan table_plan(Rng& rng) {
     Plan plan;
     plan.relief_m = rng.uniform(0.68, 0.78);
@@ -149,7 +149,7 @@ Plan table_plan(Rng& rng) {
     return plan;
 }
 
-/// The wall lies 1.1 to 1.3 m ahead when the machine begins to turn.
+/// A door whose wall is 1.1 to 1.3 m ahead when the machine begins to turn.
 Plan door_plan(Rng& rng) {
     Plan plan;
     plan.size_m = rng.uniform(1.00, 1.20);
@@ -169,9 +169,10 @@ Plan door_plan(Rng& rng) {
     return plan;
 }
 
-/// A floor that ends 0.02 to 0.07 m ahead of the toes where the machine looks at it: from there
-/// the strip behind the edge that no line of sight reaches is a cell wide. Then a tread, and ground
-/// one rise below it. The machine goes back, turns, and comes back with its heels to the edge.
+/// A floor that ends 0.02 to 0.07 m ahead of the toes at the place where the machine observes
+/// the edge. From there the occluded strip behind the edge is one cell wide. Then follows a tread,
+/// and ground one riser below it. The machine goes back, turns, and comes back with its heels to
+/// the edge.
 Plan tread_plan(Rng& rng) {
     Plan plan;
     plan.relief_m = rng.uniform(0.08, 0.14);
@@ -209,7 +210,7 @@ Plan plan_of(const Setup& setup) {
     return tread_plan(rng);
 }
 
-/// The REX with stairs switched on and a movement for them.
+/// The REX with class stair enabled and one movement of that class.
 Machine stair_machine(const Machine& rex) {
     Machine machine = rex;
     machine.limits.step[static_cast<std::size_t>(MovementClass::stair)].enabled = true;
@@ -219,7 +220,7 @@ Machine stair_machine(const Machine& rex) {
     return machine;
 }
 
-/// A source whose motion is told wrong, and that ends when somebody says so.
+/// A source that reports the motion with an error, and ends on `end`.
 class DriftingSource final : public camera::FrameSource {
   public:
     DriftingSource(sim::SceneSource& source, double share, Stated stated)
@@ -234,15 +235,15 @@ class DriftingSource final : public camera::FrameSource {
             drift(*(*frame)->known_motion);
         return frame;
     }
-    /// A step of so many metres begins.
+    /// Announces the length of the next step.
     void way_grows(double step_m) { way_m_ += step_m; }
     void end() { over_ = true; }
 
   private:
     void drift(MotionEstimate& motion) {
         motion.T_previous_body.translation_m *= 1.0 + share_;
-        // The error is a share of the way, the same all along it; as a sum of variances it has to
-        // grow with the square.
+        // The error is a constant share of the distance. The sum of the variances must therefore
+        // grow with the square of the distance.
         const double way_m = std::exchange(stated_way_m_, way_m_);
         if (stated_ == Stated::told) {
             const double grown_m2 = share_ * share_ * (way_m_ * way_m_ - way_m * way_m);
@@ -267,8 +268,8 @@ double yaw_of(const Pose& T_odom_body) {
     return std::atan2(ahead.y(), ahead.x());
 }
 
-/// Fills cells that are unknown or less sure than half of what the gate wants from the nearest one
-/// within three cells, of equally near ones from the lowest.
+/// Fills cells that are unknown, or less certain than half of the gate's limit, from the
+/// nearest good cell within three cells. Of equally near cells it takes the lowest.
 void fill_holes(const GateLimits& limits, grid::MapSnapshot& map) {
     constexpr int kFarthest = 3;
     const auto known = std::make_unique<grid::MapSnapshot>(map);
@@ -307,7 +308,7 @@ void fill_holes(const GateLimits& limits, grid::MapSnapshot& map) {
     grid::seal(map);
 }
 
-/// One script on its way.
+/// Executes one script.
 class Walk {
   public:
     Walk(const Setup& setup,
@@ -326,7 +327,8 @@ class Walk {
           pipeline_(pipeline),
           out_(out) {}
 
-    /// After every frame: asks and goes on when the machine has stood for a while.
+    /// Runs after every frame. When the machine has stood long enough, asks the gate and gives
+    /// the next order.
     void step() {
         const auto& motion = source_.commanded();
         const double free_s = motion->duration_s();
@@ -354,7 +356,7 @@ class Walk {
     [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
 
   private:
-    /// What the oracle says; the line has both.
+    /// Asks gate and oracle, writes both answers, and returns the oracle's.
     bool ask(const Order& order) {
         const Machine& machine = order.stair ? stairs_ : rex_;
         const Pose T_world_body = source_.truth().trajectory.back().T_world_body;
@@ -386,7 +388,7 @@ class Walk {
         return truth.safe;
     }
 
-    /// The operator's word at the start holds until the machine has left.
+    /// Adds the operator attestation of the start until the machine has left the attested area.
     void attest(gate::Query& query) {
         if (left_) return;
         const double away_m = 1e-4 * std::hypot(static_cast<double>(query.x_tenth_mm),
@@ -479,7 +481,7 @@ Result<sim::SceneOptions> scene_options(const Setup& setup,
         options.sensor = sim::Sensor::analytic;
         options.known_motion = true;
     } else {
-        options.rate_hz = 5.0;  // the odometry has to follow
+        options.rate_hz = 5.0;  // the odometry needs this rate
     }
     return options;
 }

@@ -45,10 +45,10 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kFirst = 20;  ///< frame of the scene's way: the machines stand before
+constexpr int kFirst = 20;  ///< first frame of the scene's path: before it the machine stands
 constexpr int kFrames = 76;
 constexpr int kOnset = 40;
-constexpr int kAfter = 16;  ///< frames that are followed after the end of a fault
+constexpr int kAfter = 16;  ///< frames recorded after the end of a fault
 constexpr double kWindow_s = 1.0;
 constexpr double kWall_dn = 130.0;
 
@@ -61,7 +61,7 @@ struct Shown {
     bool dropped = false;
 };
 
-/// Images that the scene does not show, through the same camera.
+/// Renders images of other content through the same camera.
 class Painter {
   public:
     Painter(const camera::StereoRig& rig, sim::Renderer renderer, Executor& executor)
@@ -71,7 +71,7 @@ class Painter {
         clean_.left.depth_m = clean_.left.signal_dn;
     }
 
-    /// A wall without texture, or no light at all.
+    /// A wall without texture, or darkness.
     void flat(double signal_dn, Shown& shown) {
         clean_.left.signal_dn.fill(static_cast<float>(signal_dn));
         clean_.right.signal_dn.fill(static_cast<float>(signal_dn));
@@ -80,7 +80,7 @@ class Painter {
         shown.frame.right = pair_.right;
     }
 
-    /// Somebody in front of the left `share` of the view: a textured board 1.2 m away that has
+    /// A person in front of the left `share` of the view: a textured board 1.2 m away that has
     /// moved by `shift_m` to the right.
     void person(double share, double shift_m, Shown& shown) {
         constexpr double kAway_m = 1.2;
@@ -112,7 +112,7 @@ class Painter {
     }
 
   private:
-    /// The noise of a frame that the scene itself does not have.
+    /// Adds noise; its frame number differs from those of the scene.
     void expose(int frame) { renderer_.expose(clean_, {}, 10'000 + frame, *executor_, pair_); }
     static void over(const Image<float>& mask, const GreyImage& from, GreyImage& image) {
         for (int v = 0; v < image.height(); ++v)
@@ -130,7 +130,7 @@ class Painter {
     sim::RenderedPair pair_;
 };
 
-/// What a fault may use: the whole recording as it was, and other images.
+/// Material for a fault: the clean recording and other images.
 struct Bench {
     const std::vector<Shown>& clean;
     Painter& painter;
@@ -144,7 +144,7 @@ struct Fault {
     /// `k` counts from the first faulty frame.
     std::function<void(Shown&, int k, Bench&)> damage = {};
     std::function<void(camera::StereoRig&)> rig = {};
-    bool watched = true;  ///< as the application does: repeated and torn images are marked
+    bool watched = true;  ///< as in the application: repeated and torn images are marked
     bool of_imu = false;
 };
 
@@ -351,7 +351,7 @@ std::vector<Fault> all_faults() {
     return faults;
 }
 
-/// The recording with the fault; what was dropped leaves its inertial samples to the next frame.
+/// The recording with the fault. The IMU samples of a dropped frame go to the next frame.
 std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, Painter& painter) {
     Bench bench{clean, painter};
     camera::FrameIntegrityCheck watch;
@@ -369,7 +369,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
             ++dropped;
             continue;
         }
-        if (dropped > 0) shown.faulty = true;  // the gap is seen when the next one comes
+        if (dropped > 0) shown.faulty = true;  // the next frame shows the gap
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
         shown.frame.frame_status.dropped = std::exchange(dropped, 0);
@@ -379,7 +379,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
     return out;
 }
 
-/// A motion as found, as it was, and with the covariance that was stated.
+/// A motion: estimated, true, and with its stated covariance.
 struct Piece {
     Pose T_true;
     Pose T_found;
@@ -392,7 +392,7 @@ struct Piece {
         T_found = T_found * next.T_found;
         worst = std::max(worst, next.worst);
     }
-    /// err_mm,err_deg,sig_mm,sig_deg
+    /// Columns err_mm,err_deg,sig_mm,sig_deg.
     [[nodiscard]] std::string text() const {
         const Vector6 error = difference(T_true, T_found);
         const auto sigma = [](const Eigen::Matrix3d& part) {
@@ -444,7 +444,8 @@ Status follow(const Recording& recording,
         times_s.push_back(seconds_from_ns(
             recording.frames[static_cast<std::size_t>(shown[i].frame.index - kFirst)]
                 .frame.time_ns));
-        // Motions end at their frames: the first one of the last second begins a second ago.
+        // A motion belongs to the frame at its end: the first motion of the last second begins
+        // one second ago.
         Piece second;
         for (std::size_t k = 0; k <= i; ++k)
             if (times_s[k] > times_s[i] - kWindow_s + 1e-3) second.append(pieces[k]);

@@ -35,10 +35,10 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kStands = 30;  ///< frames before the motion
-constexpr int kAfter = 15;   ///< and after its beginning
+constexpr int kStands = 30;  ///< standing frames before the motion
+constexpr int kAfter = 15;   ///< frames after its begin
 constexpr int kLongStand = 100;
-constexpr int kSettled = 3;  ///< the first frames may settle within their noise
+constexpr int kSettled = 3;  ///< first frames are not judged: the pose may change within the noise
 constexpr double kPeriod_s = 0.1;
 
 struct Onset {
@@ -49,13 +49,13 @@ struct Onset {
 constexpr Onset kOnsets[] = {
     {0.0, 1}, {0.001, 1}, {0.003, 1}, {0.005, 1}, {0.001, 5}, {0.003, 5}, {0.005, 5}};
 
-/// Where the machine is, ahead of its start.
+/// Distance from the start at a frame.
 double shift_at_m(const Onset& onset, int frame) {
     const double part = static_cast<double>(frame - kStands + 1) / onset.spread_frames;
     return onset.shift_m * std::clamp(part, 0.0, 1.0);
 }
 
-/// A machine that does not move while an image is exposed.
+/// A motion that stands still during an exposure.
 struct Held final : sim::Motion {
     explicit Held(const Pose& T) { state.T_world_body = T; }
     [[nodiscard]] sim::MotionState at(double) const override { return state; }
@@ -63,9 +63,9 @@ struct Held final : sim::Motion {
     sim::MotionState state;
 };
 
-/// The eyes of one scene.
+/// Camera, pose and images of one scene.
 struct Stage {
-    camera::StereoRig rig;  ///< as everybody believes it is
+    camera::StereoRig rig;  ///< as calibrated
     Pose T_world_body;
     sim::Renderer renderer;
     pipeline::PipelineConfig config;
@@ -76,7 +76,7 @@ Status measure(const Stage& stage, const Onset& onset, Executor& executor, fmt::
     auto pipeline = pipeline::Pipeline::make(stage.config, stage.rig, executor);
     if (!pipeline) return pipeline.error();
     const int frames = onset.shift_m > 0.0 ? kStands + kAfter : kLongStand;
-    const int whole = kStands + onset.spread_frames - 1;  // first frame with all of the shift
+    const int whole = kStands + onset.spread_frames - 1;  // first frame with the whole shift
     sim::CleanPair clean;
     sim::RenderedPair images;
     Pose T_odom_start;

@@ -55,7 +55,7 @@ struct Case {
     std::string rig;
 };
 
-/// The maps that the pipeline does not make.
+/// The additional maps beside the pipeline's own.
 class Maps {
   public:
     explicit Maps(const elevation::ElevationConfig& config)
@@ -83,7 +83,7 @@ class Maps {
     elevation::ElevationMap matched_true;
 };
 
-/// ",jump_mm,spread_mm" of the level floor of a map in the world.
+/// Columns ",jump_mm,spread_mm" of the level floor of a map in the world frame.
 std::string floor_figures(const sim::Scene& scene, const elevation::ElevationMap& map) {
     eval::MapPair maps;
     maps.geometry = map.geometry();
@@ -110,7 +110,7 @@ std::string motion_figures(const Trajectory& truth, const Trajectory& found, int
                        lost);
 }
 
-/// Nothing where the carrier cannot go the scene's way.
+/// Returns nullopt if the motion model cannot follow the scene's path.
 Result<std::optional<std::string>> measure(const Case& now,
                                            int frames,
                                            const SettingsRequest& common,
@@ -173,7 +173,8 @@ Result<sim::CarriedBy> motion_model_named(std::string_view name) {
     const auto* const found =
         std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
     if (found == std::end(sim::kCarriedByNames))
-        return usage_error(fmt::format("there is no carrier {}", name));
+        return usage_error(
+            fmt::format("unknown motion model '{}'; use scene, trolley, rex or hand", name));
     return static_cast<sim::CarriedBy>(found - std::begin(sim::kCarriedByNames));
 }
 

@@ -28,11 +28,11 @@ namespace {
 
 constexpr const char* kScenes[] = {"floor", "cross_fall"};
 constexpr int kTenths = 10;
-constexpr int kReach_px = 6;  ///< how far a plane goes on around a pixel that counts
+constexpr int kReach_px = 6;  ///< least extent of a plane around a counted pixel
 constexpr float kFlatness_px = 1e-3F;
 constexpr float kRight_px = 1.0F;
 
-/// Disparities of a plane are linear in the image.
+/// Whether the surface around a pixel is a plane: its disparities are linear in the image.
 bool on_plane(const Image<float>& truth_px, int u, int v) {
     if (!truth_px.contains(u - kReach_px, v - kReach_px) ||
         !truth_px.contains(u + kReach_px, v + kReach_px))
@@ -44,7 +44,7 @@ bool on_plane(const Image<float>& truth_px, int u, int v) {
            std::abs(bent_down - twice_px) < kFlatness_px;
 }
 
-/// Errors by the tenth of a pixel.
+/// Errors by tenths of a pixel.
 struct Locking {
     std::array<double, kTenths> count{};
     std::array<double, kTenths> sum_px{};
@@ -62,7 +62,8 @@ struct Locking {
             for (int u = 0; u < disparity_px.width(); ++u) {
                 const float truth_px = pair.truth_px.at(u, v);
                 const float error_px = disparity_px.at(u, v) - truth_px;
-                // Also false where either is unknown.
+                // Also skips pixels where one of the two is unknown: comparisons with NaN are
+                // false.
                 if (!(std::abs(error_px) <= kRight_px) || !on_plane(pair.truth_px, u, v)) continue;
                 add(static_cast<double>(truth_px), static_cast<double>(error_px));
             }

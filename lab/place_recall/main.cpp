@@ -53,21 +53,21 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kLean_deg = 0.2;  ///< of odom
-constexpr double kStep_m = 0.26;   ///< between two keyframes, just enough for one
+constexpr double kLean_deg = 0.2;  ///< tilt of odom
+constexpr double kStep_m = 0.26;   ///< distance between two keyframes, just enough for one
 constexpr double kTurn_deg = 13.0;
 constexpr double kBay_m = 1.5;
 constexpr std::uint64_t kWayStream = 0x706c616365;
-constexpr int kSecondRun = 10'000;  ///< its frames have other noise
+constexpr int kSecondRun = 10'000;  ///< first frame number of the second run: its noise differs
 
-/// Time of the processor that this thread has taken: others may run beside it.
+/// CPU time of this thread, independent of other threads.
 double cpu_ms() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// Where base_link stands.
+/// A pose of base_link.
 struct Stop {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -79,7 +79,7 @@ struct Stop {
     }
 };
 
-/// How far a scene lets the machine go ahead.
+/// Distance that the machine can go ahead in a scene.
 double reach_m(const std::string& scene) {
     if (scene == "walk_turn_round") return 2 * kStep_m;
     return 3 * kStep_m;
@@ -110,7 +110,7 @@ class Way {
     std::vector<Stop> stops_;
 };
 
-/// Forward, and a look to both sides.
+/// Path of the first run: forward, with views to both sides.
 std::vector<Stop> first_way(const std::string& scene) {
     Way way({});
     way.forward(reach_m(scene));
@@ -139,7 +139,7 @@ std::vector<Stop> way_and_back(const std::string& scene, Rng& rng) {
     return way.stops();
 }
 
-/// What one machine sees of one scene.
+/// Images of one machine in one scene.
 class Cameras {
   public:
     static Result<Cameras> open(const std::string& scene,
@@ -203,7 +203,7 @@ struct Case {
     std::string profile;
 };
 
-/// One run of a tracker along a way; prints what became of each keyframe.
+/// Moves a tracker along a path and prints the result of each keyframe.
 class Run {
   public:
     Run(const Case& now, const Pose& T_world_map, place_recognition::Place saved, fmt::ostream& out)
@@ -287,7 +287,7 @@ class Run {
     }
 
     Case now_;
-    Pose T_world_map_;  ///< the first run's odom
+    Pose T_world_map_;  ///< odom of the first run
     place_recognition::PlaceTracker tracker_;
     place_recognition::Place saved_;
     fmt::ostream& out_;
@@ -300,7 +300,7 @@ Pose leaning(const Pose& T_world_odom, Rng& rng) {
                                {0.0, 0.0, 0.0}};
 }
 
-/// A run with an odom of its own where `saved` was remembered.
+/// Second run with its own odom frame in the saved place `saved`.
 Status drive_second(const Case& now,
                     Cameras& cameras,
                     const Pose& T_world_map,
@@ -308,7 +308,7 @@ Status drive_second(const Case& now,
                     Rng& rng,
                     Executor& executor,
                     fmt::ostream& out) {
-    // Any number of bays that the first run did not come to.
+    // A few bays farther, which the first run did not reach.
     const double ahead_m = now.kind == "bay" ? kBay_m * static_cast<double>(2 + rng.below(3)) : 0.0;
     const auto again = second_way(now.scene, ahead_m, rng);
     Run second(now, T_world_map, std::move(saved), out);
@@ -337,7 +337,7 @@ Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
     return drive_second(now, *cameras, T_world_map, first.place(), rng, executor, out);
 }
 
-/// One place of the corridors of all cases, which stand 100 m from each other in its map.
+/// Puts the corridors of all cases into one place database, 100 m apart in its map.
 Status measure_house(const std::vector<Case>& cases, Executor& executor, fmt::ostream& out) {
     place_recognition::Place house;
     std::vector<Pose> T_world_map;

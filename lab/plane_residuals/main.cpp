@@ -41,10 +41,11 @@ struct Window {
     double rms_px = 0.0;       ///< of all matched pixels, outliers too
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
     Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< disparity = plane . (u, v, 1), window
-    std::vector<double> departure_px;  ///< of every pixel from it, NaN = no match or an outlier
+    std::vector<double> departure_px;  ///< disparity minus plane; NaN = no match or outlier
 };
 
-/// Root mean square of the horizontal difference between pixels `reach` to either side, per pixel.
+/// Rms of the horizontal grey difference between the pixels `reach` to the left and right, divided
+/// by their distance.
 double texture_of(const GreyImage& image, int u0, int v0, int reach) {
     double sum = 0.0;
     for (int v = v0; v < v0 + kWindow_px; ++v) {
@@ -56,8 +57,8 @@ double texture_of(const GreyImage& image, int u0, int v0, int reach) {
     return std::sqrt(sum / (kWindow_px * kWindow_px));
 }
 
-/// Plane d = a u + b v + c by five rounds of least squares on the points within 3 sigma of the
-/// last.
+/// Fits the plane d = a u + b v + c in five rounds of least squares. Each round uses the points
+/// within 3 sigma of the plane before.
 Window fit(const Image<float>& disparity_px, int u0, int v0) {
     std::vector<Eigen::Vector3d> places;
     std::vector<double> values;
@@ -109,8 +110,9 @@ Window fit(const Image<float>& disparity_px, int u0, int v0) {
     return window;
 }
 
-/// One sigma [dn] of what is left between the eyes where a window is its plane, gain and offset
-/// taken out: noise, without any matcher's doing. NaN where the right eye does not see all of it.
+/// One sigma [dn] of the difference between both cameras after alignment by the window's plane and
+/// correction of gain and offset. This is image noise, independent of the matcher. NaN: the right
+/// camera does not see the whole window.
 double camera_difference_of(const camera::RectifiedPair& pair,
                             const Window& window,
                             int u0,
@@ -142,8 +144,8 @@ double camera_difference_of(const camera::RectifiedPair& pair,
     return 1.4826 * *middle;
 }
 
-/// How much of the departures comes back at the same pixel in the next frame: all that a fixed
-/// error of a lens or its rectification causes, where the camera or the scene has moved.
+/// Correlation of the departures at the same pixel in consecutive frames. Where camera or scene has
+/// moved, only a fixed error of the lens or its rectification repeats.
 class Repetition {
   public:
     void add(const Window& before, const Window& now) {
@@ -242,7 +244,7 @@ int run(const std::string& name,
         rectifier->rectify(**next, pair);
         matcher->match(pair.left.view(), pair.right.view(), executor, depth);
         std::vector<Window> windows;
-        // The left strip of the image is not seen by the right eye.
+        // The right camera does not see the left strip of the image.
         for (int v = 8; v + kWindow_px + 8 <= pair.left.height(); v += kWindow_px) {
             for (int u = 72; u + kWindow_px + 8 <= pair.left.width(); u += kWindow_px) {
                 const Window window = fit(depth.disparity_px, u, v);

@@ -16,11 +16,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFar_m = 6.0;   ///< how far levels go on
+constexpr double kFar_m = 6.0;   ///< extent of the levels
 constexpr double kDeep_m = 2.0;  ///< thickness of the ground
 constexpr double kTrolleyHeight_m = 0.95;
 
-/// The machine's figures in metres, base_link = origin.
+/// Converts a value of the machine file to metres.
 double metres(std::int32_t tenth_mm) {
     return 1e-4 * tenth_mm;
 }
@@ -30,7 +30,7 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
             std::sin(angle_rad) * v.x() + std::cos(angle_rad) * v.y()};
 }
 
-/// How far a box reaches along `n` after a movement (none: where it is now).
+/// Largest extent of a box along `n` after a movement; nullptr: at the current pose.
 double reach_m(const GroundBox& box, double grown_m, const Movement* movement, const Vector2d& n) {
     double farthest_m = -1e9;
     for (const int along : {-1, 1}) {
@@ -50,8 +50,8 @@ double reach_m(const GroundBox& box, double grown_m, const Movement* movement, c
     return farthest_m;
 }
 
-/// Where the thing may begin along the normal: from where it is just not under the machine yet to
-/// where it just does not matter.
+/// Range of positions along the normal at which the thing matters: from just outside the current
+/// footprint to the limit of its effect.
 struct Reach {
     double feet_now_m = 0.0;
     double feet_then_m = 0.0;
@@ -74,12 +74,14 @@ Reach reach_of(const Machine& machine, const Movement& movement, const Vector2d&
     return {feet(nullptr), feet(&movement), body(nullptr), body(&movement)};
 }
 
-/// Builds the solids with the thing's near border at `at` along `n`, in the frame of the machine.
+/// Builds solids in the machine's frame (base_link = origin). The near border of the thing is at
+/// `at` along `n`.
 class Builder {
   public:
     explicit Builder(const Vector2d& n) : n_(n), t_(-n.y(), n.x()) {}
 
-    /// From `from_m` to `to_m` along the normal, `left_m` to `right_m` across it.
+    /// Adds a box from `from_m` to `to_m` along the normal and from `right_m` to `left_m` across
+    /// it.
     void box(
         double from_m, double to_m, double right_m, double left_m, double bottom_m, double top_m) {
         Solid solid;
@@ -104,7 +106,8 @@ class Builder {
         box(from_m, to_m, -kFar_m, kFar_m, top_m - kDeep_m, top_m);
     }
 
-    /// Levels that go down (or up) at `at_m`, `going_m` deep each, the last one to the end.
+    /// Adds a flight that begins at `at_m`. Its levels go down or up, each `going_m` deep; the last
+    /// one extends to the end.
     void flight(double at_m, double rise_m, double going_m, int steps) {
         level(-kFar_m, at_m, 0.0);
         for (int k = 1; k <= steps; ++k) {
@@ -148,27 +151,29 @@ class Builder {
     Vector2d t_;
 };
 
-/// What is drawn for one thing; every thing draws all, so that hazard and relief share the rest.
+/// Random values of one thing. Every thing draws all of them, so that a hazard and its harmless
+/// relief share the other draws.
 struct Draw {
-    double share = 0.0;                ///< along the range of places
-    double across = 0.0;               ///< -1 to 1
+    double share = 0.0;                ///< position within the allowed range
+    double across = 0.0;               ///< sideways position, -1 to 1
     double a = 0.0, b = 0.0, c = 0.0;  ///< sizes, 0 to 1
-    double spare = 0.0;                ///< for one more size, which then changes no other draw
+    double spare = 0.0;                ///< for a later size, which then changes no other draw
 };
 
 double between(double low, double high, double share) {
     return low + share * (high - low);
 }
 
-/// Adds the thing and returns its relief; `low_m`: at most 10 mm, where only relief is wanted.
+/// Position and relief of an added thing. `low_m` limits the relief to at most 10 mm where only
+/// harmless relief is wanted.
 struct Thing {
     double at_m = 0.0;
     double relief_m = 0.0;
 };
 
 Thing build(Hazard thing, const double* low_m, const Draw& draw, const Reach& reach, Builder& out) {
-    // A drop matters from under the feet to the end of the drop band, a low thing as far as the
-    // margin of the foot, a high one as far as the body sways.
+    // Farthest position at which the thing matters. A drop: up to the end of the drop band. A low
+    // thing: up to the margin of the foot. A high thing: up to the sway of the body.
     constexpr double kBand_m = 0.09;
     const auto place = [&](double from_m, double to_m) {
         return between(from_m, std::max(to_m, from_m + 0.02), draw.share);
@@ -268,8 +273,8 @@ Thing build(Hazard thing, const double* low_m, const Draw& draw, const Reach& re
     return {high_m, height_m};
 }
 
-/// Normals within 35 deg of where the movement goes, none of them against the way that was walked:
-/// what the machine has walked over is ground.
+/// Draws a normal within 35 deg of the movement. It never points against the walked path, because
+/// the machine has walked there: it is ground.
 Vector2d normal_for(const Movement& movement, Vector2d& ahead, bool& was_turned, Rng& rng) {
     const Vector2d move_m(metres(movement.forward_tenth_mm), metres(movement.left_tenth_mm));
     const bool turns = move_m.norm() < 1e-3;
@@ -302,7 +307,7 @@ void move_to(HazardScene& scene, const Vector2d& at_m, double yaw_rad) {
 
 constexpr const char* kLooks[] = {"carpet", "tiles", "wood", "concrete", "patches"};
 
-/// Line of a solid of the file.
+/// Line of the scene file for a solid.
 std::string solid_line(const Solid& solid, std::size_t index) {
     const double yaw_deg = kDegPerRad * std::atan2(solid.sin_yaw, solid.cos_yaw);
     const std::size_t look = index % std::size(kLooks);
@@ -340,7 +345,7 @@ bool Solid::covers(const Vector2d& p_m) const noexcept {
 }
 
 bool Solid::blocks(const Vector3d& from_m, const Vector3d& to_m) const noexcept {
-    // The part of the line between the heights of the solid, then its way over the footprint.
+    // Clips the line to the heights of the solid, then to its footprint.
     const Vector3d way = to_m - from_m;
     double first = 0.0;
     double last = 1.0;

@@ -15,8 +15,9 @@
 namespace surefoot::experiments {
 namespace {
 
-/// The time of the last frame, nothing where there was none. `app::RunSession` would also compare
-/// each depth and the map with the truth, which a third of the time went to.
+/// Runs the pipeline to the end. Returns the time of the last frame; nullopt without a frame.
+/// `app::RunSession` would also compare depth and map with the truth, which took a third of the
+/// time.
 Result<std::optional<std::int64_t>> process_all(sim::SceneSource& source,
                                                 pipeline::Pipeline& pipeline) {
     std::optional<Error> failed;
@@ -67,7 +68,7 @@ Result<ChainRun> run_chain(const HazardScene& scene,
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     run.source = std::move(*source);
-    // How high base_link is over its own ground is known of every carrier: it is built so.
+    // The height of base_link above its own ground is known from the construction of the machine.
     settings->pipeline.ground.expected_height_m =
         run.source->truth().trajectory.front().T_world_body.translation_m.z();
     auto pipeline =
@@ -76,7 +77,7 @@ Result<ChainRun> run_chain(const HazardScene& scene,
     run.pipeline = std::make_unique<pipeline::Pipeline>(std::move(*pipeline));
     auto last = process_all(*run.source, *run.pipeline);
     if (!last) return last.error();
-    if (!*last) return input_error(file + ": no frame was processed");
+    if (!*last) return input_error(file + ": no frame was processed; check the scene's motion");
     for (const StampedPose& pose : run.source->truth().trajectory)
         if (pose.time_ns <= **last) run.T_world_body = pose.T_world_body;
     return run;

@@ -19,8 +19,8 @@ Heights heights_at(const HazardScene& scene, const Vector2d& p_m) {
             highest = &solid;
     }
     if (highest == nullptr) return {kNan, kNan, std::numeric_limits<double>::infinity()};
-    const Solid* below = nullptr;  // the highest that ends below it
-    bool joined = false;           // or that it stands on
+    const Solid* below = nullptr;  // the highest solid that ends below it
+    bool joined = false;           // or on which it stands
     for (const Solid& solid : scene.solids) {
         if (&solid == highest || !solid.covers(p_m)) continue;
         if (solid.top_m >= highest->bottom_m) joined = true;

@@ -28,18 +28,20 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Neighbours share their errors: one match in so many is taken.
+/// Neighbouring pixels have correlated errors: only every n-th match is used.
 constexpr int kTakenEvery = 13;
-/// A real pair weighs as much as eight simulated images: both together half as much as all 32.
+/// Weight of a real pair in simulated images: both real pairs together weigh half as much as all 32
+/// images.
 constexpr double kWeightOfRealPair = 8.0;
-/// Degrees of freedom of Student's t, whose likelihood forgives the few that are far off.
+/// Degrees of freedom of Student's t. Its likelihood tolerates the few large outliers.
 constexpr double kFreedom = 8.0;
-/// What is wanted of every image [%], and by how much it may miss it for the same loss.
+/// Wanted shares within 1 and 2 sigma of every image [%], and the deviations that cost the same
+/// loss.
 constexpr double kWanted[] = {68.3, 95.0};
 constexpr double kMiss[] = {5.0, 3.0};
 constexpr double kMissWeight = 0.03;
 
-/// Those of match_sigma_px: floor, gain, share of the shift, jump, hole.
+/// Coefficients of match_sigma_px: floor, gain, share of the shift, jump, hole.
 using Coefficients = std::array<double, 5>;
 constexpr Coefficients kNow = {static_cast<double>(stereo::kSigmaFloor_px),
                                static_cast<double>(stereo::kSigmaGain),
@@ -47,13 +49,13 @@ constexpr Coefficients kNow = {static_cast<double>(stereo::kSigmaFloor_px),
                                static_cast<double>(stereo::kSigmaJump_px),
                                static_cast<double>(stereo::kSigmaHole_px)};
 
-/// The loss hardly depends on the share of the shift, but the order of doubt under an ideal camera
-/// does (sparsification, matcher_sigma from seed 21 on): it is worse with the share of least loss,
-/// 0.8, than with this one. So it is held, and the others are fitted.
+/// Coefficient that is held: the share of the shift. The loss hardly depends on it. But the order
+/// of the uncertainties under an ideal camera does (sparsification, matcher_sigma from seed 21 on):
+/// it is worse with the share of smallest loss, 0.8, than with this value.
 constexpr std::size_t kHeld = 2;
 constexpr double kHeldShare = 0.45;
 
-/// The squares of what each coefficient is multiplied with, and how wrong the match was.
+/// Squared factors of the coefficients, and the real error of the match.
 struct Sample {
     std::array<double, 5> terms{};
     double error_px = 0.0;
@@ -66,7 +68,7 @@ struct Seen {
     std::vector<Sample> samples;
 };
 
-/// As match_sigma_px, with any coefficients.
+/// The formula of match_sigma_px with any coefficients.
 double variance_px2(const Sample& sample, const Coefficients& c) {
     constexpr auto kMost_px = static_cast<double>(stereo::kMaxSigma_px);
     double sum = 0.0;
@@ -74,7 +76,7 @@ double variance_px2(const Sample& sample, const Coefficients& c) {
     return std::fmin(kMost_px * kMost_px, sum);
 }
 
-/// `see` compares them with match_sigma_px.
+/// `see` checks these terms against match_sigma_px.
 std::array<double, 5> terms_of(const stereo::MatchEvidence& evidence) {
     const auto square = [](double x) { return x * x; };
     const double noise_px =
@@ -90,7 +92,7 @@ std::array<double, 5> terms_of(const stereo::MatchEvidence& evidence) {
             square(static_cast<double>(evidence.unknown_share))};
 }
 
-/// What the refinement and its surroundings know about every match, as Finisher collects it.
+/// Data of the refinement and its neighbourhood for every match, as Finisher collects it.
 struct Evidence {
     explicit Evidence(const TruePair& pair);
     [[nodiscard]] stereo::MatchEvidence at(int u, int v) const;
@@ -137,7 +139,8 @@ stereo::MatchEvidence Evidence::at(int u, int v) const {
             static_cast<float>(unknown.pixels.at(u, v)) / static_cast<float>(area)};
 }
 
-/// Trusted matches that are right within 1 px. An error: the formula here is not the matcher's.
+/// Collects trusted matches that are right within 1 px. Returns an error if the formula above
+/// differs from match_sigma_px.
 Result<Seen> see(const TruePair& pair) {
     const Evidence evidence(pair);
     Seen seen{pair.name, pair.step_px * pair.step_px / 12.0, 1.0, {}};
@@ -152,13 +155,14 @@ Result<Seen> see(const TruePair& pair) {
             seen.samples.push_back({terms_of(match), static_cast<double>(error_px)});
             const double sigma_px = std::sqrt(variance_px2(seen.samples.back(), kNow));
             if (std::abs(sigma_px - static_cast<double>(stereo::match_sigma_px(match))) > 1e-5)
-                return input_error("sigma is not made of these terms any more");
+                return input_error(
+                    "match_sigma_px has changed; update variance_px2 in lab/sigma_fit/main.cpp");
         }
     }
     return seen;
 }
 
-/// Within one, two and three sigma [%].
+/// Shares of the matches within one, two and three sigma [%].
 std::array<double, 3> cover(const Seen& seen, const Coefficients& c) {
     std::array<double, 3> within{};
     for (const Sample& sample : seen.samples) {
@@ -173,7 +177,7 @@ std::array<double, 3> cover(const Seen& seen, const Coefficients& c) {
     return within;
 }
 
-/// Of one match on average: minus the logarithm of the likelihood, but for a constant.
+/// Mean negative log-likelihood of a match, up to a constant.
 double surprise(const Seen& seen, const Coefficients& c) {
     double sum = 0.0;
     for (const Sample& sample : seen.samples) {
@@ -184,8 +188,8 @@ double surprise(const Seen& seen, const Coefficients& c) {
     return sum / static_cast<double>(seen.samples.size());
 }
 
-/// The likelihood says which match is better than which, the misses that no kind of image is
-/// thought to be better than it is, at the expense of another.
+/// Sum of two terms. The likelihood orders the matches of an image; the deviations from kWanted
+/// prevent that one kind of image gains at the expense of another.
 double loss(const std::vector<Seen>& all, const Coefficients& c) {
     double sum = 0.0;
     double weights = 0.0;
@@ -200,7 +204,8 @@ double loss(const std::vector<Seen>& all, const Coefficients& c) {
     return sum / weights;
 }
 
-/// One coefficient after the other, and all of them together, by steps that become smaller.
+/// Coordinate descent: changes one coefficient after the other, then all together, with decreasing
+/// steps.
 Coefficients fitted(const std::vector<Seen>& all) {
     Coefficients best = kNow;
     best[kHeld] = kHeldShare;
@@ -224,7 +229,7 @@ Coefficients fitted(const std::vector<Seen>& all) {
     return best;
 }
 
-/// Times what it takes until as many matches as wanted lie within one sigma on average.
+/// Scales the coefficients until the wanted share of matches lies within one sigma on average.
 Coefficients scaled(const std::vector<Seen>& all, const Coefficients& c) {
     const auto times = [&](double factor) {
         Coefficients changed = c;

@@ -41,10 +41,10 @@ namespace {
 
 constexpr double kAround_m = 0.6;
 
-/// The chain of a case; its map and its time.
+/// Pipeline of a case, with its map and its time.
 struct Chain {
     std::optional<pipeline::Pipeline> pipeline;
-    double ground_ms = 0.0;  ///< stage of the ground plane and of the search for mirrors
+    double ground_ms = 0.0;  ///< time of the ground plane and of the search for mirrors
 
     void process(const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::full);
@@ -55,14 +55,14 @@ struct Chain {
                                          const Pose& T_world_body,
                                          double reach_m) const {
         const auto map = std::make_unique<grid::MapSnapshot>();
-        // A snapshot that cannot be made is not intact, and the gate refuses it.
+        // A failed snapshot is not intact, and the gate refuses it.
         [[maybe_unused]] const Status taken = pipeline->snapshot(0, *map);
         return app::compare_verdicts(source.truth(), T_world_body, machine, *map, reach_m).counts;
     }
 };
 
 struct CaseResult {
-    app::VerdictCounts before[2];  ///< at the last pose, around it
+    app::VerdictCounts before[2];  ///< at the last pose, and around it
     app::VerdictCounts after[2];
     std::vector<specular::SuspectedPane> panes;
     Eigen::Vector2d body_m = Eigen::Vector2d::Zero();
@@ -99,7 +99,7 @@ Result<CaseResult> run_case(const std::string& scene,
     if (!with) return with.error();
 
     std::optional<Error> failed;
-    std::vector<StereoFrame> first;  // the second chain starts from the same frames
+    std::vector<StereoFrame> first;  // the second chain starts with the same frames
     const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         auto frame = (*source)->next();
         if (!frame) failed = frame.error();
@@ -119,7 +119,8 @@ Result<CaseResult> run_case(const std::string& scene,
     for (const StereoFrame& frame : start.frames) process(frame);
     for (auto frame = next(); frame; frame = next()) process(*frame);
     if (failed) return *failed;
-    if (frames == 0) return input_error(scene + ": no frame was processed");
+    if (frames == 0)
+        return input_error(scene + ": no frame was processed; check the scene's motion");
 
     CaseResult result;
     Pose T_world_body;

@@ -71,8 +71,9 @@ bool is_same_place(const FeaturePose& a, const FeaturePose& b) {
            std::abs(experiments::turned_rad(a, at)) < kSameTurn_rad;
 }
 
-/// Does who knows `told` stop in time before the drop `found`? It begins no farther away, but for a
-/// sigma, not much nearer, and is as wide.
+/// Whether a machine that knows the tracked drop `told` stops in time before the detected drop
+/// `found`. The tracked one must not begin farther away by more than a sigma, not be much nearer,
+/// and be as wide.
 bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found) {
     constexpr double kRounding_m = 1e-6;
     constexpr double kNearer_m = 0.25;
@@ -94,7 +95,7 @@ bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found)
     return way.dot(found_way) > 0.0;
 }
 
-/// What came, went, or changed its name between two looks.
+/// Features that appeared, disappeared, or changed their class between two frames.
 struct Changes {
     int came_or_went = 0;
     int new_ids = 0;
@@ -125,7 +126,7 @@ struct Changes {
     }
 };
 
-/// Errors over the looks of a run [mm].
+/// Errors over the frames of a run [mm].
 class Errors {
   public:
     void add(double error_m, double sigma_m) {
@@ -155,7 +156,7 @@ class Errors {
     int sure_ = 0;
 };
 
-/// One way of reporting the looks of a run.
+/// Statistics of a run for one method.
 class Account {
   public:
     void add(const TerrainFeatures& now, const TrueFeature& truth) {
@@ -272,7 +273,7 @@ Result<std::string> judge_run(const std::vector<std::string>& folders, const Set
            fmt::format(",{:.1f},{:.1f}\n", call_us[call_us.size() / 2], call_us.back());
 }
 
-/// Folders of each run, in the order of its frames.
+/// Folders of each run, in the order of the frames.
 std::map<std::string, std::vector<std::string>> runs_in(const std::string& maps) {
     std::map<std::string, std::vector<std::string>> runs;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(maps)) {

@@ -21,7 +21,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Columns and rows that hold anything, with a rim.
+/// Range of the columns and rows with content, with a margin.
 struct Box {
     int min_x = std::numeric_limits<int>::max();
     int min_y = std::numeric_limits<int>::max();
@@ -55,7 +55,7 @@ grid::Layer cut(const Image<From>& layer, const Box& box) {
     return part;
 }
 
-/// The layer of a map in which `part` begins at a cell.
+/// Puts `part` into an otherwise unknown layer of the map's size, with its first cell at `begin`.
 grid::Layer whole(const grid::Layer& part, const grid::GridGeometry& map, const grid::Cell& begin) {
     grid::Layer layer(map.nx, map.ny, std::numeric_limits<float>::quiet_NaN());
     for (int iy = 0; iy < part.height(); ++iy)
@@ -64,7 +64,7 @@ grid::Layer whole(const grid::Layer& part, const grid::GridGeometry& map, const 
     return layer;
 }
 
-/// Every number of truth.txt.
+/// All numbers of truth.txt.
 std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(
     Observation& observation) {
     TrueFeature& truth = observation.truth;

@@ -25,10 +25,11 @@ namespace {
 
 constexpr std::uint64_t kRigStream = 101;
 constexpr std::uint64_t kOdomStream = 102;
-/// Where it looks before a door that the way leads through, as base_link stands.
+/// Distance from base_link to a door in the path at the judged frame.
 constexpr double kBeforeDoor_m = 0.9;
 
-/// Factors on the noise of the `zed` with which our matcher errs by so many pixels on level floor.
+/// Factors on the noise of the `zed` profile that give our matcher errors of so many pixels on
+/// level floor.
 constexpr std::pair<std::string_view, double> kImageNoise[] = {{"images_0.25", 0.9},
                                                                {"images_0.5", 2.1}};
 
@@ -57,8 +58,8 @@ TrueKind kind_of(const sim::ScriptedScene& script) {
     return TrueKind::none;
 }
 
-/// In the world. Scenes of this folder stand about (pivot_x_m, pivot_y_m), those of the simulator
-/// about (distance_m, 0).
+/// True feature in the world frame. Scenes of lab/scenes turn about (pivot_x_m, pivot_y_m), those
+/// of the simulator about (distance_m, 0).
 TrueFeature truth_in_world(const sim::ScriptedScene& script) {
     TrueFeature truth;
     truth.kind = kind_of(script);
@@ -110,7 +111,7 @@ Pose drawn_odom(std::uint64_t seed) {
     return T_odom_world;
 }
 
-/// 1 where a pixel sees the floor of the world's height 0, near enough for the map.
+/// 1 = the pixel shows floor at world height 0, within the map's range.
 Image<std::uint8_t> floor_pixels(const Image<float>& disparity_px,
                                  const camera::RectifiedRig& rig,
                                  const Pose& T_world_body,
@@ -178,7 +179,7 @@ void measure_noise(const sim::Scene& scene,
     observation.noise_px = 1.4826 * median(std::move(errors_px));
 }
 
-/// One run of a scene.
+/// Runs one scene.
 class Run {
   public:
     Run(const StairsCase& now, const sim::ScriptedScene& script, Executor& executor)

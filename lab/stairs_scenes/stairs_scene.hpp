@@ -34,8 +34,8 @@ struct StairsCase {
 /// lie at random to the scene.
 ///
 /// With `every` = 0 the run ends at the end of the path, or 0.9 m before a door in it.
-/// `Look::noise_px` is 1.4826 times the median absolute deviation of the disparity errors. It uses
-/// pixels that the map accepts and whose 17 x 17 px neighbourhood shows only level floor.
+/// `Observation::noise_px` is 1.4826 times the median absolute deviation of the disparity errors.
+/// It uses pixels that the map accepts and whose 17 x 17 px neighbourhood shows only level floor.
 [[nodiscard]] Result<std::vector<Observation>> look_at(const StairsCase& now,
                                                        Settings settings,
                                                        Executor& executor);

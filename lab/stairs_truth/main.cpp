@@ -113,7 +113,7 @@ std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const Tr
                        others);
 }
 
-/// A door may be told from either side.
+/// A door may be detected from either side.
 bool is_opening_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
     const double turn_rad = std::abs(turned_rad(found, truth));
     return truth.kind == TrueKind::door &&
@@ -143,18 +143,18 @@ constexpr const char* kHeader =
     "cut,across,turn,flights,of_2,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
     "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
 
-/// Looks of one run, one after the other.
+/// Judges the frames of one run in order.
 class Judge {
   public:
     explicit Judge(const stairs::StairsConfig& config) : finder_(config), tracker_(config) {}
 
     void observation(const Observation& observation) { (void)observe_once(observation); }
 
-    /// The two lines of a look.
+    /// The two CSV lines of a frame.
     std::string rows(const Observation& observation) {
         const std::int64_t first_ns = observe_once(observation);
         std::int64_t took_ns = first_ns;
-        for (int call = 1; call < kCalls; ++call) {  // the first one of a size allocates
+        for (int call = 1; call < kCalls; ++call) {  // the first call with a new size allocates
             const std::int64_t start_ns = steady_now_ns();
             finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);
@@ -213,7 +213,7 @@ struct Done {
     std::optional<Error> error;
 };
 
-/// Looks that are kept in a folder: one a line in a file that is written last.
+/// Folder with saved frames. A list file names one of them per line and is written last.
 class Keep {
   public:
     Keep(std::string maps, const StairsCase& now)
@@ -311,7 +311,7 @@ std::vector<std::string> saved_observations(const std::string& maps) {
     return folders;
 }
 
-/// Cases side by side, written in order.
+/// Runs the cases in parallel and writes their lines in order.
 int write_all(int count, const std::string& path, const std::function<Done(int)>& make) {
     const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(path);

@@ -14,9 +14,9 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr int kLeftRight_px = 1;  ///< OpenCV's check of the right eye, the same as ours
+constexpr int kLeftRight_px = 1;  ///< limit of OpenCV's left-right check, as in our matcher
 
-/// With wider borders: OpenCV leaves them without a match.
+/// Adds borders: OpenCV leaves the pixels there without a match.
 cv::Mat padded(const GreyImage& image, int left_px, int margin_px) {
     const cv::Mat in(
         image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()));
@@ -42,9 +42,8 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
     return disparity_px;
 }
 
-// Ours and those of SGBM were moved once, because the best on the images of the tuning lay at the
-// border. Before: penalties 5-11 / 36-54 / 6-20, uniqueness 5 and 10 %; blocks 3 and 5, penalties
-// 2 / 20 to 14 / 60, prefilters 15 to 63. Ours cannot have a larger jump penalty than 54.
+// The ranges of our matcher and of SGBM were shifted once, because the best setting on the tuning
+// images was at the border of the range. Our jump penalty cannot exceed 54.
 std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
     std::vector<Setting> all;
     for (const int slope : {8, 11, 15})
@@ -184,7 +183,7 @@ Match opencv_bm(const BmSettings& settings) {
         matcher->setDisp12MaxDiff(kLeftRight_px);
         matcher->setSpeckleWindowSize(stereo::kSpeckleSize_px);
         matcher->setSpeckleRange(stereo::kSpeckleRange_px);
-        // Half a window on every side, and one: OpenCV wants images larger than it.
+        // Half a window on every side plus one pixel: OpenCV needs images larger than its window.
         return opencv_disparities(*matcher, pair, settings.block / 2 + 1);
     };
 }

@@ -21,7 +21,7 @@ struct PairFiles {
     const char* folder = nullptr;
     const char* right = nullptr;
     const char* truth = nullptr;
-    const char* right_truth = nullptr;  ///< or nothing, then `mask`
+    const char* right_truth = nullptr;  ///< nullptr: use `mask`
     const char* mask = nullptr;
     double scale = 1.0;
     int disparities = 64;
@@ -43,7 +43,7 @@ constexpr PairFiles kPairs[] = {
      0.5},
 };
 
-/// Empty if the file is no image.
+/// Returns an empty image if the file is not an image.
 GreyImage load(const std::string& path) {
     const cv::Mat read = cv::imread(path, cv::IMREAD_GRAYSCALE);
     GreyImage image(read.cols, read.rows);
@@ -51,7 +51,7 @@ GreyImage load(const std::string& path) {
     return image;
 }
 
-/// Both eyes see a pixel where their truths agree within 1 px.
+/// Whether both cameras see a pixel: their truths agree within 1 px.
 bool agrees(const GreyImage& right_truth, double scale, int u, int v, double disparity_px) {
     const int x = static_cast<int>(std::lround(u - disparity_px));
     return right_truth.contains(x, v) && right_truth.at(x, v) != 0 &&

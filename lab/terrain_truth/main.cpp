@@ -57,7 +57,8 @@ constexpr double kNear_m = 0.7;
 
 using experiments::SceneCase;
 
-/// Truly unsafe cells, those of them that were called safe and the largest group of these.
+/// Number of truly unsafe cells, how many of them the map rates safe, and the largest connected
+/// group of these.
 struct Missed {
     int truly_unsafe = 0;
     int called_safe = 0;
@@ -66,15 +67,15 @@ struct Missed {
 
 struct FootholdCounts {
     Missed all;
-    Missed hazards;  ///< of those where the foot itself could not stand, clear cut
+    Missed hazards;  ///< cells where clearly the foot itself cannot stand
     int truly_safe = 0;
     int called_unsafe = 0;
     int unsure = 0;
     int unknown = 0;
 };
 
-/// A cell has a surface, highest or not, that has no counterpart within `step_m` in the other one:
-/// what stands under a table, and its legs, have edges too.
+/// Whether a surface of one cell, highest or not, has no counterpart within `step_m` in the other
+/// cell. So floor under a table and the legs of a table have edges too.
 bool has_edge_towards(const std::vector<sim::SurfaceHeight>& here,
                       const std::vector<sim::SurfaceHeight>& there,
                       double step_m) {
@@ -85,8 +86,8 @@ bool has_edge_towards(const std::vector<sim::SurfaceHeight>& here,
     });
 }
 
-/// 1 where all surfaces go on for more than the margin in all directions (distances as those of
-/// eval::away_from_edges, which sees the highest surfaces alone).
+/// 1 = all surfaces continue beyond the margin in all directions. Distances are those of
+/// eval::away_from_edges, which considers only the highest surfaces.
 eval::CellMask away_from_all_edges(const sim::Scene& scene,
                                    const sim::Lattice& lattice,
                                    const grid::Layer& dem_m,
@@ -121,8 +122,8 @@ eval::CellMask away_from_all_edges(const sim::Scene& scene,
     return away;
 }
 
-/// Do errors keep to the sigma that the map states? In cells whose highest surface both eyes had in
-/// view, near or far: nobody looks at the top of a wall.
+/// Whether the errors agree with the stated sigma. Only cells whose highest surface both cameras
+/// had in view, near or far: the top of a wall is never in view.
 eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
                                      const sim::Lattice& lattice,
                                      const elevation::ElevationLayers& layers,
@@ -147,14 +148,14 @@ eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
     return eval::sigma_coverage(error_m, sigma_m);
 }
 
-/// 1 where a foot is safe at every yaw.
+/// 1 = a foot is safe at every yaw.
 eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
                                 const Machine& machine,
                                 const sim::Lattice& lattice,
                                 Executor& executor) {
     eval::CellMask safe(lattice.nx, lattice.ny, 1);
     sim::CellQuestion question;
-    // Every scene begins on ground at the world's 0; the machine ends on ground that it reached.
+    // Every scene begins on ground at world height 0; the machine ends on ground that it reached.
     const Pose& T_world_first = truth.trajectory.front().T_world_body;
     question.start_m = truth.trajectory.back().T_world_body.translation_m;
     question.start_m.z() -= T_world_first.translation_m.z();
@@ -167,8 +168,9 @@ eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
     return safe;
 }
 
-/// Judges what lies under the foot itself, no band around it, by the margin of the suite: every
-/// limit is looser by that share, and the foot smaller by that length on all sides.
+/// Machine for the rules under the foot itself, without the drop band around it. Applies the
+/// oracle's safety margin: every limit looser by its share, and the foot smaller by its length on
+/// all sides.
 Machine foot_alone(Machine machine) {
     const sim::SafetyMargin margin;
     const auto looser = [&](std::int32_t& limit) {
@@ -187,7 +189,7 @@ Machine foot_alone(Machine machine) {
     return machine;
 }
 
-/// Size of the largest group of cells of the mask that touch at their edges.
+/// Size of the largest 4-connected group of cells in the mask.
 int largest_cluster(eval::CellMask mask) {
     int largest = 0;
     std::vector<std::pair<int, int>> open;
@@ -210,13 +212,13 @@ int largest_cluster(eval::CellMask mask) {
     return largest;
 }
 
-/// Cells of a map at which a foot may truly stand.
+/// Cells of a map where a foot may truly stand.
 struct TrulySafe {
     eval::CellMask all;    ///< by all rules
-    eval::CellMask alone;  ///< by those for what lies under the foot itself; see `foot_alone`
+    eval::CellMask alone;  ///< by the rules for the ground under the foot; see `foot_alone`
 };
 
-/// Truly unsafe cells in view that are called safe.
+/// Truly unsafe cells in view that the map rates safe.
 eval::CellMask missed_cells(const Image<traversability::Foothold>& found,
                             const eval::CellMask& truly_safe,
                             const eval::CellMask& visible) {
@@ -269,7 +271,7 @@ void print(const FootholdCounts& counts, fmt::ostream& out) {
         ",{},{},{},{}", counts.truly_safe, counts.called_unsafe, counts.unsure, counts.unknown);
 }
 
-/// The files that results go to.
+/// Output files.
 struct Results {
     fmt::ostream cases;
     fmt::ostream wrong;

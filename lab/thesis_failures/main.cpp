@@ -64,12 +64,12 @@ constexpr int kCoarse_cells = 4;
 struct Fault {
     int late_images = 0;
     double disparity_offset_px = 0.0;
-    double drawn_share = 0.0;  ///< of the clouds are late by kDrawnLate_s instead
+    double drawn_share = 0.0;  ///< share of the clouds that are late by kDrawnLate_s instead
 };
 constexpr double kDrawnLate_s[] = {0.05, 0.5};
 constexpr std::uint64_t kDelayStream = 0x1a7e;
-/// Poses that were 50-500 ms late were seen. The ZED of the thesis read 18 mm wrong at 1 m, which
-/// are 0.7 px.
+/// The thesis observed poses that were 50-500 ms late. Its ZED measured 18 mm too much or too
+/// little at 1 m, which is 0.7 px.
 constexpr Fault kFaults[] = {{0, 0.0},
                              {1, 0.0},
                              {2, 0.0},
@@ -96,7 +96,7 @@ elevation::ElevationConfig thesis_points() {
     elevation::ElevationConfig config;
     config.sensor.model = elevation::SensorModel::simplified_stereo;
     config.pixels.surface_check = false;
-    config.prefilter.min_range_m = 0.7;     // the ZED's nearest
+    config.prefilter.min_range_m = 0.7;     // smallest range of the ZED
     config.prefilter.min_height_m = -1.95;  // 1 m under the floor ...
     config.prefilter.max_height_m = 1.05;   // ... to 2 m over it
     return config;
@@ -114,8 +114,8 @@ elevation::AncestorConfig thesis_map() {
     return config;
 }
 
-/// How far the first depth image puts body and world wrong: the largest plane within the tolerance
-/// is taken for level ground, and its height for that of the machine.
+/// Error of the body pose after the thesis' alignment: it takes the largest plane of the first
+/// depth image within the tolerance as level ground at the machine's feet.
 Pose ground_error(const camera::RectifiedRig& rig,
                   const DepthImage& depth,
                   const Pose& T_world_body) {
@@ -136,10 +136,10 @@ Pose ground_error(const camera::RectifiedRig& rig,
     return T_believed_world;
 }
 
-/// The thesis' chain behind the matcher, with one of its faults.
+/// The thesis' processing after the matcher, with one of its faults.
 class Mapper {
   public:
-    /// `seed`: of the delays that are drawn.
+    /// `seed` draws the delays.
     Mapper(const camera::RectifiedRig& rig, const Fault& fault, std::uint64_t seed)
         : rig_(rig), fault_(fault), delays_(mix_seed(seed, kDelayStream)) {}
 
@@ -201,7 +201,7 @@ double median_of(std::vector<float> values) {
     return static_cast<double>(values[values.size() / 2]);
 }
 
-/// Medians of square blocks; unknown unless half of a block is known.
+/// Medians of square blocks. A block with less than half of its cells known is unknown.
 HeightMap coarse(const HeightMap& fine) {
     HeightMap result{fine.geometry, {}};
     result.geometry.resolution_m *= kCoarse_cells;
@@ -223,7 +223,7 @@ HeightMap coarse(const HeightMap& fine) {
     return result;
 }
 
-/// Known heights of the cells of a rectangle.
+/// Known heights in a rectangle.
 std::vector<float> heights_in(const HeightMap& map, const Eigen::AlignedBox2d& area_m) {
     std::vector<float> heights_m;
     const grid::GridGeometry& geometry = map.geometry;
@@ -238,8 +238,8 @@ std::vector<float> heights_in(const HeightMap& map, const Eigen::AlignedBox2d& a
     return heights_m;
 }
 
-/// Floor before the demonstration stairs, its two treads and the platform: picked by hand in the
-/// thesis, by geometry here, whole treads.
+/// Floor before the demonstration stairs, its two treads and the platform. The thesis selected them
+/// by hand; here they are whole treads from the known geometry.
 std::vector<Eigen::AlignedBox2d> treads(double first_riser_x_m) {
     using sim::demo_stairs::kGoing_m;
     constexpr double kHalf_m = 0.4;
@@ -274,7 +274,8 @@ eval::MapComparison compare(const sim::Scene& scene,
     return eval::compare_maps(maps, {});
 }
 
-/// The worse of the two bins that are `from_outside` bins away from the image's sides.
+/// The larger 99 % error of the two bins that are `from_outside` bins from the left and right image
+/// border.
 double worse_p99(const std::vector<eval::ErrorBin>& columns, std::size_t from_outside) {
     const double left = columns[from_outside].errors.p99_abs;
     const double right = columns[columns.size() - 1 - from_outside].errors.p99_abs;
@@ -409,7 +410,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     const double noise = argc > 4 ? std::atof(argv[4]) : 1.0;
     const std::string faults = argc > 5 ? argv[5] : "fixed";
     if (faults != "fixed" && faults != "drawn") {
-        fmt::print(stderr, "thesis_failures: faults are fixed or drawn, not {}\n", faults);
+        fmt::print(stderr, "thesis_failures: unknown faults '{}'; use fixed or drawn\n", faults);
         return 2;
     }
     const bool drawn = faults == "drawn";

@@ -87,7 +87,7 @@ struct Pairs {
     std::vector<BoardView> right;
 };
 
-/// Whether a camera sees all inner corners of the board, with half a square around them.
+/// Whether a camera sees all inner corners of the board and half a square around them.
 bool is_whole(const camera::Camera& camera, const Pose& T_camera_board) {
     constexpr double kBorder_px = 0.5 * kLeastStep_px;
     const auto corners =
@@ -124,8 +124,8 @@ Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
     return pairs;
 }
 
-/// Error of depth of the point straight ahead of the rectified camera that the estimate believes
-/// in, when the true cameras take the pictures.
+/// Error of the depth of a point straight ahead: the true cameras take the pictures, and the
+/// estimated rig rectifies and measures them.
 double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& found) {
     const camera::Rectification plan = camera::plan_rectification(
         found, camera::RectificationConfig{}, camera::Rectifier::kVirtualBaseline_m);
@@ -219,7 +219,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         fmt::print(stderr, "usage: wide_rigs OUT_FOLDER FIRST_SEED SEEDS\n");
         return 2;
     }
-    cv::setNumThreads(1);  // as in the program
+    cv::setNumThreads(1);  // as in the surefoot program
     return surefoot::measure(
         argv[1], std::strtoull(argv[2], nullptr, 10), std::strtoull(argv[3], nullptr, 10));
 }

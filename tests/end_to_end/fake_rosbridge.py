@@ -1,4 +1,4 @@
-"""A rosbridge server for one client at a time: enough of RFC 6455 and of the rosbridge protocol for one service."""
+"""A rosbridge server for one client and one service, with the parts of RFC 6455 and of the protocol that these need."""
 import base64
 import hashlib
 import json
@@ -8,7 +8,7 @@ import threading
 
 
 class FakeRosbridge:
-    """Answers /surefoot/step on loopback with what `verdict_of(command)` says: OK, NOT_TRAVERSABLE or ERROR."""
+    """Answers /surefoot/step on loopback with the result of `verdict_of(command)`: OK, NOT_TRAVERSABLE or ERROR."""
 
     def __init__(self, verdict_of):
         self.verdict_of = verdict_of
@@ -19,9 +19,9 @@ class FakeRosbridge:
         self.thread.start()
 
     def close(self):
-        """Nobody is served any more. A second call changes nothing."""
+        """Stops the server. A second call has no effect."""
         try:
-            self.listener.shutdown(socket.SHUT_RDWR)  # close() alone leaves a waiting accept() with the port
+            self.listener.shutdown(socket.SHUT_RDWR)  # close() alone leaves the port with the waiting accept()
         except OSError:
             pass
         self.listener.close()

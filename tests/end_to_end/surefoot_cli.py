@@ -1,4 +1,4 @@
-"""Calls the program under test and offers small recordings to break."""
+"""Runs the program under test; helpers for temporary folders, grids and images."""
 import json
 import os
 import pathlib
@@ -11,7 +11,7 @@ import zlib
 BINARY = pathlib.Path(os.environ["SUREFOOT_BINARY"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("SUREFOOT_DATA_DIR", ROOT.parent / "shared" / "data"))
-# A service makes its token file in the user's folder: not in the one of whoever runs the tests.
+# A service writes its token file into the user's folder; this folder replaces the real one during tests.
 STATE = tempfile.TemporaryDirectory(prefix="surefoot-state-")
 os.environ["XDG_STATE_HOME"] = STATE.name
 
@@ -23,7 +23,7 @@ def surefoot(*arguments, cwd=None, timeout=600, **options):
 
 
 class CliTest(unittest.TestCase):
-    """A test with a folder of its own."""
+    """A test with its own temporary folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="surefoot-test-")
@@ -39,7 +39,7 @@ class CliTest(unittest.TestCase):
         return json.loads(self.run_ok(*arguments, "--json", **options).stdout)
 
     def data(self, *parts):
-        """A folder of the optional data; skips the test with a printed line when it is not there."""
+        """Returns a folder of the optional data. Prints a line and skips the test if the folder is missing."""
         path = DATA.joinpath(*parts)
         if not path.exists():
             # `make test` counts these lines.
@@ -54,7 +54,7 @@ def read_tum(path):
 
 
 def read_asc(path):
-    """(header dict, rows from largest y to smallest; NODATA = None)."""
+    """Returns (header dict, rows); the first row has the largest y; NODATA = None."""
     header, rows = {}, []
     for line in path.read_text().splitlines():
         words = line.split()
@@ -66,7 +66,7 @@ def read_asc(path):
 
 
 def png_of(image):
-    """An 8-bit grey PNG of rows of values, by the book (W3C PNG specification, chunks IHDR, IDAT, IEND)."""
+    """An 8-bit grey PNG of rows of values (W3C PNG specification; chunks IHDR, IDAT, IEND)."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     rows = b"".join(b"\0" + bytes(row) for row in image)
@@ -75,5 +75,5 @@ def png_of(image):
 
 
 def grey_png(width, height):
-    """A flat one."""
+    """A uniform grey PNG."""
     return png_of([[128] * width] * height)

@@ -1,4 +1,4 @@
-"""Roles, tokens, origins and TLS of the gate process, with real clients: plain sockets and Python's own TLS."""
+"""Roles, tokens, origins and TLS of the gate process. Clients: plain sockets and Python's TLS."""
 import http.client
 import json
 import os
@@ -18,7 +18,7 @@ INSECURE = "I understand that everybody on this network can read and change what
 
 
 def own_address():
-    """An address of this machine that is not loopback; None where there is none. Nothing is sent."""
+    """An address of this machine other than loopback; None = it has no other. Sends no packet."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))
@@ -222,20 +222,20 @@ class Tls(AccessTest):
         for _ in range(200):
             self.assertEqual(client.step(9)["verdict"], "ERROR")
         self.assertFalse(client.call("/surefoot/vouch", radius_m=1.0)["values"]["success"])  # no map
-        # What is longer than a TLS record.
+        # Longer than a TLS record.
         client.send(1, json.dumps({"op": "x" * 60000}).encode())
         self.assertEqual(json.loads(client.read()[1])["op"], "status")
 
     def test_this_machine_may_speak_plainly_to_the_same_port_others_may_not(self):
         address = own_address()
         if address is None:
-            print("skipped 1 check: this machine has no address but loopback", flush=True)
-            self.skipTest("no address but loopback")
+            print("skipped 1 check: this machine has only the loopback address", flush=True)
+            self.skipTest("only the loopback address")
         self.start("--token-file", self.tokens, "--bind", "0.0.0.0", *self.make_certificate())
         token = self.token("rider")
         self.assertEqual(self.client(f"/?token={token}").step(9)["verdict"], "ERROR")
         with self.assertRaises(ConnectionError):
-            self.client()  # beyond loopback there are no guests, not even from here
+            self.client()  # on other interfaces guests are refused, also from this machine
         with socket.create_connection(("127.0.0.1", self.port), timeout=10) as nonsense:
             nonsense.sendall(b"\x16\x03\x01\x00\x05hello")  # begins like TLS
             self.assertNotIn(b"HTTP/1.1 101", nonsense.recv(4096))
@@ -274,7 +274,7 @@ class Tls(AccessTest):
         for one in crowd[::2]:
             one.sendall(b"\x16\x03\x01\x02\x00\x01")
         self.assertEqual(self.get("/health", context=self.trusting())[0], 200)
-        self.assertEqual(crowd[0].recv(1), b"")  # the oldest gave way
+        self.assertEqual(crowd[0].recv(1), b"")  # the server closed the oldest connection
 
 
 if __name__ == "__main__":

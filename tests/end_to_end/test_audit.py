@@ -1,4 +1,4 @@
-"""The audit log: every verdict comes out of it again, and damage is a sentence."""
+"""The audit log returns every verdict, and reports damage with a message."""
 import json
 import unittest
 

@@ -1,4 +1,4 @@
-"""Bad input: a clear sentence, exit code 1 or 2, and what was computed before is kept and valid."""
+"""Bad input: a clear message, exit code 1 or 2; results computed before the error are kept and valid."""
 import json
 import math
 import pathlib
@@ -46,7 +46,7 @@ class BadInput(CliTest):
         return surefoot("run", recording, "--out", self.dir / "out", *extra)
 
     def kept(self, frames):
-        """The results of the frames before the fault are there and valid."""
+        """Checks that the results of the frames before the fault exist and are valid."""
         out = self.dir / "out"
         self.assertEqual(len(read_tum(out / "trajectory.tum")), frames)
         report = json.loads((out / "report.json").read_text())
@@ -131,7 +131,7 @@ class BadInput(CliTest):
             resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
         process = surefoot("run", self.good, "--out", self.dir / "out", preexec_fn=small_files)
         self.fails(process, self.dir / "out")
-        # What fitted is there, whole.
+        # Results that fit on the disk are complete.
         self.assertEqual(len(read_tum(self.dir / "out" / "trajectory.tum")), FRAMES)
         self.assertEqual(list((self.dir / "out").glob("*.tmp*")), [])
 
@@ -178,7 +178,7 @@ class BadInput(CliTest):
             void = [ratings[y][x] for y in range(10, 30) for x in range(10, 30)]
             self.assertEqual(set(void), {-9999.0}, written)
             self.assertEqual(ratings[0][0], 1.0, written)
-            answer = self.json_of("stairs", heights)  # a segmentation fault, once
+            answer = self.json_of("stairs", heights)  # regression: used to crash
             self.assertEqual(answer["flights"], [], written)
 
     def test_clouds_that_make_no_height_map(self):
@@ -212,7 +212,7 @@ class BadInput(CliTest):
         for line in ("0 time nan move_to 0 0", "0 time 1 move_to inf 0", "0 time 1 move_to 0 nan", "x time 1 move_to 0 0"):
             steps.write_text(line + "\n")
             self.fails(surefoot("fuse", steps, "--preset", "ethz", "--out", self.dir / "f"), "steps.txt:1")
-        steps.write_text("0 time 1000 move_to 0 0\n0 time 999 move_to 1e30 0\n")  # back in time, and far away
+        steps.write_text("0 time 1000 move_to 0 0\n0 time 999 move_to 1e30 0\n")  # earlier time, and very far away
         self.assertEqual(self.json_of("fuse", steps, "--preset", "ethz", "--out", self.dir / "f")["steps"], 2)
 
     def test_a_camera_that_froze_is_an_error_of_its_own(self):
@@ -235,7 +235,7 @@ class BadInput(CliTest):
         out = self.dir / "out"
         process = subprocess.Popen([str(BINARY), "run", "sim:demo_stairs", "--out", str(out)],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        while not out.exists() and process.poll() is None:  # the run has begun; its handler is there
+        while not out.exists() and process.poll() is None:  # the run has begun; its signal handler is installed
             time.sleep(0.05)
         time.sleep(3.0)
         process.send_signal(signal.SIGINT)
@@ -248,7 +248,7 @@ class BadInput(CliTest):
 
 
 def grainy(rows, draw):
-    """A picture with the noise of a sensor, one grey level."""
+    """A textured picture with sensor noise of one grey level."""
     return [bytes(min(255, max(0, value + draw.randrange(-1, 2))) for value in row) for row in rows]
 
 
@@ -263,7 +263,7 @@ def moved(rows, columns, down=0):
 
 
 class BadImages(CliTest):
-    """Pictures that no calibration, no depth and no map can be made of, or not as they are given."""
+    """Pictures from which calibration, depth or map cannot be computed, or only with other options."""
     SIZE = 320, 200
     RIG = ("layout: side_by_side\nresolution: [320, 200]\nrate_hz: 15\nbaseline_m: 0.12\nfocal_px: 200\n"
            "principal_px: [160, 100]\ndistortion: none\n")
@@ -274,7 +274,7 @@ class BadImages(CliTest):
         return path
 
     def source(self, left, right, frames=3):
-        """A folder of side-by-side frames that differ by their noise."""
+        """A folder of side-by-side frames that differ only in noise."""
         folder, draw = self.dir / "source", random.Random(5)
         folder.mkdir(exist_ok=True)
         (folder / "rig.yaml").write_text(self.RIG)
@@ -285,7 +285,7 @@ class BadImages(CliTest):
 
     def verdict_of(self, folder):
         process = surefoot("gate", "--map", folder, "--pose", "0,0,0", "--command", 1, "--machine", "rex", "--json")
-        self.assertEqual(process.returncode, 4, "never OK")
+        self.assertEqual(process.returncode, 4, "the verdict must not be OK")
         return json.loads(process.stdout)["verdict"]
 
     def test_pictures_without_anything_to_see_give_an_empty_map(self):
@@ -387,7 +387,7 @@ class BadBoards(CliTest):
         cls.shared.cleanup()
 
     def refused(self, words, verb, names, board=BOARD):
-        """`names`: what each image is called, and which good one it is."""
+        """`names` maps the name of each new image to the good image that it copies."""
         folder = self.dir / "images"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -396,7 +396,7 @@ class BadBoards(CliTest):
         process = surefoot("calibrate", verb, folder, "--board", board, "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1, process.stderr)
         self.assertIn(words, process.stderr)
-        self.assertFalse((self.dir / "out").exists(), "no rig of what failed")
+        self.assertFalse((self.dir / "out").exists(), "a failed calibration must not write a rig")
 
     def test_too_little_is_said(self):
         self.refused("1 usable and different views", "mono", {"a.png": "left000.png"})

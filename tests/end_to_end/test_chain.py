@@ -1,4 +1,4 @@
-"""The main job, measured: real and simulated recordings in, trajectories, maps and verdicts out."""
+"""The whole chain on real and simulated recordings: trajectories, maps and verdicts."""
 import hashlib
 import json
 import math
@@ -12,7 +12,7 @@ from surefoot_cli import BINARY, CliTest, grey_png, read_asc, read_tum, surefoot
 
 
 def digest(folder):
-    """Hash of every result. Times are exempt: "timing" in report.json, and report.html that draws them."""
+    """Hash of every result except times: "timing" in report.json, and report.html, which draws it."""
     result = {}
     for path in sorted(folder.rglob("*")):
         content = path.read_bytes()
@@ -37,7 +37,7 @@ class RealRecordings(CliTest):
         errors = self.json_of("eval", "trajectory", self.dir / "city" / "trajectory_camera.tum", city / "poses.txt")
         self.assertEqual(errors["matched"], 51)
         self.assertLessEqual(errors["ate_rmse_m"], 0.15)
-        # The street begins 6 m ahead, the default map ends 3 m ahead: an empty map, with its reason.
+        # The street begins 6 m ahead, but the default map ends 3 m ahead: the map is empty and gives the reason.
         report = json.loads((self.dir / "city" / "report.json").read_text())
         self.assertTrue(report["complete"])
         self.assertEqual(report["map"]["known_cells"], 0)
@@ -81,7 +81,8 @@ class RealRecordings(CliTest):
         self.assertLessEqual(drift_mm, 5.0)
         report = json.loads((self.dir / "still" / "report.json").read_text())
         self.assertIn(report["gravity_source"], ("imu", "plane"))
-        # Over the mattress at 2.2 m is a window, white without detail: it put a bar of 45 cells, 1.1 m high, before it.
+        # The window above the mattress at 2.2 m is white without detail. Wrong matches on it would put a bar of
+        # 45 cells, 1.1 m high, before it.
         header, heights = read_asc(self.dir / "still" / "elevation.asc")
         column = lambda x_m: int((x_m - header["xllcorner"]) / header["cellsize"])  # noqa: E731
         high = [z for line in heights for z in line[column(1.5):column(1.95)] if z is not None and z > 0.9]
@@ -89,7 +90,7 @@ class RealRecordings(CliTest):
 
 
 def road_quality(out, within_m=0.06):
-    """Of the known cells within 2 m of the driven line: share that near a fitted plane, share traversable."""
+    """Known cells within 2 m of the driven line: their number, share near a fitted plane, share traversable."""
     header, heights = read_asc(out / "elevation.asc")
     _, values = read_asc(out / "traversability.asc")
     size, x0, y0 = header["cellsize"], header["xllcorner"], header["yllcorner"]
@@ -108,7 +109,7 @@ def road_quality(out, within_m=0.06):
 
 
 def fit_plane(points):
-    """Least squares z = a x + b y + c, refitted three times on the points within 0.15 m (kerbs, parked cars)."""
+    """Least-squares plane z = a x + b y + c; refitted three times without points beyond 0.15 m (kerbs, parked cars)."""
     kept = points
     for _ in range(4):
         n = len(kept)
@@ -122,7 +123,7 @@ def fit_plane(points):
 
 
 def solve3(rows):
-    """Gaussian elimination with pivots of a 3x3 system with its right side."""
+    """Solves a 3x3 system by Gaussian elimination with pivots."""
     for i in range(3):
         pivot = max(range(i, 3), key=lambda r: abs(rows[r][i]))
         rows[i], rows[pivot] = rows[pivot], rows[i]
@@ -134,11 +135,11 @@ def solve3(rows):
 
 
 class Suite(CliTest):
-    # Short and small: three frames, and the gate is asked at the last place only.
+    # Small and fast: three frames, and one query of the gate at the last pose.
     SMALL = ("--scenes", "floor,table", "--frames", 3, "--reach", 0, "--noise", "1,2")
     FILES = ("cases.csv", "bins.csv", "steps.csv", "verdicts.csv")
-    # A gate that always refuses misses no hazard either: least share of the clearly safe movements
-    # that must be allowed, by scene and noise.
+    # A gate that always refuses would miss no hazard either. Smallest share of the clearly safe movements
+    # that it must allow, by scene and noise.
     ALLOWED = {("floor", 1): 0.5, ("floor", 2): 0.1, ("platform_edge", 1): 0.5, ("platform_edge", 2): 0.1,
                ("walk_floor", 1): 0.05}
 
@@ -149,7 +150,7 @@ class Suite(CliTest):
         allowed = {(case["scene"], case["noise"]): case["figures"]["allowed"] for case in answer["cases"]}
         for case, least in self.ALLOWED.items():
             self.assertGreaterEqual(allowed[case], least, case)
-        # And one that always allows must meet hazards here, at each noise where the trolley reaches the edge.
+        # A gate that always allows must meet hazards, at each noise where the trolley reaches the edge.
         hazards = {(case["scene"], case["noise"]): case["figures"]["questions"] - case["figures"]["safe_questions"]
                    for case in answer["cases"]}
         for noise in (1, 2):
@@ -166,7 +167,7 @@ class Suite(CliTest):
                 self.assertGreater(figures["steps"], 1, case)
                 self.assertEqual(figures["steps_missed"], 0, case)
         self.assertLessEqual({"range", "column", "jump_column"}, {bin_["by"] for bin_ in answer["bins"]})
-        # Nothing is run again that is there.
+        # Finished cases are not run again.
         again = self.json_of("eval", "suite", "--quick", "--out", self.dir / "suite", timeout=20)
         self.assertEqual(again, answer)
 
@@ -189,7 +190,7 @@ class Suite(CliTest):
         process = subprocess.Popen([str(BINARY), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         head = 2
         deadline = time.monotonic() + 120
-        while time.monotonic() < deadline:  # until a case is there and another one has begun
+        while time.monotonic() < deadline:  # until one case is finished and another one has begun
             cases = killed / "cases.csv"
             if cases.exists() and len(cases.read_text().splitlines()) > head:
                 break
@@ -309,7 +310,7 @@ class Simulation(CliTest):
         folder.mkdir()
         write_floor(folder, holes=[])
         self.assertEqual(self.verdict(folder, (0, 0, 0), FORWARD)["verdict"], "OK")
-        write_floor(folder, holes=[(0.46, 0.18)])  # under the left foot that lands
+        write_floor(folder, holes=[(0.46, 0.18)])  # under the landing left foot
         self.inhibited("UNKNOWN_CELLS", folder, (0, 0, 0), FORWARD)
 
     def test_half_a_foot_over_a_platform_edge(self):
@@ -319,7 +320,7 @@ class Simulation(CliTest):
         self.inhibited("DROP_OFF", edge, (end[1], end[2], 0), FORWARD)
 
     def test_assumed_gravity_is_an_error(self):
-        # Featureless images and no accelerometer: neither a plane nor an IMU tells where down is.
+        # Featureless images and no accelerometer: neither a plane nor an IMU gives the direction of gravity.
         recording = self.dir / "grey"
         self.run_ok("sim", "floor", "--frames", 3, "--out", recording)
         for image in recording.rglob("*.png"):

@@ -1,4 +1,4 @@
-"""What `tools/check_conversions` finds in made-up sources, and that it reads all of ours."""
+"""Findings of `tools/check_conversions` in made-up sources; it also reads all sources of the project."""
 import importlib.machinery
 import importlib.util
 import pathlib

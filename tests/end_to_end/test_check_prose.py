@@ -1,4 +1,4 @@
-"""What `tools/check_prose` finds in made-up pages, and that it reads our documents and finds no fault in them."""
+"""Findings of `tools/check_prose` in made-up pages; the project's own documents must have none."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -12,7 +12,7 @@ loader.exec_module(check_prose)
 
 
 def found(text):
-    """Line and the words that were found, without what to write instead."""
+    """Line and words of each finding, without the suggested replacement."""
     return [(line, phrase[1:].split(" -> ")[0].lower()) for line, _, phrases in check_prose.findings("page.md", text)
             for phrase in phrases]
 

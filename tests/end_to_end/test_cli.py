@@ -1,4 +1,4 @@
-"""Every verb: help, its example, exit codes, JSON names."""
+"""Every verb: help, example, exit codes, names in its JSON."""
 import json
 import math
 import re
@@ -11,14 +11,14 @@ import unittest
 
 from surefoot_cli import BINARY, ROOT, CliTest, grey_png, read_asc, surefoot
 
-# In the order in which one example needs another's results.
+# Ordered so that each example finds the results of earlier ones that it needs.
 VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], ["fuse"], ["ground"], ["dem"], ["voxel"], ["sor"], ["icp"], ["measure"], ["gate"],
          ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "acts"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
          ["eval", "maps"], ["eval", "clouds"], ["eval", "depth"], ["eval", "stairs"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
          ["record"], ["replay"], ["info"], ["rig"], ["urdf"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
-NO_GATE_EXIT_CODES = (0, 1)  # rex-link: whether a gate listens at the usual port is not ours to say
+NO_GATE_EXIT_CODES = (0, 1)  # rex-link: another process may listen at the default port
 
 
 class Verbs(CliTest):
@@ -89,7 +89,7 @@ class Verbs(CliTest):
         steps = ROOT / "tests" / "conformance" / "elevation" / "steps.txt"
         depth = ROOT / "tests" / "conformance" / "depth"
         eye = lambda camera: recording / "mav0" / camera / "data" / "1000000000.png"
-        promised = (  # in an order in which each finds what it needs
+        promised = (  # ordered so that each finds its inputs
             (["sim", "floor", "--frames", 3, "--out", recording], "frames complete error folder"),
             (["run", recording, "--out", run, "--machine", "rex", "--save-map", region], "source frames complete gravity_source map timing"),
             (["depth", eye("cam0"), eye("cam1"), "--rig", "zed_vga", "--out", self.dir / "depth"],
@@ -218,8 +218,8 @@ class Verbs(CliTest):
 
 
 class Scenes(CliTest):
-    """Simulated recordings: of which scenes, and what becomes of one that is stopped."""
-    # Half a metre ahead to an edge: 1 s standing, 3 s of way, 0.7 s standing.
+    """Simulated recordings: accepted scenes, and continuation after an interruption."""
+    # Half a metre ahead to an edge: 1 s standing, 3 s walking, 0.7 s standing.
     EDGE = """name: edge
 description: the ground ends after a short way
 materials:
@@ -239,7 +239,7 @@ motion:
         return path
 
     def test_list_draws_scenes(self):
-        # The first ones only: all of them take minutes.
+        # Only the first scenes: all of them take minutes.
         out = self.dir / "gallery"
         names = [scene["name"] for scene in self.json_of("sim", "--list")["scenes"]]
         process = subprocess.Popen([str(BINARY), "sim", "--list", "--out", str(out)], stdout=subprocess.DEVNULL)
@@ -251,7 +251,7 @@ motion:
             time.sleep(0.1)
         for picture in pictures:
             self.assertGreater(min(read_png_size(picture)), 300, picture.name)
-        self.assertEqual(len({picture.read_bytes() for picture in pictures}), len(pictures), "each is another one")
+        self.assertEqual(len({picture.read_bytes() for picture in pictures}), len(pictures), "all pictures must differ")
 
     def test_folders_that_cannot_be_written_are_sentences(self):
         (self.dir / "file").write_text("")
@@ -284,7 +284,7 @@ motion:
         return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
     def cut(self, name, damaged):
-        """As if it had been stopped while `damaged` was being written: what comes later is not there."""
+        """Simulates an interruption while `damaged` was being written: later files are missing."""
         folder = self.dir / name
         for file in folder.glob("*.*"):
             if file.name not in ("config.yaml", "rig.yaml", "rgb.txt", "depth.txt"):
@@ -307,7 +307,7 @@ motion:
         process = self.recorded("cut", "--depth")
         self.assertIn("4 of 10 frames already existed", process.stderr)
         self.assertEqual(self.files("cut"), whole)
-        # What is kept is not rendered again: it stays what somebody has made of it.
+        # A kept frame is not rendered again: a file changed by hand stays changed.
         image = self.dir / "cut" / frames[2]
         image.write_bytes(whole[frames[7]])
         self.recorded("cut", "--depth")
@@ -340,7 +340,7 @@ motion:
             self.assertIn("holds a recording already", process.stderr)
             self.assertIn(said, process.stderr)
         process = surefoot("sim", self.scene("z_m: -0.3", "z_m: -0.2"), "--rate", 2, "--frames", 2, "--out", self.dir / "out")
-        self.assertEqual(process.returncode, 1, "the scene file is another one")
+        self.assertEqual(process.returncode, 1, "must be refused: the scene file has changed")
         self.assertEqual(self.files("out"), before)
 
     def test_safety_of_a_trolley_is_asked_at_its_stops(self):
@@ -348,7 +348,7 @@ motion:
         head, *lines = (self.dir / "out" / "safety.csv").read_text().splitlines()
         rows = [dict(zip(head.split(","), line.split(","))) for line in lines]
         ahead = [row for row in rows if row["command"] == "9"]
-        # At the start, and 1 + 3 s later: 0.5 m at 0.25 m/s, 1 s longer for getting up to speed.
+        # At the start, and 1 + 3 s later: 0.5 m at 0.25 m/s plus 1 s of acceleration.
         self.assertEqual(float(ahead[0]["time_s"]), 1.0)
         self.assertAlmostEqual(float(ahead[1]["time_s"]), 5.0, delta=0.05)
         self.assertEqual([row["safe"] for row in ahead], ["1", "0"])
@@ -356,7 +356,7 @@ motion:
         commands = {row["command"] for row in rows}
         self.assertEqual(len(rows), 2 * len(commands))
         self.assertGreater(len(commands), 5)
-        # A recording that ends before the second stop does not tell of it.
+        # A recording that ends before the second stop does not list it.
         self.recorded("short", "--frames", 4)
         lines = (self.dir / "short" / "safety.csv").read_text().splitlines()
         self.assertEqual(len(lines), 1 + len(commands))
@@ -375,7 +375,7 @@ def read_png_size(path):
 
 
 class Measures(CliTest):
-    """The figures of the measuring verbs, worked out by hand or by a few lines of Python."""
+    """Results of the measuring verbs, compared with values computed by hand or in Python."""
 
     def test_eval_stairs_by_hand(self):
         found, truth = self.dir / "run" / "stairs.json", self.dir / "truth.json"
@@ -393,7 +393,7 @@ class Measures(CliTest):
         self.assertAlmostEqual(flights["across"]["mean_m"], 0.02)
         self.assertEqual(flights["going"], {"count": 0, "mean_m": None, "std_m": None, "max_abs_m": None})
         self.assertEqual((errors["kerbs"]["matched"], errors["kerbs"]["missed"], errors["kerbs"]["extra"]), (0, [[5, 0, 0, 0]], [[5, 0, 0, 0]]))
-        self.assertIsNone(errors["drops"])  # the truth says nothing of them
+        self.assertIsNone(errors["drops"])  # the truth has no drops
         self.assertIn("number of steps correct in 1 of 1", self.run_ok("eval", "stairs", found, truth).stdout)
         narrow = json.loads(self.run_ok("eval", "stairs", found, truth, "--across", 0.01, "--json").stdout)
         self.assertEqual(narrow["flights"]["matched"], 0)
@@ -411,7 +411,7 @@ class Measures(CliTest):
         folder = ROOT / "tests" / "conformance" / "depth"
         got = self.json_of("eval", "depth", folder / "disparity.pfm", folder / "truth.pfm", "--sigma",
                            folder / "sigma.pfm")
-        # 11 pixels have a truth, 8 are known with errors 0 .75 -1.5 2.5 | 0 .25 3 0; the gaps are filled with
+        # 11 pixels have a truth; 8 are known with errors 0 .75 -1.5 2.5 | 0 .25 3 0; the gaps are filled with
         # 9.75 (error -.25) and twice 20.25 (.25).
         self.assertEqual(got["pixels"], 11)
         for name, value in (("density_percent", 800 / 11), ("bad_0_5_percent", 400 / 11), ("bad_1_percent", 300 / 11),
@@ -434,12 +434,12 @@ class Measures(CliTest):
     def test_eval_depth_reads_scaled_truth_and_mask(self):
         write_pfm(self.dir / "est.pfm", [[10.0] * 4] * 2)
         truth = self.dir / "truth.png"
-        truth.write_bytes(grey_png(4, 2))  # all 128
+        truth.write_bytes(grey_png(4, 2))  # all values 128
         answer = self.json_of("eval", "depth", self.dir / "est.pfm", truth, "--scale", 16)
         self.assertAlmostEqual(answer["error"]["mean_px"], 10 - 128 / 16)
         self.assertIsNone(answer["auc"])
         process = surefoot("eval", "depth", self.dir / "est.pfm", truth, "--mask", truth)
-        self.assertEqual(process.returncode, 1)  # 128 is not "visible in both cameras"
+        self.assertEqual(process.returncode, 1)  # 128 is not the value for "seen by both cameras"
         self.assertIn("no pixel", process.stderr)
         (self.dir / "small.png").write_bytes(grey_png(3, 2))
         process = surefoot("eval", "depth", self.dir / "est.pfm", self.dir / "small.png")
@@ -555,11 +555,11 @@ class Measures(CliTest):
         cells = maps["elevation_away_from_edges"]["count"]
         self.assertGreater(cells, 1000)
         self.assertEqual(sum(entry["count"] for entry in maps["by_distance"]), cells)
-        # Every mapped cell was seen by some frame: nearly all centres fall into an image.
+        # Some frame saw every mapped cell, so nearly all cell centres fall into an image.
         self.assertGreater(sum(entry["count"] for entry in maps["by_column"]), 0.9 * cells)
         self.assertEqual(len(maps["edges"]["by_column"]), 8)
         self.assertLess(maps["floor"]["tilt_deg"], 1.0)
-        # Without its poses a map is still compared.
+        # The comparison also works without poses.
         for name in ("trajectory.tum", "variance.asc", "report.json"):
             (run / name).unlink()
         less = self.json_of("eval", "maps", run, recording)

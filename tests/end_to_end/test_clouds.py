@@ -1,4 +1,4 @@
-"""Cloud tools: the vectors of CloudCompare, one cloud in every format, large and bad clouds."""
+"""Cloud tools: reference vectors of CloudCompare, one cloud in every format, large and invalid clouds."""
 import json
 import math
 import struct
@@ -7,7 +7,7 @@ from random import Random
 
 from surefoot_cli import CliTest, read_asc, surefoot
 
-AGREEMENT_M = 1e-6  # of the vectors, as their README states it
+AGREEMENT_M = 1e-6  # tolerance stated in the README of the vectors
 
 
 def table(path):
@@ -109,12 +109,12 @@ class Conformance(CliTest):
         self.assertTrue(answer["converged"])
         self.assertLess(turn_deg, 0.05)
         self.assertLess(place_mm, 2.0)
-        # The stairs have no side walls: along them the borders hold, and that is said.
+        # Without side walls only the borders fix the position along the stairs; the answer says so.
         self.assertEqual((answer["border_directions"], answer["free_directions"]), (1, 0))
         after = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.dir / "aligned.ply")
         before = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.vectors / "ref_e3_misaligned.ply")
         self.assertLess(after["rms_m"], 0.6 * before["rms_m"])
-        # A guess far off, given as a matrix and as numbers.
+        # A poor initial guess, given as a matrix and as numbers.
         (self.dir / "guess.txt").write_text("1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
         for guess in ("0.1,0,0,0", self.dir / "guess.txt"):
             again = self.json_of("icp", self.vectors / "ref_e1.ply", self.vectors / "ref_e3_misaligned.ply", "--guess", guess)
@@ -122,10 +122,10 @@ class Conformance(CliTest):
 
 
 class Surface(CliTest):
-    """Ground is the highest surface that enough points share and that does not hang."""
+    """Ground is the highest surface with enough points that is not an overhang."""
 
     def cloud(self, beam):
-        """A floor and four steps of 0.17 m by 0.28 m, ten points a cell; behind each nosing pixels in flight."""
+        """A floor and four steps of 0.17 m by 0.28 m, ten points per cell; behind each nosing there are flying pixels."""
         random = Random(1).random
         height = lambda x: 0.0 if x < 0.6 else 0.17 * min(4, int((x - 0.6) / 0.28) + 1)
         points = []
@@ -133,7 +133,7 @@ class Surface(CliTest):
             x, y = 2.2 * random(), 1.2 * random() - 0.6
             points.append((x, y, height(x) + 0.006 * (random() - 0.5)))
         for i in range(6000):
-            share, step = random(), i % 4  # from a nosing up and away from the camera
+            share, step = random(), i % 4  # flying pixels: from a nosing up and away from the camera
             points.append((0.6 + 0.28 * step + 0.25 * share, 1.2 * random() - 0.6, 0.17 * (step + 1) + 0.4 * share * (0.3 + random())))
         if beam:
             points += [(0.2 + 0.1 * random(), 1.2 * random() - 0.6, 1.8 + 0.1 * random()) for _ in range(8000)]
@@ -156,7 +156,7 @@ class Surface(CliTest):
             heights[name] = [z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None]
         self.assertGreater(max(heights["max"]), 1.8)
         for name in ("surface", "cut"):
-            self.assertLess(max(heights[name]), 1.0)  # no beam
+            self.assertLess(max(heights[name]), 1.0)  # the beam is not ground
             self.assertLess(sum(z > 0.7 for z in heights[name]), 0.01 * len(heights[name]))
         for words, why in ((["--reduce", "max", "--max-height", 1.0], "work with --reduce surface only"),
                            (["--reduce", "surface", "--min-height", 2, "--max-height", 1], "must be below")):
@@ -249,7 +249,7 @@ class Formats(CliTest):
         heights = [z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None]
         self.assertEqual(min(heights), 0.0)
         self.assertLess(max(heights), 0.21)
-        process = surefoot("stairs", self.dir / "a.xyz")  # 1e12 was a crash
+        process = surefoot("stairs", self.dir / "a.xyz")  # regression: 1e12 used to crash
         self.assertEqual(process.returncode, 1)
         self.assertIn("none of its", process.stderr)
 
@@ -274,7 +274,7 @@ class Measure(CliTest):
         floor = [(x, y, 0.0) for x in steps(-1.0, 1.0, 0.02) for y in steps(-1.5, 1.5, 0.02)]
         wall = [(side, y, z) for side in (-0.06, 0.06) for y in steps(-1.5, 1.5, 0.02) if abs(y) > 0.45 for z in steps(0.0, 2.0, 0.02)]
         jambs = [(x, y, z) for x in steps(-0.06, 0.06, 0.02) for y in (-0.45, 0.45) for z in steps(0.0, 2.0, 0.02)]
-        # Turned by 30 deg about (5, 2): the way through is not an axis.
+        # Turned by 30 deg about (5, 2): the passage is not parallel to an axis.
         c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
         points = [(5 + c * x - s * y, 2 + s * x + c * y, z) for x, y, z in floor + wall + jambs]
         (self.dir / "door.ply").write_bytes(ply(points))
@@ -307,7 +307,7 @@ class BadInput(CliTest):
         sentences = [line for line in process.stderr.splitlines() if line.startswith("error")]
         self.assertEqual(len(sentences), 1, process.stderr)
         self.assertIn(why, sentences[0])
-        self.assertEqual(before, {path: path.read_bytes() for path in self.dir.rglob("*") if path.is_file()}, "left something")
+        self.assertEqual(before, {path: path.read_bytes() for path in self.dir.rglob("*") if path.is_file()}, "no new file")
 
     def test_a_sentence_each_and_nothing_left(self):
         points = grid_points()
@@ -374,7 +374,7 @@ class BadInput(CliTest):
         self.assertIn("do not overlap", process.stderr)
 
     def test_the_sigma_of_a_lattice_covers_its_error(self):
-        """Two levels by two, 50 mm apart, turned by 2 deg: nearest points find 1.5 deg."""
+        """Four levels (two by two), points 50 mm apart, rotated by 2 deg; nearest points alone give only 1.5 deg."""
         turn = math.radians(2.0)
         points = [(0.05 * i, 0.05 * k, (0.2 if i > 20 else 0.0) + (0.3 if k > 26 else 0.0)) for k in range(40) for i in range(40)]
         moved = [(0.065 + math.cos(turn) * x - math.sin(turn) * y, -0.053 + math.sin(turn) * x + math.cos(turn) * y, 0.01 + z)

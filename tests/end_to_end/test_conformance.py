@@ -17,13 +17,13 @@ def read_f32(path):
 
 
 def in_reference_order(rows):
-    """ESRI rows (largest y first, x grows) as the reference stores them: row = largest x first, column = largest y."""
+    """Converts ESRI rows (largest y first, x grows) to the reference's order: rows by falling x, columns by falling y."""
     height, width = len(rows), len(rows[0])
     return [rows[column][width - 1 - row] for row in range(width) for column in range(height)]
 
 
 def esri_text(values, side, cell, low):
-    """The reference order as an ESRI grid, 9 significant digits."""
+    """Writes values in the reference's order as an ESRI grid with 9 significant digits."""
     lines = [f"ncols {side}", f"nrows {side}", f"xllcorner {low}", f"yllcorner {low}", f"cellsize {cell}",
              "NODATA_value -9999"]
     for column in range(side):

@@ -1,4 +1,4 @@
-"""depth and depth-accuracy: figures against what was rendered, and every kind of bad pair."""
+"""depth and depth-accuracy: results compared with the rendered truth, and every kind of bad pair."""
 import random
 import struct
 import tempfile
@@ -9,7 +9,7 @@ from surefoot_cli import CliTest, png_of, surefoot
 
 
 def read_pfm(path):
-    """(width, height, values from the upper left corner on) of a little-endian PFM."""
+    """Reads a little-endian PFM: (width, height, values from the upper left corner)."""
     kind, size, scale, data = path.read_bytes().split(b"\n", 3)
     width, height = map(int, size.split())
     assert kind == b"Pf" and float(scale) < 0, (kind, scale)
@@ -18,14 +18,14 @@ def read_pfm(path):
 
 
 def speckle(width, height, seed=1):
-    """Rows of blobs of 4 px that never repeat."""
+    """Rows of random blobs of 4 px without repetition."""
     draw = random.Random(seed)
     coarse = [[draw.randrange(256) for _ in range(width // 4 + 2)] for _ in range(height // 4 + 2)]
     return [[coarse[v // 4][u // 4] for u in range(width)] for v in range(height)]
 
 
 def shifted(rows, columns, down=0):
-    """What is seen moves to the left and down; the border repeats."""
+    """Shifts the image to the left and down; repeats the border."""
     height, width = len(rows), len(rows[0])
     return [[rows[max(0, v - down)][min(width - 1, u + columns)] for u in range(width)] for v in range(height)]
 
@@ -68,7 +68,7 @@ class Depth(CliTest):
         infinity = float("inf")
         self.assertEqual([d == infinity for d in disparity], [s == infinity for s in sigma])
         self.assertTrue(all(0.0 <= p <= 1.0 for p in outlier))
-        # Below the horizon lies the floor, 1 m below the camera that looks 32 deg down.
+        # Below the horizon is the floor, 1 m below the camera; the camera looks 32 deg down.
         middle = disparity[188 * 672 + 400]
         self.assertAlmostEqual(342 * 0.12 / middle, 1.0 / 0.52992, delta=0.03)
         points = self.json_of("ground", out / "cloud.ply", "--frame", "optical")
@@ -101,7 +101,7 @@ class Depth(CliTest):
         for left, right in ((black, black), (white, white), (black, white)):
             out = self.dir / "plain"
             answer = self.json_of("depth", *self.pair(left, right), "--out", out)
-            self.assertLess(answer["trusted_percent"], 1.0, "nothing to see, nothing to trust")
+            self.assertLess(answer["trusted_percent"], 1.0, "images without texture must give no trusted matches")
             self.assertIsNone(answer["row_error"]["median_abs_px"])
         noise = self.json_of("depth", *self.pair(speckle(320, 200, 1), speckle(320, 200, 2)), "--out", self.dir / "n")
         self.assertLess(noise["trusted_percent"], 10.0)
@@ -137,7 +137,7 @@ class Accuracy(CliTest):
         self.assertAlmostEqual(near["scale_share"], near["axial_m"] / 0.6, places=9)
         self.assertIsNone(near["thesis"])
         self.assertEqual(far["thesis"], {"camera": "ZED", "axial_m": 0.018, "std_m": 0.0247})
-        self.assertGreater(zed["distances"][1]["std_m"], 1.3 * far["std_m"], "the profile is worse than the ideal")
+        self.assertGreater(zed["distances"][1]["std_m"], 1.3 * far["std_m"], "zed must scatter more than ideal")
         for name in ("depth_accuracy.html", "depth_accuracy.csv", "axial_error.svg", "std.svg"):
             self.assertTrue((self.dir / "zed" / name).stat().st_size > 100, name)
         self.assertIn("thesis, DUO", (self.dir / "zed" / "std.svg").read_text())
@@ -183,7 +183,7 @@ class Accuracy(CliTest):
             self.assertEqual(process.returncode, 1, text)
             self.assertIn(words, process.stderr)
         process = surefoot("depth-accuracy", "--pairs", pairs, "--out", self.dir / "bad")
-        self.assertEqual(process.returncode, 2, "real images need their own rig")
+        self.assertEqual(process.returncode, 2, "real images without a rig must be refused")
 
     def test_design(self):
         out = self.dir / "design"

@@ -1,4 +1,4 @@
-"""What the checks of the documents find in made-up pages, and that ours have no fault."""
+"""Findings of the document checks in made-up pages; the project's own documents must have none."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -1,4 +1,4 @@
-"""The examples of examples/, each run as its first lines say; and what the front door says where the command line says it too."""
+"""Runs each example of examples/ as its first lines say. The umbrella API and the command line must give the same results."""
 import math
 import os
 import pathlib

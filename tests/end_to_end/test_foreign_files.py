@@ -1,4 +1,4 @@
-"""Calibrations and machine files as other people have them, through the programs that read them."""
+"""Calibration files of other programs and machine files of other users, read by each of our programs."""
 import json
 import subprocess
 import unittest
@@ -68,7 +68,7 @@ class Machines(CliTest):
               "date: 2026-11-27}\n")
 
     def programs(self, text):
-        """What `surefoot gate` and `surefoot-gate` say to a machine file; both end before they ask for a map."""
+        """Runs `surefoot gate` and `surefoot-gate` with a machine file; both end before they need a map."""
         file = self.dir / "machine.yaml"
         file.write_text(text)
         offline = surefoot("gate", "--map", self.dir / "nothing", "--pose", "0,0,0", "--command", "9", "--machine", file,
@@ -84,7 +84,7 @@ class Machines(CliTest):
             self.assertNotEqual(process.returncode, 0)
             for word in words:
                 self.assertIn(word, process.stderr)
-            self.assertNotIn("--audit", process.stderr)  # what comes behind the machine
+            self.assertNotIn("--audit", process.stderr)  # the check after the machine file
 
     def test_a_step_that_the_gait_cannot_make(self):
         self.refused(self.REX.replace("walk: {enabled: true, up_m: 0.02", "walk: {enabled: true, up_m: 0.3"),
@@ -102,7 +102,7 @@ class Machines(CliTest):
         self.refused(signed.replace("tilt_deg: 8", "tilt_deg: 9"), "8 was signed, but limits.tilt_deg is 9")
 
     def test_a_signature_does_not_replace_the_self_test(self):
-        """Steps of up to 150 mm are signed for; the gate's own question still fails."""
+        """The file signs for steps of up to 150 mm; the gate's own check must still refuse it."""
         text = self.REX.replace("up_m: 0.02, down_m: 0.02", "up_m: 0.15, down_m: 0.02")
         text = text.replace("swing_clearance_m: 0.04", "swing_clearance_m: 0.2")
         lines = self.SIGNED.replace("KEY", "walk.up_m").replace("VALUE", "0.15")

@@ -1,4 +1,4 @@
-"""Surefoot installed into a folder, and the examples built against it as a stranger's project would be."""
+"""Installs Surefoot into a folder and builds the examples against it, as an independent project would."""
 import os
 import pathlib
 import re

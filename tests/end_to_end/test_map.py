@@ -1,4 +1,4 @@
-"""Saved maps: what run --save-map writes, read by a reader that knows docs/reference/map_format.md alone; merge, export, errors."""
+"""Saved maps: the file of run --save-map, read by the rules of docs/reference/map_format.md; merge, export, errors."""
 import math
 import struct
 
@@ -16,7 +16,7 @@ def fnv1a(data):
 
 
 def read_region(path):
-    """Header as a dict, and the layers as flat lists."""
+    """Returns the header as a dict and the layers as flat lists."""
     data = path.read_bytes()
     fields = FIXED.unpack_from(data)
     head = dict(zip(("magic", "major", "minor", "bytes", "stamp_ns", "frame_since_ns", "config_hash", "resolution_m",
@@ -48,7 +48,7 @@ class SavedMaps(CliTest):
             self.assertAlmostEqual(grid["xllcorner"], head["first_ix"] * head["resolution_m"], places=9)
             rows = [layers[name][80 * iy:80 * iy + 80] for iy in reversed(range(80))]
             for row, written in zip(rows, values):
-                for a, b in zip(row, written):  # nine digits of a float
+                for a, b in zip(row, written):  # written with nine digits
                     self.assertTrue(math.isnan(a) if b is None else abs(a - b) <= 1e-8 * abs(b), f"{name}: {a}, {b}")
         last = (self.dir / "out" / "trajectory.tum").read_text().split("\n")[-2].split()
         for a, b in zip(head["body"], map(float, last[1:])):
@@ -67,7 +67,7 @@ class SavedMaps(CliTest):
         self.run_ok("map", "merge", region, region, "--independent", "--out", both)
         _, once = read_region(region)
         _, twice = read_region(both)
-        # Equation 6.1 of two equal variances is half of one, but not below the floor of (3 mm)^2.
+        # By equation 6.1 two equal variances fuse to half of one, but not below the floor of (3 mm)^2.
         for a, b in zip(once["variance"], twice["variance"]):
             self.assertTrue(math.isnan(a) or abs(b - max(a / 2, 9e-6)) < 1e-6 * a)
 
@@ -83,7 +83,7 @@ class SavedMaps(CliTest):
         self.assertNotIn("--motion-sigma", paid.stderr)
         head, result = read_region(both)
         self.assertEqual(head["stamp_ns"], read_region(young)[0]["stamp_ns"])
-        # Beside 10 cm of the older map the younger one is the surer, and stays as it is where it knows.
+        # With 10 cm of motion sigma for the older map, the younger one is more certain and keeps its known cells.
         for known, cell in zip(read_region(young)[1]["variance"], result["variance"]):
             self.assertTrue(math.isnan(known) or known == cell)
         self.assertTrue(all(math.isnan(a) or b >= a for a, b in zip(unpaid["variance"], result["variance"])))
@@ -111,7 +111,7 @@ class SavedMaps(CliTest):
         damaged.write_bytes(data)
         other = self.dir / "other.region"
         data = bytearray(region.read_bytes()[:-8])
-        data[24:32] = struct.pack("<q", 7)  # another run
+        data[24:32] = struct.pack("<q", 7)  # the id of another run
         other.write_bytes(data + struct.pack("<Q", fnv1a(data)))
         out = self.dir / "c.region"
         for words, said, code in (

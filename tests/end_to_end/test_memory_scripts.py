@@ -1,4 +1,4 @@
-"""Remembered ground, at a seed each: lab/memory_scripts/main.cpp. The figures are in docs/lab."""
+"""Remembered ground: runs lab/memory_scripts with one seed per script. The figures are in docs/lab."""
 import csv
 import os
 import pathlib
@@ -20,7 +20,7 @@ class MemoryScripts(unittest.TestCase):
 
     def asked(self, script, drift):
         mine = [s for s in self.steps if s["script"] == script and float(s["drift_percent"]) == drift and s["asked"] == "1"]
-        self.assertTrue(mine, f"{script} came to its question")
+        self.assertTrue(mine, f"{script} must reach the order that it asks about")
         return mine
 
     def test_nothing_dangerous_is_allowed(self):

@@ -1,4 +1,4 @@
-"""What a user reads who did something wrong: one sentence with a way out, and with --json one object."""
+"""Error messages for users: one sentence that says what to do, and with --json one object."""
 import json
 import shutil
 import unittest
@@ -94,7 +94,7 @@ class DepthScale(CliTest):
         scale = json.loads(process.stdout)["scale"]
         self.assertEqual((scale["used"], scale["suspected"], process.stderr), (1, None, ""))
         self.assertAlmostEqual(scale["truth_over_estimate"], 1.0, delta=0.05)
-        # The same truth, said to hold a sixteenth of the disparity: 16 times too large.
+        # The same truth with a wrong scale of 1/16 px: the disparities are 16 times too large.
         process = self.run_ok(*words, "--scale", 0.0625)
         self.assertEqual(json.loads(process.stdout)["scale"]["suspected"], 1)
         self.assertIn("--scale 1", process.stderr)
@@ -105,7 +105,7 @@ class Scan(CliTest):
         process = self.run_ok("sim", "demo_stairs", "--scan", self.dir / "s.ply", "--set", "sim.laser.step_deg=1", "--json")
         points = json.loads(process.stdout)["points"]
         said = float(process.stderr.split("about ")[1].split()[0])
-        # A fan of 2 deg foresees one of 1 deg: its borders are 1 % of the beams.
+        # The estimate for 1 deg comes from a fan of 2 deg, whose borders are 1 % of the beams.
         self.assertAlmostEqual(said / points, 1.0, delta=0.03)
 
     def test_refuses_what_the_disk_has_no_room_for(self):

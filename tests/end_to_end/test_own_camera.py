@@ -1,4 +1,4 @@
-"""docs/get_started/own_camera.md, done as it is written, with frames of the simulator in place of a camera's."""
+"""Follows docs/get_started/own_camera.md step by step, with simulated frames instead of a camera."""
 import re
 import textwrap
 import unittest
@@ -10,7 +10,7 @@ PAGE = (ROOT / "docs" / "get_started" / "own_camera.md").read_text()
 
 
 def grey_rows(png):
-    """Rows of an 8-bit grey PNG, by the book (W3C PNG specification, filters 0-4)."""
+    """Reads the rows of an 8-bit grey PNG (W3C PNG specification, filters 0-4)."""
     data, width, at = b"", 0, 8
     while at < len(png):
         length, kind = int.from_bytes(png[at:at + 4], "big"), png[at + 4:at + 8]
@@ -65,9 +65,9 @@ class OwnCamera(CliTest):
 
         process = surefoot("run", mine, "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("rig.yaml", process.stderr)  # what is missing
+        self.assertIn("rig.yaml", process.stderr)  # the missing file
 
-        # The rig that the simulator drew with, as `calibrate stereo` would have written it.
+        # The simulator's rig, in the format of `calibrate stereo`.
         self.run_ok("rig", recording, "--out", mine / "rig.yaml")
         info = self.json_of("info", mine)
         self.assertEqual((info["kind"], info["frames"]), ("side_by_side", frames))
@@ -76,7 +76,7 @@ class OwnCamera(CliTest):
         self.assertGreater(report["map"]["known_cells"], 1000)
         trajectory = (self.dir / "out" / "trajectory.tum").read_text().splitlines()
         along_m = [float(line.split()[1]) for line in trajectory if line[0] != "#"]
-        # frame10 after frame9: the trolley never rolls back by more than noise.
+        # In natural order (frame10 after frame9) the trolley never rolls back by more than the noise.
         self.assertGreater(min(b - a for a, b in zip(along_m, along_m[1:])), -0.002)
 
 

@@ -1,4 +1,4 @@
-"""`surefoot serve` as a browser meets it: files, the WebSocket at /page, its messages (service/page/messages.json)."""
+"""`surefoot serve` from the view of a browser: files, the WebSocket at /page, its messages (service/page/messages.json)."""
 import gzip
 import http.client
 import json
@@ -15,7 +15,7 @@ import unittest
 from surefoot_cli import BINARY, ROOT, CliTest
 from websocket_client import RosbridgeClient
 
-# A trolley that rolls over level ground; slowly, so that it rolls as long as the tests last.
+# A trolley that rolls slowly over level ground, so that it still rolls at the end of the tests.
 SCENE = ("sim:floor", "--speed", "0.2", "--set", "sim.sensor=analytic")
 MAP, POSE, IMAGE, LAYER = 1, 2, 3, 4
 MAP_HEAD = struct.Struct("<QqqqiIHHBBHI")
@@ -24,7 +24,7 @@ LAYER_HEAD = struct.Struct("<QqqIHHHH")
 
 
 class Page(RosbridgeClient):
-    """A page that looks. The ground as it has been told: cell of odom -> (height [mm], sigma [mm], state)."""
+    """A page. `ground` is the map as received: cell of odom -> (height [mm], sigma [mm], state)."""
 
     def __init__(self, port, connected=None):
         super().__init__(port, path="/page", connected=connected)
@@ -56,7 +56,7 @@ class Page(RosbridgeClient):
          LAYER: self.take_layer}[kind](payload[4:])
 
     def take_layer(self, body):
-        """Head, and the newest values of each layer: (map version, cell of odom -> value where there is one)."""
+        """Stores the newest values of each layer: (map version, cell of odom -> known value)."""
         head = LAYER_HEAD.unpack_from(body)
         version, x, y, side, nx, ny, index, _ = head
         values = struct.unpack_from(f"<{nx * ny}f", body, LAYER_HEAD.size)
@@ -99,7 +99,7 @@ class Page(RosbridgeClient):
         self.send(1, json.dumps(message).encode())
 
     def wait_for(self, kind, until=lambda said: True, seconds=30.0):
-        """The newest message of a kind, once it is so."""
+        """Waits until the newest message of a kind fulfils `until`, and returns it."""
         end = time.monotonic() + seconds
         while time.monotonic() < end and self.goodbye is None:
             if self.told(kind) and until(self.told(kind)[-1]):
@@ -112,7 +112,7 @@ class Page(RosbridgeClient):
 
 
 class PageTest(CliTest):
-    """A service, and pages that look at it. Classes say what it shows."""
+    """Starts a service and opens pages. Each subclass chooses the scene."""
 
     @classmethod
     def serve(cls, *words, stderr=subprocess.DEVNULL):
@@ -136,7 +136,7 @@ class PageTest(CliTest):
 
 
 class PageOverTls(CliTest):
-    """The page and its sockets through TLS; from this same machine plainly, too."""
+    """The page and its sockets with TLS; from this machine also without."""
 
     def test_a_real_client_sees_the_page_and_checks_its_certificate(self):
         certificate, key = self.dir / "certificate.pem", self.dir / "key.pem"
@@ -171,7 +171,7 @@ class PageOverTls(CliTest):
         page = Page(port, connected=secret)
         self.addCleanup(page.close)
         page.wait_for("hello")
-        for _ in range(200):  # maps are longer than a TLS record
+        for _ in range(200):  # a map is longer than a TLS record
             if page.ground:
                 break
             page.listen(0.05)
@@ -222,7 +222,7 @@ class LivePage(PageTest):
         self.assertEqual(page.joints[-1], ())
 
     def first_line(self, path, host, *headers):
-        """Of the answer to a WebSocket's request."""
+        """First line of the answer to a WebSocket request."""
         with socket.create_connection(("127.0.0.1", self.port), timeout=5) as plain:
             plain.sendall("\r\n".join((f"GET {path} HTTP/1.1", f"Host: {host}", "Upgrade: websocket", "Connection: Upgrade",
                                        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==", "Sec-WebSocket-Version: 13", *headers,
@@ -236,7 +236,7 @@ class LivePage(PageTest):
             self.assertIn(status, self.first_line("/page", own, f"Origin: {origin}"), origin)
 
     def test_a_name_that_was_moved_to_this_machine_gets_nothing(self):
-        """DNS rebinding: a stranger's page asks this machine under the stranger's name."""
+        """DNS rebinding: a foreign page asks this machine with the foreign host name."""
         evil = f"evil.example:{self.port}"
         for path in ("/page", "/"):
             self.assertIn("421", self.first_line(path, evil, f"Origin: http://{evil}", "Sec-WebSocket-Protocol: foxglove.sdk.v1"))
@@ -256,7 +256,7 @@ class LivePage(PageTest):
             self.assertIn("script-src 'self';", answer.headers["Content-Security-Policy"], path)
 
     def test_no_script_of_the_page_is_inline(self):
-        """The policy would stop it."""
+        """The content security policy would block such code."""
         _, body = self.get("/")
         page = gzip.decompress(body).decode()
         self.assertEqual(re.findall(r"<script(?![^>]*\ssrc=)", page), [])
@@ -307,7 +307,7 @@ class LivePage(PageTest):
         self.assertGreater(len(first.ground), 1000)
         self.assertLess(sum(first.map_bytes) / len(first.map_bytes), 200e3, "2 MB/s at 10 maps a second")
         states = [state & 3 for _, _, state in first.ground.values()]
-        self.assertGreater(states.count(1), 0.5 * len(states), "a level floor is free")
+        self.assertGreater(states.count(1), 0.5 * len(states), "a level floor must be free")
 
     def test_layers_and_images_come_to_who_wants_them(self):
         page = self.page()
@@ -321,7 +321,7 @@ class LivePage(PageTest):
         self.assertEqual((plain.layers, plain.images), ([], []))
 
     def test_layers_are_those_of_the_map(self):
-        """Heights of the layer and of the ground, which come by different ways, at one version of the map."""
+        """Heights of the layer message and of the map message at one map version."""
         page = self.page()
         page.want(map_hz=10, layers=["elevation", "variance"])
         compared, end = 0, time.monotonic() + 40.0
@@ -352,10 +352,10 @@ class LivePage(PageTest):
             self.assertIn(words, page.goodbye[1])
         page = self.page()
         with self.assertRaises((ConnectionError, OSError, AssertionError, struct.error, TypeError)):
-            page.send(1, b" " * 5000)  # no more than 4096 bytes are read
+            page.send(1, b" " * 5000)  # the limit is 4096 bytes
             page.listen(3.0)
             self.assertIsNone(page.goodbye)
-        self.assertTrue(self.page().listen(1.0).texts, "others go on")
+        self.assertTrue(self.page().listen(1.0).texts, "other pages must still receive messages")
 
 
 class JoystickOnPages(PageTest):
@@ -382,7 +382,7 @@ class JoystickOnPages(PageTest):
         gate = RosbridgeClient(self.gate_port)
         self.addCleanup(gate.close)
         gate.send(1, b'{"op":"subscribe","topic":"/surefoot/verdict","type":"surefoot/Verdict"}')
-        # Until the gate is ready each grip ends in "cannot judge"; the hand has to let go in between.
+        # Until the gate is ready, each push ends with "cannot judge", and the joystick must be released before the next one.
         end = time.monotonic() + 60.0
         steered = {"moved": False}
         while not steered["moved"] and time.monotonic() < end:
@@ -394,14 +394,14 @@ class JoystickOnPages(PageTest):
         self.assertEqual((steered["asked"], steered["moved"], steered["verdict"], steered["yours"]), (9, True, "OK", True))
         second.listen(0.5)
         self.assertEqual([second.told("steer")[-1][key] for key in ("yours", "taken", "asked", "moved")], [False, True, 9, True])
-        # What the page was told is what the gate said.
+        # The page must show the gate's own answer.
         said = None
         while said is None or said["verdict"] != "OK":
             opcode, payload = gate.read()
             said = json.loads(payload)["msg"] if opcode == 1 and b"/surefoot/verdict" in payload else said
         self.assertEqual(said["command"], 9)
         self.assertTrue(all(len(joints) == len(first.told("hello")[0]["machine"]["joints"]) for joints in first.joints))
-        # The machine walks, and the other cannot stop or steer it.
+        # While the machine walks, the other page can neither stop nor steer it.
         second.send(1, b'{"op":"joystick","command":17}')
         end = time.monotonic() + 30.0
         while first.poses[-1][1] < 0.2 and time.monotonic() < end:
@@ -412,7 +412,7 @@ class JoystickOnPages(PageTest):
             angles = [joints[names.index(knee)] for joints in first.joints]
             self.assertGreater(max(angles) - min(angles), 0.2, knee)
         self.assertEqual([said["asked"] for said in second.listen(0.5).told("steer")][-1], 9)
-        # Who goes leaves it to others.
+        # When a page closes, another one may steer.
         first.close()
         second.listen(1.0)
         self.assertFalse(second.told("steer")[-1]["taken"])
@@ -461,21 +461,21 @@ class Recordings(PageTest):
         stands, poses = page.poses[-1], len(page.poses)
         page.listen(1.0)
         self.assertEqual(len(page.poses), poses)
-        self.ask(other, lambda said: said["playback"]["paused"])  # everybody sees it
-        # A jump back, and on from there.
+        self.ask(other, lambda said: said["playback"]["paused"])  # every page sees it
+        # Jumps back and continues from there.
         self.ask(page, lambda said: said["state"] == "running" and 10 < said["playback"]["frame"] < 60, frame=10, paused=False)
-        self.assertEqual(page.poses[poses], stands, "nothing else before the first new frame")
+        self.assertEqual(page.poses[poses], stands, "no other pose before the first new frame")
         self.assertLess(page.poses[poses + 1][0], stands[0] - 2e9)
         self.ask(page, lambda said: said["state"] == "ended" and said["playback"]["frame"] == self.FRAMES - 1, frame=75, speed=8)
         self.assertGreater(page.poses[-1][0], stands[0])
-        # And back from the end.
+        # Jumps back from the end.
         self.ask(page, lambda said: said["state"] == "running" and 5 < said["playback"]["frame"] < 60, frame=5, speed=1)
         page.send(1, b'{"op":"joystick","command":9}')
         self.assertIn("cannot steer this source", page.listen(3.0).goodbye[1])
 
 
 class OtherMachine(PageTest):
-    """A machine that nobody has drawn yet."""
+    """A machine without a 3D model."""
 
     @classmethod
     def setUpClass(cls):
@@ -501,7 +501,7 @@ class OtherMachine(PageTest):
 
 
 class LargeMap(PageTest):
-    """2.6 million cells around the machine."""
+    """A map of 2.6 million cells."""
 
     @classmethod
     def setUpClass(cls):

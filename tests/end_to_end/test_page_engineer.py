@@ -1,4 +1,4 @@
-"""What the engineer's view is told and may do: stairs with their measures, settings, recordings (service/page/messages.json)."""
+"""Messages and requests of the engineer's view: stairs, settings, recordings (service/page/messages.json)."""
 import json
 import pathlib
 import signal
@@ -18,7 +18,7 @@ def exactly(text):
 
 
 class Stairs(PageTest):
-    """The demonstration: a stair of three steps, a ramp, a table and a pit; depth and motion are modelled."""
+    """The demonstration scene: three steps, a ramp, a table and a pit; analytic depth and known motion."""
     SCENE = ("sim:demo_stairs", "--machine", "rex", "--max-frames", "40", "--set", "sim.sensor=analytic")
 
     @classmethod
@@ -35,28 +35,28 @@ class Stairs(PageTest):
         seconds = time.monotonic() - began
         page.listen(1.0)
         stranger.listen(1.0)
-        self.assertEqual(stranger.told("stairs"), [], "nobody wanted it")
+        self.assertEqual(stranger.told("stairs"), [], "a page that did not ask must get no stairs")
         messages = page.told("stairs")
         self.assertGreater(len(messages), 1)
-        self.assertLess(len(messages), 3 * seconds + 3, "three a second at most")
+        self.assertLess(len(messages), 3 * seconds + 3, "at most three messages per second")
         for before, after in zip(messages, messages[1:]):
             self.assertNotEqual({name: before[name] for name in LISTS}, {name: after[name] for name in LISTS})
         self.run_ok("run", *self.SCENE, "--out", self.dir / "run")
         said = exactly((self.dir / "run" / "stairs.json").read_text())
         self.assertTrue(said["flights"])
         told = exactly(json.dumps(messages[-1]))
-        # A page shows what one observation alone has found too, and not how sure each edge is.
+        # A page also shows features of a single observation, but not the uncertainty of each edge.
         for name in LISTS:
             names = set().union(*(thing.keys() for thing in told[name]))
             of_run = [{key: value for key, value in thing.items() if key in names}
                       for thing in said[name] + said["unconfirmed"][name]]
             self.assertCountEqual(told[name], of_run, name)
-        # Who comes late is told the same.
+        # A page that connects later gets the same stairs.
         late = self.page()
         late.want(stairs=True)
         self.assertEqual(late.wait_for("stairs"), messages[-1])
         late.listen(1.0)
-        self.assertEqual(len(late.told("stairs")), 1, "nothing changes any more")
+        self.assertEqual(len(late.told("stairs")), 1, "no second message without a change")
 
 
 class Settings(PageTest):
@@ -96,22 +96,22 @@ class Settings(PageTest):
         self.assertEqual((settings["elevation.length_m"]["value"], settings["elevation.length_m"]["unit"]), ("5", "m"))
         for key, one in run.items():
             self.assertEqual((settings[key]["range"], settings[key]["comment"]), (one["range"], one["comment"]), key)
-        # What serve fits to the machine is shown as it is used.
+        # Settings that serve adapts to the machine are shown with their used values.
         self.assertNotEqual(settings["ground.expected_height_m"]["value"], run["ground.expected_height_m"]["value"])
         page.want(settings=True, map_hz=1)
         page.listen(0.5)
-        self.assertEqual(len(page.told("settings")), 1, "they are many, and did not change")
+        self.assertEqual(len(page.told("settings")), 1, "unchanged settings must not be sent again")
 
     def test_the_speed_changes_and_everybody_is_told(self):
         page, other = self.page(), self.page()
         other.want(settings=True)
         other.wait_for("settings")
         before = len(page.listen(4.0).poses)
-        other.listen(0.1)  # who answers no ping for 10 s is let go
+        other.listen(0.1)  # a page that does not answer pings for 10 s is disconnected
         answer = self.set(page, "service.speed", "0.01")
         self.assertTrue(answer["accepted"], answer)
         self.assertEqual(answer["value"], "0.01")
-        page.listen(1.0)  # one frame may be under way
+        page.listen(1.0)  # one frame may still be in transit
         other.listen(0.1)
         slow = len(page.poses)
         slow = len(page.listen(4.0).poses) - slow
@@ -130,7 +130,7 @@ class Settings(PageTest):
         before = len(page.map_bytes)
         self.assertGreater(before, 6)
         self.assertTrue(self.set(page, "page.map_hz", "0.5")["accepted"])
-        page.listen(2.5)  # one may be under way
+        page.listen(2.5)  # one may still be in transit
         before = len(page.map_bytes)
         page.listen(4.0)
         self.assertLessEqual(len(page.map_bytes) - before, 3)
@@ -145,7 +145,7 @@ class Settings(PageTest):
         before = self.nice_values()
         self.assertTrue(self.set(self.page(), "service.niceness", "7")["accepted"])
         after = self.nice_values()
-        self.assertEqual(after[self.service.pid], before[self.service.pid], "who looks after the gate")
+        self.assertEqual(after[self.service.pid], before[self.service.pid], "the supervising thread")
         self.assertEqual({value for thread, value in after.items() if thread != self.service.pid}, {7})
 
     def test_what_is_refused_is_said_and_nothing_changes(self):
@@ -204,7 +204,7 @@ class Recording(PageTest):
         page.wait_for("recording", lambda said: said["state"] == "recording")
         page.ask(op="playback", paused=False)
         seen = other.wait_for("recording", lambda said: said["frames"] > 14)
-        self.assertEqual(seen["state"], "recording", "every page sees it")
+        self.assertEqual(seen["state"], "recording", "every page must see the recording")
         page.ask(op="record", on=False)
         said = page.wait_for("recording", lambda said: said["state"] == "ready")
         self.assertEqual(said["left_out"], 0)
@@ -245,7 +245,7 @@ class Recording(PageTest):
         page.ask(op="record", on=True)
         said = page.wait_for("recording", lambda said: said["state"] == "failed")
         self.assertIn("file/rec: cannot make this folder", said["text"])
-        self.assertIsNone(page.listen(0.5).goodbye, "and all goes on")
+        self.assertIsNone(page.listen(0.5).goodbye, "the connection must stay open")
 
     def test_without_a_page_nobody_could_begin_one(self):
         process = surefoot("serve", self.source, "--no-page", "--record-dir", self.records, "--port", 0, timeout=60)

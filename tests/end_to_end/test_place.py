@@ -1,4 +1,4 @@
-"""run --place: a place that is remembered, recognised and extended; files that cannot be used."""
+"""run --place: a place database is saved, recognised and extended; unusable files give an error."""
 import json
 
 from surefoot_cli import CliTest, surefoot

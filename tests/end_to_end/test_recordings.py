@@ -1,4 +1,4 @@
-"""Files that are none, disks that fill up, videos that break off: said, with an exit code, and what was computed is kept."""
+"""Unreadable files, full disks, truncated videos: each gives a message and an exit code, and results are kept."""
 import json
 import os
 import pathlib
@@ -18,12 +18,12 @@ FRAMES = 4
 
 
 def little_memory():
-    """3 GB of addresses: whoever reads /dev/zero runs out of them."""
+    """Limits the address space to 3 GB, so that reading /dev/zero fails."""
     resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
 
 
 def raw_avi(frames, width=640, height=200, rate=10):
-    """An AVI 1.0 of uncompressed 24-bit frames, each a chunk '00db', with an index; by Microsoft's description of the format."""
+    """An AVI 1.0 file of uncompressed 24-bit frames (chunks '00db') with an index, by Microsoft's format description."""
     image = bytes((x * 7 + y * 13 + x * y % 31) % 256 for y in range(height) for x in range(width) for _ in range(3))
     def chunk(name, body):
         return name + struct.pack("<I", len(body)) + body + b"\0" * (len(body) % 2)
@@ -57,7 +57,7 @@ class FilesThatAreNone(CliTest):
         return path
 
     def calls(self, bad):
-        """`bad` makes a file of a name that is none."""
+        """`bad(name)` makes an unreadable file with this name."""
         out = ["--out", self.dir / "out"]
         floor = ["sim:floor", "--max-frames", "1", "--set", "sim.sensor=analytic"]
         good = self.dir / "good.xyz"
@@ -149,7 +149,7 @@ class FilesThatAreNone(CliTest):
 
 
 def small_files(limit):
-    """Every write past `limit` bytes of a file fails, as on a full disk."""
+    """Makes every write beyond `limit` bytes of a file fail, as on a full disk."""
     def apply():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
@@ -173,7 +173,7 @@ class FullDisks(CliTest):
         cls.shared.cleanup()
 
     def lines(self, *call, limit=20_000):
-        """All lines as a log file or a terminal gets them, stdout and stderr in one."""
+        """All lines of stdout and stderr in the order of a log file or terminal."""
         process = subprocess.run([str(BINARY), *map(str, call)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                  timeout=300, env={**os.environ, "NO_COLOR": "1"}, preexec_fn=small_files(limit))
         self.assertEqual(process.returncode, 1, process.stdout)
@@ -207,13 +207,13 @@ class FullDisks(CliTest):
         copy = self.dir / "copy"
         process = surefoot("record", self.good, "--out", copy, "--json", preexec_fn=small_files(20_000))
         self.assertFalse(json.loads(process.stdout)["complete"])
-        # On a disk for two frames the first two are there.
+        # A disk with room for two frames keeps the first two.
         mount = self.dir / "disk"
         mount.mkdir()
         sizes = [path.stat().st_size for path in (self.good / "mav0").rglob("*.png")]
         room = int(sum(sizes) * 2.6 / FRAMES) // 4096 * 4096
         if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={room}", "tmpfs", mount], capture_output=True).returncode:
-            print("skipped 1 check: no right to mount a small disk", flush=True)
+            print("skipped 1 check: mounting a small disk is not permitted here", flush=True)
             return
         self.addCleanup(subprocess.run, ["umount", mount])
         process = surefoot("record", self.good, "--out", mount / "copy")
@@ -235,7 +235,7 @@ class FullDisks(CliTest):
 
 
 class Videos(CliTest):
-    """The case video-truncated with a video of uncompressed frames."""
+    """A truncated video of uncompressed frames."""
 
     def video(self, frames, whole):
         (self.dir / "rig.yaml").write_text(RIG)

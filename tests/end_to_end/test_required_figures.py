@@ -1,4 +1,4 @@
-"""What `tools/accuracy --check` and `tools/benchmarks --check` say of made-up pages, and of those that are checked in."""
+"""Results of `tools/accuracy --check` and `tools/benchmarks --check` for made-up pages and for the committed ones."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -85,7 +85,7 @@ class RequiredFigures(unittest.TestCase):
 
 
 class PartsOfThePage(unittest.TestCase):
-    """`tools/accuracy --only PART` makes one section again."""
+    """`tools/accuracy --only PART` measures one section again."""
 
     def setUp(self):
         loader = importlib.machinery.SourceFileLoader("accuracy", str(ROOT / "tools" / "accuracy"))
@@ -106,7 +106,7 @@ class PartsOfThePage(unittest.TestCase):
 
     def test_one_section_is_replaced_and_the_others_stay(self):
         self.write("stairs", ("height", "3 mm", "5 mm", True))
-        # The order is that of the parts, not of the runs.
+        # Sections have the order of the parts, not of the runs.
         rows = self.write("pairs", ("cones", "97 %", "95 %", True), more=["", "Words."])
         self.assertEqual([row[0] for row in rows], ["cones", "shown of pairs", "height", "shown of stairs"])
         rows = self.write("stairs", ("height", "6 mm", "5 mm", False))

@@ -1,5 +1,5 @@
-"""surefoot rex-link against a small rosbridge server: what it asks, plays and moves. No test measures time: a busy
-machine may be silent for 100 ms, so that a joystick is pushed several times and only what must never be is strict."""
+"""surefoot rex-link against a small rosbridge server: its queries, sounds and movements. No test measures time. A busy
+machine may pause for 100 ms, so tests push the joystick several times, and only forbidden results are strict."""
 import signal
 import subprocess
 import sys
@@ -30,7 +30,7 @@ class RexLink(CliTest):
                             *words)
 
     def start(self, *words):
-        """The program with pipes, ended after a minute: a test that waits for a line then fails instead of hanging."""
+        """Starts the program with pipes and ends it after a minute, so that a test that waits for a line cannot hang."""
         process = subprocess.Popen([BINARY, "rex-link", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         patience = threading.Timer(PATIENCE_S, process.kill)
         patience.start()

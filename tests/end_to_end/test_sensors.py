@@ -26,7 +26,7 @@ class Sensors(CliTest):
         self.assertGreater(again["map"]["known_cells"], 3000)
         camera = read_tum(recording / "groundtruth.txt")[0]
         body = read_tum(recording / "groundtruth.tum")[0]
-        self.assertGreater(camera[3], body[3], "the camera sits above base_link")
+        self.assertGreater(camera[3], body[3], "the camera must be above base_link")
         copy = self.dir / "copy"
         self.run_ok("record", recording, "--out", copy)
         self.assertEqual((copy / "depth" / "1.000000000.png").read_bytes(),
@@ -57,7 +57,7 @@ class Sensors(CliTest):
         scanned = self.json_of("sim", "floor", "--scan", cloud, *coarse,
                                "--station", "0,0,1.6", "--station", "1,-0.5,1.2")
         self.assertEqual((scanned["stations"], scanned["complete"], scanned["file"]), (2, True, str(cloud)))
-        # A plane through all of it: the world's z = 0, to a millimetre.
+        # All points lie on the plane z = 0 of the world, to a millimetre.
         ground = self.json_of("ground", cloud, "--origin", "0,0,1.6")
         self.assertAlmostEqual(ground["height_m"], 1.6, delta=0.002)
         self.assertLess(abs(ground["tilt_deg"]), 0.1)
@@ -87,7 +87,7 @@ class Sensors(CliTest):
         self.assertEqual(body, 20 * scanned["points"])
 
     def test_the_sigma_of_heights_counts_the_lean_of_the_vertical(self):
-        """A start on a cross-fall with a poor accelerometer: all heights lean together, and their sigma says so."""
+        """A start on a cross-fall with a poor accelerometer: all heights tilt together, and their sigma covers it."""
         self.run_ok("run", "sim:cross_fall", "--seed", 50023, "--set", "sim.sensor=analytic", "--max-frames", 12,
                     "--set", "mount.gravity.accel_bias_m_s2=0.3", "--out",
                     self.dir / "out")

@@ -1,5 +1,5 @@
-"""surefoot serve with the gate process beside it: a walk that the gate allows and stops, and what happens when one of
-the two processes dies, stops or is killed. Times are asked of the gate's own clock (ages of frames), not of ours."""
+"""surefoot serve with its gate process: a walk that the gate allows and stops, and the behaviour when one of the two
+processes dies, stops or is killed. Times come from the gate's clock (ages of frames), not from the test's."""
 import os
 import pathlib
 import re
@@ -14,8 +14,8 @@ from websocket_client import RosbridgeClient
 GATE = BINARY.parent.parent / "surefoot-gate" / "surefoot-gate"
 FORWARD, BACKWARD, TURN_LEFT = 9, 17, 25
 PATIENCE_S = 120.0
-FAIR_SHARE = ("--nice", "0")  # on a busy machine frames of a perception that stands back come too late
-SILENCE_S = 1.0  # ten times what a client waits for an answer
+FAIR_SHARE = ("--nice", "0")  # with a lower priority, frames come too late on a busy machine
+SILENCE_S = 1.0  # ten times the time-out of a client
 
 
 class GateProcess(CliTest):
@@ -38,7 +38,7 @@ class GateProcess(CliTest):
             self.assertNotIn("listening", process.stdout)
 
     def test_a_machine_with_which_it_fails_its_own_questions_is_refused(self):
-        """Steps of 2 cm: no new ground to find a fault in."""
+        """Steps of 2 cm reach no new ground, so the ground gives no reason to refuse."""
         text = (ROOT / "machines" / "rex.yaml").read_text()
         short = self.dir / "short.yaml"
         short.write_text(re.sub(r"(forward|left)_m: (-?[\d.]+)", lambda m: f"{m[1]}_m: {float(m[2]) / 20:.4f}", text))
@@ -98,7 +98,7 @@ class GateProcess(CliTest):
 
 class Walk(CliTest):
     def test_a_table_stops_the_walk_seen_and_remembered(self):
-        """The thesis' Fig. 9.16: up to a table, back, half a turn, and back to the table that is no longer in view."""
+        """Fig. 9.16 of the reference thesis (Lange 2016): up to a table, back, half a turn, back to the table out of view."""
         log = self.dir / "audit"
         told = self.json_of("serve", "sim:tests/end_to_end/table_ahead.yaml", "--seed", 1, "--vouch", 1, "--walk",
                             "9*6,17*2,25*12,17*5", "--port", 0, "--once", "--set", "sim.sensor=analytic",
@@ -106,13 +106,13 @@ class Walk(CliTest):
         self.assertEqual([m["command"] for m in told], [FORWARD] * 6 + [BACKWARD] * 2 + [TURN_LEFT] * 12 + [BACKWARD] * 5)
         ahead = [m for m in told if m["command"] == FORWARD]
         self.assertTrue(all(m["moved"] for m in ahead[:4]), ahead)
-        self.assertFalse(ahead[-1]["moved"], "a sixth step would end in the table")
+        self.assertFalse(ahead[-1]["moved"], "a sixth step would hit the table")
         self.assertEqual(ahead[-1]["verdict"], "NOT_TRAVERSABLE")
         self.assertIn("something", ahead[-1]["text"])
         self.assertTrue(all(m["moved"] for m in told[6:20]), told[6:20])
         backs = told[20:]
         self.assertTrue(backs[0]["moved"], backs)
-        self.assertFalse(backs[-1]["moved"], "the table is behind")
+        self.assertFalse(backs[-1]["moved"], "the table is behind the machine")
         self.assertIn("overhead", backs[-1]["text"])
         replayed = self.json_of("audit", "replay", log)
         self.assertEqual(replayed["different"], 0)
@@ -121,7 +121,7 @@ class Walk(CliTest):
 
 class Channel(CliTest):
     def test_what_a_killed_service_left_in_shared_memory_goes(self):
-        """Of this user, and named after a process that is no more: nothing else."""
+        """Removes only files of this user that are named after a process that has ended."""
         memory = pathlib.Path("/dev/shm")
         begin = f"surefoot-{os.getuid()}-"
         gone = subprocess.Popen(["true"])
@@ -137,7 +137,7 @@ class Channel(CliTest):
 
 
 class Faults(CliTest):
-    """The chain on a scene where the machine stands; steps are asked for, none is made."""
+    """The chain on a scene with a standing machine; steps are asked for but not made."""
 
     def setUp(self):
         super().setUp()
@@ -178,11 +178,11 @@ class Faults(CliTest):
         return values
 
     def first_error(self):
-        """Asks until the gate says ERROR."""
+        """Asks until the gate answers ERROR."""
         patience = time.monotonic() + PATIENCE_S
         while (values := self.client.step(FORWARD))["verdict"] != "ERROR":
             self.assertLess(time.monotonic(), patience)
-            time.sleep(0.01)  # who asks more than 200 times a second hears OVERLOAD
+            time.sleep(0.01)  # more than 200 queries a second give OVERLOAD
         return values
 
     def test_a_perception_that_hangs_inhibits(self):
@@ -198,14 +198,14 @@ class Faults(CliTest):
             self.wait_for("OK")
 
     def wait_for_words(self, words, seconds):
-        """Of the service or its gate, on stderr."""
+        """Waits for words of the service or its gate on stderr."""
         patience = time.monotonic() + seconds
         while words not in (said := (self.dir / "stderr").read_text()):
             self.assertLess(time.monotonic(), patience, said)
             time.sleep(0.02)
 
     def test_a_perception_that_is_killed_takes_its_gate_with_it(self):
-        """At once: the port is free for the next start."""
+        """The gate ends at once, so that the port is free for the next start."""
         for round_ in range(3):
             if round_ > 0:
                 self.start()
@@ -252,7 +252,7 @@ class Faults(CliTest):
         patience = time.monotonic() + PATIENCE_S
         while "INTERNAL" not in (values := self.client.step(FORWARD))["reasons"]:
             self.assertLess(time.monotonic(), patience, values)
-            with open(channel, "r+b") as file:  # a byte of each slot; perception soon overwrites two of them
+            with open(channel, "r+b") as file:  # changes a byte of each slot; perception soon overwrites two of them
                 for slot in range(3):
                     file.seek(4096 + slot * ((channel.stat().st_size - 4096) // 3) + 200_000)
                     byte = file.read(1)
@@ -260,12 +260,12 @@ class Faults(CliTest):
                     file.write(bytes([byte[0] ^ 1]))
             time.sleep(0.01)
         self.wait_for_words("another process has changed a map", 5.0)
-        for _ in range(50):  # latched
+        for _ in range(50):  # the error is latched
             self.assertEqual(self.client.step(FORWARD)["verdict"], "ERROR")
             time.sleep(0.02)
 
     def test_an_orphan_that_holds_the_port_is_named(self):
-        """A gate that hangs cannot end with its perception."""
+        """A gate that hangs does not end with its perception."""
         os.kill(self.gate, signal.SIGSTOP)
         self.addCleanup(lambda: pathlib.Path(f"/proc/{self.gate}").exists() and os.kill(self.gate, signal.SIGKILL))
         self.service.kill()
@@ -274,7 +274,7 @@ class Faults(CliTest):
         refused = subprocess.run(words, capture_output=True, text=True, timeout=60)
         self.assertNotEqual(refused.returncode, 0)
         self.assertIn(f"process {self.gate} (surefoot-gate) listens there", refused.stderr)
-        os.kill(self.gate, signal.SIGCONT)  # then it ends, and the next start needs not wait for it
+        os.kill(self.gate, signal.SIGCONT)  # now the gate ends, and the next start need not wait for it
         self.assertEqual(subprocess.run(words, capture_output=True, timeout=60).returncode, 0)
 
     def test_a_gate_that_is_killed_comes_back_without_permission(self):
@@ -285,7 +285,7 @@ class Faults(CliTest):
                 for _ in range(1000):
                     self.client.step(FORWARD)
                     time.sleep(0.01)
-            told = self.service.stdout.readline()  # where it listens now
+            told = self.service.stdout.readline()  # the line with the new address
             self.port = int(told.rsplit(":", 1)[1])
             self.gate = self.gate_process()
             self.client.close()
@@ -293,11 +293,11 @@ class Faults(CliTest):
             values = self.client.step(FORWARD)
             self.assertEqual(values["verdict"], "ERROR")
             self.assertTrue({"WARMUP", "NOT_READY"} & set(values["reasons"]), values)
-            # The operator's word died with the process that heard it: the first step is refused again.
+            # The operator attestation ended with the old process: the first step is refused again.
             self.assertIn("UNKNOWN_CELLS", self.wait_for("NOT_TRAVERSABLE")["reasons"])
 
     def test_the_gate_comes_first_whenever_it_is_started(self):
-        """Perception stands back behind it, and behind the thread that looks after it."""
+        """Perception has a lower priority than the gate and than the thread that supervises the gate."""
         self.service.kill()
         self.service.wait()
         self.start(niceness=())
@@ -310,7 +310,7 @@ class Faults(CliTest):
             self.assertEqual(os.getpriority(os.PRIO_PROCESS, self.service.pid), own)
             self.assertEqual(os.getpriority(os.PRIO_PROCESS, self.gate), own)
             os.kill(self.gate, signal.SIGKILL)
-            self.service.stdout.readline()  # where it listens now
+            self.service.stdout.readline()  # the line with the new address
             self.gate = self.gate_process()
 
     def test_a_gate_that_hangs_says_nothing(self):

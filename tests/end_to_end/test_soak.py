@@ -1,4 +1,4 @@
-"""Twenty seconds of tools/soak: random faults and rude clients, and what must hold on any machine, however busy."""
+"""Twenty seconds of tools/soak: random faults, misbehaving clients, and the properties that hold on any busy machine."""
 import json
 import subprocess
 import sys
@@ -14,7 +14,7 @@ S = 1_000_000_000
 
 
 def question(sent_s, took_s, verdict="OK", port=1):
-    """Decided halfway."""
+    """A query that the gate decided halfway between sending and receiving."""
     sent, received = int(sent_s * S), int((sent_s + took_s) * S)
     return soak_report.Query(sent, received, verdict, "NONE", (sent + received) // 2, received + S, port)
 

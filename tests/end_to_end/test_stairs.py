@@ -1,4 +1,4 @@
-"""`stairs` and stairs.json: flights, drops and kerbs of maps whose steps are known exactly."""
+"""`stairs` and stairs.json: flights, drops and kerbs of maps with exactly known steps."""
 import json
 import math
 import re
@@ -22,20 +22,20 @@ STEPS = 4
 
 
 def height_of_stairs(x_cell, up=True, begin=60):
-    """Steps across x from cell `begin` on."""
+    """Height of steps along x that begin at cell `begin`."""
     step = min(max((x_cell - begin) // GOING_CELLS + 1, 0), STEPS)
     return (1 if up else -1) * step * RISER_M
 
 
 def tread_cells(path, largest_x_m):
-    """Places (column, row) of the cells of a tread, up to that x."""
+    """Cells (column, row) of a tread up to a given x."""
     header, rows = read_asc(path)
     columns = round((largest_x_m - header["xllcorner"]) / header["cellsize"])
     return {(u, v) for v, row in enumerate(rows) for u, value in enumerate(row[:columns]) if value is not None}
 
 
 def write_grid(path, height_of, nx=160, ny=60, x0=0.0, y0=0.0, cell=CELL_M):
-    """An ESRI grid of height_of(ix, iy); None = unknown."""
+    """Writes an ESRI grid of height_of(ix, iy); None = unknown."""
     rows = []
     for iy in reversed(range(ny)):
         heights = [height_of(ix, iy) for ix in range(nx)]
@@ -56,13 +56,13 @@ class Stairs(CliTest):
                 self.assertEqual(set(thing), {*names.split(), *followed, *gravity}, kind)
                 self.assertEqual(len(thing.get("pose", [0] * 4)), 4)
                 if of_run:
-                    self.assertGreaterEqual(thing["observations"], 2, "what one frame showed is not confirmed")
+                    self.assertGreaterEqual(thing["looks"], 2, "a feature of one frame is not confirmed")
             for thing in answer["unconfirmed"][kind] if of_run else []:
                 self.assertLess(thing["observations"], 2)
                 self.assertIn("in_final_map", thing)
 
     def fails(self, code, *call):
-        """The one sentence of a call that fails."""
+        """Returns the only message of a failing call."""
         process = surefoot("stairs", *call)
         self.assertEqual(process.returncode, code, f"{call}\n{process.stdout}\n{process.stderr}")
         self.assertEqual(process.stdout, "")
@@ -104,7 +104,7 @@ class Stairs(CliTest):
         self.assertEqual(cells["tread"] + cells["riser"], (3 * GOING_CELLS + 1) * 60)
         self.assertEqual(cells["floor"], 160 * 60 - cells["tread"] - cells["riser"])
         self.assertAlmostEqual(answer["classes"]["floor"]["area_m2"], cells["floor"] * CELL_M**2, delta=1e-9)
-        # The level of each tread, in its cells alone; measured heights are in no file that is written.
+        # Each tread's cells have its level. No written file contains the measured heights.
         lines = (self.dir / "out" / "treads.asc").read_text().splitlines()
         levels = [float(z) for line in lines if re.match(r"^-?[\d.]+ ", line) for z in line.split()]
         self.assertEqual(len(levels), 160 * 60)
@@ -157,7 +157,7 @@ class Stairs(CliTest):
         image = [[round(255 * height_of_stairs(ix) / 0.68) for ix in range(160)] for _ in range(60)]
         (self.dir / "up.png").write_bytes(png_of(image))
         points = [f"{(ix + 0.5) * CELL_M:.4f} {(iy + 0.5) * CELL_M:.4f} {share * height_of_stairs(ix):.4f}"
-                  for iy in range(60) for ix in range(160) for share in (1.0, 1.0, 1.0, 0.75)]  # one of four is in flight
+                  for iy in range(60) for ix in range(160) for share in (1.0, 1.0, 1.0, 0.75)]  # one of four is a flying pixel
         (self.dir / "up.xyz").write_text("\n".join(points) + "\n")
         grid = self.json_of("stairs", self.dir / "up.asc")
         image = self.json_of("stairs", self.dir / "up.png", "--scale", CELL_M, "--height", 0.68)
@@ -232,7 +232,7 @@ class Stairs(CliTest):
         assumed = " ".join(self.json_of("stairs", folder)["assumed"])
         for name in ("variance.asc", "free_above.asc", "clearance.asc", "density_ratio.asc", "count.asc"):
             self.assertIn(name, assumed)
-        # Far beyond the edges: with a sigma like that nothing stands out.
+        # With a sigma far larger than the edges, no edge is significant.
         write_grid(folder / "variance.asc", lambda ix, iy: 1.0, y0=-0.75)
         answer = self.json_of("stairs", folder)
         self.assertNotIn("variance.asc", " ".join(answer["assumed"]))
@@ -250,7 +250,7 @@ class Stairs(CliTest):
         self.assertIn("no free_above.asc", " ".join(self.json_of("stairs", out)["assumed"]))
 
     def test_the_folder_of_a_run_says_about_the_same_as_the_run(self):
-        # Not quite: the run has followed what it found, and reads the last look beside the map.
+        # They may differ slightly: the run tracks its features and also uses the last observation.
         out = self.dir / "out"
         run = self.json_of("run", "sim:stairs_up_ada", "--set", "sim.sensor=analytic", "--max-frames", 60, "--layers",
                            "--out", out)
@@ -263,7 +263,7 @@ class Stairs(CliTest):
         self.check_names(again)
         self.assertEqual(of_run["gravity_source"], run["gravity_source"])
         self.assertEqual(again["gravity_source"], run["gravity_source"])
-        for kind in NAMES:  # the same story of the same map
+        for kind in NAMES:  # both results describe the same map
             in_map = sum(thing["in_final_map"] for thing in of_run[kind] + of_run["unconfirmed"][kind])
             self.assertEqual(in_map, len(again[kind]), kind)
         self.assertTrue(any("base_link of map.snapshot" in line for line in again["assumed"]), again["assumed"])
@@ -274,7 +274,7 @@ class Stairs(CliTest):
         self.assertGreater(of_run["classes"]["floor"]["cells"], 1000)
         floor = of_run["classes"]["floor"]["cells"]
         self.assertAlmostEqual(again["classes"]["floor"]["cells"], floor, delta=0.01 * floor)
-        # One look names the near treads; the run has followed those behind them.
+        # One observation labels the near treads; the run has tracked those behind them.
         near_m = of_run["flights"][0]["pose"][0] + 2.3 * of_run["flights"][0]["going_m"]
         followed, looked = (tread_cells(folder / "treads.asc", near_m) for folder in (out, self.dir / "again"))
         self.assertGreater(len(followed & looked), 500)
@@ -304,7 +304,7 @@ class Stairs(CliTest):
         self.assertEqual(answer["assumed"], [])
 
     def test_height_images_of_others(self):
-        """Those of elevation_mapping_cupy: three steps of 0.2 m by eight pixels, a slope, holes."""
+        """Images of elevation_mapping_cupy: three steps of 0.2 m, each eight pixels long, a slope, holes."""
         folder = self.data("terrain")
         flights = {}
         for image in sorted(folder.glob("*.png")):

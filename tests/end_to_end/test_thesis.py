@@ -1,4 +1,4 @@
-"""The experiments of the thesis in small, and laser scans in tiles."""
+"""Small versions of the experiments of the reference thesis (Lange 2016), and laser scans in tiles."""
 import csv
 import json
 import unittest
@@ -9,7 +9,7 @@ SMALL = ["--runs", "demo_stairs_trolley", "--frames", 40, "--set", "sim.laser.st
 
 
 def without_speed(answer):
-    """What the speed of the computer decides is no result."""
+    """Removes values that depend on the speed of the computer."""
     for columns in answer["runs"].values():
         for figures in columns.values():
             figures.pop("update_hz")
@@ -31,7 +31,7 @@ class Thesis(CliTest):
         self.assertAlmostEqual(riser["ours"], 0.18, delta=0.006)
         self.assertEqual(riser["thesis"], "150 +- 50")
         columns = answer["runs"]["demo_stairs_trolley"]
-        # Forty frames are the first four seconds: near floor, and stairs from afar.
+        # Forty frames are the first four seconds: near floor, and distant stairs.
         self.assertEqual(columns["ours"]["frames"], 40)
         self.assertLess(columns["ours"]["floor_spread_m"], columns["thesis_settings"]["floor_spread_m"])
         self.assertLess(columns["ours"]["m3c2_p50_m"], 0.004)
@@ -55,7 +55,7 @@ class Thesis(CliTest):
         heights = read_asc(out / "scans/thesis_i_demo_stairs/elevation.asc")
         self.assertGreater(len(heights), 0)
 
-        # What is done is not done again; what is lost is, with the same figures.
+        # Finished parts are not computed again; lost parts are, with the same figures.
         self.assertEqual(self.suite(timeout=60), answer)
         before = without_speed(answer)
         (out / "runs/demo_stairs_trolley/ours/figures.csv").unlink()
@@ -78,7 +78,7 @@ class Tiles(CliTest):
     SCAN = ["sim", "thesis_l_reception", "--set", "sim.laser.step_deg=0.5"]
 
     def points_of(self, path):
-        """Number of points and their box."""
+        """Number of points and their bounding box."""
         answer = self.json_of("eval", "clouds", path, path)
         return answer["count"]
 

@@ -1,4 +1,4 @@
-"""`surefoot urdf`: what a machine looks like, as programs of others read it."""
+"""`surefoot urdf`: the model of a machine, checked with the programs that read URDF."""
 import shutil
 import subprocess
 import unittest
@@ -9,7 +9,7 @@ from surefoot_cli import ROOT, CliTest, surefoot
 
 class Urdf(CliTest):
     def test_a_foreign_reader_takes_it(self):
-        self.assertTrue(shutil.which("check_urdf"), "check_urdf is missing: tools/setup installs it (liburdfdom-tools)")
+        self.assertTrue(shutil.which("check_urdf"), "check_urdf is missing: run tools/setup to install it (liburdfdom-tools)")
         file = self.dir / "rex.urdf"
         self.run_ok("urdf", "rex", "--out", file)
         checked = subprocess.run(["check_urdf", file], capture_output=True, text=True, timeout=60)
@@ -30,7 +30,7 @@ class Urdf(CliTest):
         named = {material.get("name") for material in robot.findall("material")}
         used = {material.get("name") for material in robot.findall("link/visual/material")}
         self.assertEqual(named, used)
-        self.assertFalse(robot.findall("link/visual/material/color"), "colours are said once")
+        self.assertFalse(robot.findall("link/visual/material/color"), "each colour must be defined only once")
         self.assertEqual(len(robot.findall("link/visual")), 10)
         self.assertEqual(len(robot.findall("link/collision")), 10)
 

@@ -1,4 +1,4 @@
-"""A rosbridge client of one connection: enough of RFC 6455, with the standard library alone."""
+"""A rosbridge client with one connection: the needed parts of RFC 6455, with the standard library only."""
 import base64
 import json
 import os
@@ -8,7 +8,7 @@ import struct
 
 class RosbridgeClient:
     def __init__(self, port, timeout_s=5.0, path="/", connected=None):
-        """`connected`: a socket that is connected already, as one of TLS."""
+        """`connected`: an already connected socket, for example of TLS."""
         self.socket = connected or socket.create_connection(("127.0.0.1", port), timeout=timeout_s)
         self.stream = self.socket.makefile("rb")
         key = base64.b64encode(os.urandom(16)).decode()
@@ -41,7 +41,7 @@ class RosbridgeClient:
         return head[0] & 15, self.stream.read(length)
 
     def call(self, service, **args):
-        """The whole answer of a service."""
+        """Calls a service and returns the whole answer."""
         self.asked += 1
         name = f"call:{self.asked}"
         self.send(1, json.dumps({"op": "call_service", "id": name, "service": service, "args": args}).encode())

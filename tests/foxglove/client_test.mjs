@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// @foxglove/ws-protocol 0.8.0 against `surefoot serve`: what Foxglove and Lichtblick would show.
+// Tests @foxglove/ws-protocol 0.8.0 against `surefoot serve`: the data that Foxglove and Lichtblick show.
 import foxglove from "@foxglove/ws-protocol";
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -22,7 +22,7 @@ const kTopics = {
   "/surefoot/outlook": "surefoot.Outlook",
 };
 
-/// A service that lasts as long as `use` does.
+/// Runs a service until `use` returns.
 async function withService(words, use) {
   const args = ["serve", ...words, "--port", "0", "--page-port", "0", "--nice", "0"];
   const service = spawn(process.env.SUREFOOT_BINARY, args, { stdio: ["ignore", "pipe", "ignore"] });
@@ -45,7 +45,7 @@ async function withService(words, use) {
   }
 }
 
-/// Until `value()` is something.
+/// Waits until `value()` is defined.
 async function eventually(value, what) {
   const end_ms = performance.now() + kPatience_ms;
   while (performance.now() < end_ms) {
@@ -56,7 +56,7 @@ async function eventually(value, what) {
   assert.fail(`${what}: not within ${kPatience_ms / 1000} s`);
 }
 
-/// What Foxglove makes of a payload by its schema: it knows plain types, and bytes in base64.
+/// Decodes a payload by its schema as Foxglove does: plain types, and bytes in base64.
 function decode(schema, value, where) {
   switch (schema.type) {
     case "string":
@@ -81,7 +81,7 @@ function decode(schema, value, where) {
   }
 }
 
-/// A client, and all that it was told.
+/// A client that stores all received messages.
 class Listener {
   info;
   channels = new Map(); ///< by topic
@@ -120,7 +120,7 @@ class Listener {
   heard(subscription) {
     return this.messages.get(subscription) ?? [];
   }
-  /// The newest message of a subscription for which `holds` does, by its schema.
+  /// Waits until the newest message of a subscription fulfils `holds`, and decodes it by its schema.
   async newest(topic, subscription, holds = () => true) {
     const { schema } = this.channels.get(topic);
     return eventually(() => {
@@ -130,7 +130,7 @@ class Listener {
       return holds(message) ? { ...last, message } : undefined;
     }, topic);
   }
-  /// When the service has read all that was sent before: it answers in order.
+  /// Waits until the service has read all earlier messages; it answers in order.
   async fence() {
     const told = this.statuses.length;
     this.client.getParameters([]);
@@ -157,7 +157,7 @@ function unpack({ fields, data }, stride) {
 
 const share = (items, holds) => items.filter(holds).length / items.length;
 
-/// demo_stairs: floor at 0, a stair of 0.18 m rises, a pit; the camera looks at it from about 1 m.
+/// demo_stairs: floor at 0, steps of 0.18 m, a pit; the camera sees them from about 1 m.
 function checkGround(grid) {
   assert.equal(grid.frame_id, "odom");
   assert.deepEqual(grid.cell_size, { x: 0.025, y: 0.025 });
@@ -209,7 +209,7 @@ function checkStatus(status) {
   assert.ok(Math.abs(sum - status.total_ms) < 1e-6 && sum > 0 && sum < 10_000);
 }
 
-/// Asks the gate whatever it answers, as a machine does.
+/// Sends one query to the gate, as a machine does, and returns the answer.
 async function askGate(port, direction) {
   const gate = new WebSocket(`ws://127.0.0.1:${port}`);
   await once(gate, "open");
@@ -249,11 +249,11 @@ for (const protocol of kProtocols) {
       const pose = (await see("/surefoot/pose")).message;
       assert.equal(pose.frame_id, "odom");
       assert.ok(pose.pose.position.z > 0.8 && pose.pose.position.z < 1.2);
-      // A frame that comes late is said, too: "waiting".
+      // A late frame gives another state ("waiting") first.
       checkStatus((await see("/surefoot/status", ({ state }) => state === "running")).message);
       assert.equal((await see("/surefoot/outlook")).message.verdicts.length, 26);
 
-      // What the gate told the one who asked is what comes here.
+      // The topic must carry the gate's answer to the other client.
       const told = await askGate(gate_port, 9);
       const heard = (await see("/surefoot/verdict", ({ decided_ns }) => decided_ns === told.decided_ns)).message;
       assert.deepEqual([heard.verdict, heard.primary, heard.text], [told.verdict, told.primary, told.text]);
@@ -273,7 +273,7 @@ for (const protocol of kProtocols) {
     }));
 }
 
-// A trolley that rolls over level ground; slowly, so that it rolls as long as a test lasts.
+// A trolley that rolls slowly over level ground, so that it still rolls at the end of a test.
 const kFloor = ["sim:floor", "--speed", "0.2", "--set", "sim.sensor=analytic"];
 
 test("who speaks both gets the newer one, the page's own socket stays its own, others are refused", () =>
@@ -296,7 +296,7 @@ test("who speaks both gets the newer one, the page's own socket stays its own, o
     assert.equal(await statusOf("/", kProtocols, "http://localhost:8080"), 403, "another program's page");
     assert.equal(await statusOf("/", kProtocols, "https://app.foxglove.dev"), 101);
     assert.equal(await statusOf("/", kProtocols, "https://evil.example"), 403);
-    assert.equal(await statusOf("/page", [], "https://app.foxglove.dev"), 403, "it is no page");
+    assert.equal(await statusOf("/page", [], "https://app.foxglove.dev"), 403, "this origin is not the page");
     const page = new WebSocket(new URL("/page", url));
     const [first] = await once(page, "message");
     assert.equal(JSON.parse(first).kind, "hello");

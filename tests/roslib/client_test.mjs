@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roslib 2.1.0 against the service, and the written conversations over a bare WebSocket.
+// Tests roslib 2.1.0 against the service, and replays the conversations of tests/conformance over a WebSocket.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -27,7 +27,7 @@ after(async () => {
 /// service/gate_process/wire_testing.hpp has these tokens.
 const tokenOf = (role) => `${role}-token-of-tests`;
 
-/// An open connection of roslib, as a guest or with the token of a role.
+/// Opens a connection of roslib, as a guest or with the token of a role.
 async function connect(role) {
   const ros = new ROSLIB.Ros();
   const open = once(ros, "connection");
@@ -41,7 +41,7 @@ function call(ros, name, serviceType, request) {
   return new Promise((resolve, reject) => service.callService(request, resolve, reject));
 }
 
-/// A method of roslib that takes a callback for the answer and one for a failure.
+/// Turns a method of roslib with callbacks for answer and failure into a promise.
 function answerOf(ros, method, ...args) {
   return new Promise((resolve, reject) => ros[method](...args, resolve, reject));
 }
@@ -218,7 +218,7 @@ test("statuses reach roslib", () =>
     assert.equal((await status)[0].level, "error");
   }));
 
-/// Everything that is expected is there, and equal; more may be there.
+/// Checks that all expected fields exist and are equal; other fields are allowed.
 function holds(actual, expected) {
   if (expected === null || typeof expected !== "object") return actual === expected;
   if (Array.isArray(expected)) {
@@ -235,7 +235,7 @@ function holds(actual, expected) {
   );
 }
 
-/// What comes back to the texts of a conversation; its end is the answer to one question more.
+/// Sends the texts of a conversation and returns the replies. One additional query marks their end.
 async function repliesTo(texts, role) {
   const socket = new WebSocket(role ? `${url}/?token=${tokenOf(role)}` : url);
   await once(socket, "open");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The service with a gate that follows the script of tests/conformance/rosbridge. Prints the port
-// on one line and serves until its input ends: whoever started it holds the other end.
+// The service with a gate that follows the script of tests/conformance/rosbridge. Prints its port
+// on one line. Serves until its standard input ends, which the parent process holds open.
 #include <unistd.h>
 
 #include <cstdio>

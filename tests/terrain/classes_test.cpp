@@ -22,18 +22,18 @@ namespace {
 using stairs::GroundClass;
 constexpr std::size_t kClasses = stairs::kGroundClassNames.size();
 
-/// cells[truth][found]
+/// Counts of cells: [true class][found class].
 using Confusion = std::array<std::array<int, kClasses>, kClasses>;
 
 std::size_t index(GroundClass name) {
     return static_cast<std::size_t>(name);
 }
 
-/// The flight of a scene in its own frame: first edge at x = 0, the way along +x.
+/// The flight of a scene in its own frame: first edge at x = 0, direction of travel +x.
 struct TrueFlight {
     Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
     double angle_rad = 0.0;
-    double treads_m = 0.0;  ///< from the first edge to the last
+    double treads_m = 0.0;  ///< from the first edge to the last one
     double going_m = 0.0;
     double width_m = 0.0;
 
@@ -61,8 +61,8 @@ TrueFlight flight_of(const sim::ScriptedScene& scene) {
     return flight;
 }
 
-/// What a cell is; unknown = not to be judged. Ground that one steps onto is floor, whatever the
-/// scene calls it, and what lies deeper than a step is a drop.
+/// True class of a cell; unknown = not judged. Ground to step onto is floor, whatever its label in
+/// the scene. Ground deeper than one step is a drop.
 GroundClass true_class(sim::Label label,
                        double z_m,
                        const TrueFlight& flight,
@@ -75,7 +75,7 @@ GroundClass true_class(sim::Label label,
         const double step = p_m.x() / flight.going_m;
         const double off_m = std::abs(step - std::round(step)) * flight.going_m;
         if (off_m < 0.25 * cell_m) return GroundClass::riser;
-        // Border cells may be either, by parts of a cell.
+        // A cell at the border may belong to either class.
         return off_m > 1.5 * cell_m ? GroundClass::tread : GroundClass::unknown;
     }
     switch (label) {
@@ -91,7 +91,7 @@ GroundClass true_class(sim::Label label,
     }
 }
 
-/// The whole scene about its things as a height map with noise; nothing is hidden.
+/// Adds a scene around its features as a height map with noise, without occlusion.
 void add_scene(const std::string& name, std::uint64_t seed, double sigma_m, Confusion& confusion) {
     const sim::ScriptedScene scene = sim::make_scene(name, seed).value();
     Rng rng(mix_seed(seed, 7));
@@ -125,7 +125,7 @@ void add_scene(const std::string& name, std::uint64_t seed, double sigma_m, Conf
                                                  kCell_m);
             const bool is_thin = truth == GroundClass::riser || truth == GroundClass::wall ||
                                  truth == GroundClass::tread;
-            // Beside a ramp down lies what one also comes to over it.
+            // Beside the ramp down, low ground is also reached over the ramp: not judged.
             if (truth == GroundClass::drop && name == "ramp_1_12_down") continue;
             if (truth == GroundClass::unknown || (!is_thin && edges.at(ix, iy) != 0)) continue;
             ++confusion[index(truth)][index(classes.of_cell.at(ix, iy))];
@@ -165,7 +165,8 @@ constexpr const char* kScenes[] = {"demo_stairs",
                                    "door_900",
                                    "kerb_down_150"};
 
-// Exact heights, and those of a map after some looks. Other seeds: docs/concepts/stairs.md.
+// Exact heights, and heights with the noise of a map after several observations. Other seeds:
+// docs/concepts/stairs.md.
 TEST(Classes, HeightMapsOfScenesAreNamedAsTheScenesSay) {
     for (const double sigma_m : {0.0, 0.005}) {
         Confusion confusion{};
@@ -184,7 +185,7 @@ TEST(Classes, HeightMapsOfScenesAreNamedAsTheScenesSay) {
             EXPECT_GE(share(confusion, name, name), least)
                 << stairs::kGroundClassNames[index(name)] << '\n'
                 << table;
-        // What nobody may step on is not called floor.
+        // Ground on which nobody may step is rarely called floor.
         for (const GroundClass name : {GroundClass::drop, GroundClass::table, GroundClass::wall})
             EXPECT_LE(share(confusion, name, GroundClass::floor), 0.002)
                 << stairs::kGroundClassNames[index(name)] << '\n'

@@ -17,11 +17,11 @@
 namespace surefoot::terrain {
 namespace {
 
-constexpr double kStep_m = 0.15;   ///< between two looks
-constexpr double kBefore_m = 1.3;  ///< the way begins so far before the first edge
+constexpr double kStep_m = 0.15;   ///< between two observations
+constexpr double kBefore_m = 1.3;  ///< distance from the start of the path to the first edge
 constexpr double kBeyond_m = 0.7;
 
-/// Two flights of ten steps with a landing between them, and the way over them.
+/// Two flights of ten steps with a landing between them, and the path over them.
 class Climb {
   public:
     explicit Climb(const std::string& name) : scene_(sim::make_scene(name, 3).value()) {
@@ -40,7 +40,8 @@ class Climb {
     }
     [[nodiscard]] double way_m(int look) const { return -kBefore_m + kStep_m * look; }
 
-    /// The body walks along the middle, as high over the noses as it is over a floor.
+    /// The body follows the middle of the flight. Its height above the nosing line equals its
+    /// height above a floor.
     [[nodiscard]] Pose T_world_body(double s_m) const {
         double ground_m = 0.0;
         constexpr int kSamples = 25;
@@ -51,12 +52,14 @@ class Climb {
         const Eigen::Vector2d at = world(s_m, 0.0);
         return {exp_so3({0.0, 0.0, angle_rad_}), {at.x(), at.y(), ground_m + sim::kBodyHeight_m}};
     }
-    /// Along the way from the first edge, and to the left of its middle.
+    /// Position in the axes of the flight: along it from the first edge, and to the left of its
+    /// middle.
     [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector2d& world_m) const {
         return Eigen::Rotation2Dd(-angle_rad_) * (world_m - Eigen::Vector2d(distance_m_, 0.0)) -
                Eigen::Vector2d(0.0, lateral_m_);
     }
-    /// A hand's width from the walls of the flight.
+    /// Whether a place is at least 0.1 m from the walls of the flight, on the judged part of the
+    /// path.
     [[nodiscard]] bool on_the_way(const Eigen::Vector2d& place_m) const {
         return place_m.x() > -kBefore_m + 0.7 && place_m.x() < length_m_ + kBeyond_m &&
                std::abs(place_m.y()) < half_width_m_ - 0.1;
@@ -76,18 +79,22 @@ class Climb {
     double length_m_ = 0.0;
 };
 
-/// What the map says of the cells of one tread or landing that lie two cells from every edge.
+/// Map content of one tread or landing, in cells at least two cells from every edge.
 struct Tread {
     int cells = 0;
-    int passed = 0;                ///< that the body has passed
-    int passed_known = 0;          ///< of these
-    int misplaced = 0;             ///< known, and nearer to another tread
-    std::vector<double> errors_m;  ///< of the known ones
-    [[nodiscard]] double median_m() { return upper_median_in_place(errors_m); }
+    int passed = 0;                ///< cells behind the body
+    int passed_known = 0;          ///< known cells among these
+    int misplaced = 0;             ///< known cells whose height is nearer to another tread
+    std::vector<double> errors_m;  ///< of the known cells
+    [[nodiscard]] double median_m() {
+        const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
+        std::nth_element(errors_m.begin(), middle, errors_m.end());
+        return *middle;
+    }
 };
 
-/// Calls f(true height, cell, distance ahead of the body) for the cells of the window that lie on
-/// the way and two cells from every edge, also from one just outside of the window.
+/// Calls f(true height, cell, distance ahead of the body) for cells on the path that are two cells
+/// from every edge, also for a margin outside the window.
 template <typename F>
 void for_level_cells(const Climb& climb, const grid::GridGeometry& grid, double s_m, const F& f) {
     const sim::Lattice lattice{grid.origin_m, grid.nx, grid.ny, grid.resolution_m};
@@ -103,7 +110,8 @@ void for_level_cells(const Climb& climb, const grid::GridGeometry& grid, double 
     }
 }
 
-/// Treads by their number, steps over the ground where the way begins, as far as `ahead_m`.
+/// Treads by number up to `ahead_m`; the number counts steps above the ground at the start of the
+/// path.
 std::map<int, Tread> treads(const Climb& climb,
                             const elevation::ElevationMap& map,
                             double s_m,
@@ -126,18 +134,18 @@ std::map<int, Tread> treads(const Climb& climb,
 }
 
 struct Wanted {
-    double ahead_m = 3.0;    ///< going down, what is farther is seen edge-on
-    double median_m = 0.01;  ///< of the errors on one tread, at any time
-    double known = 0.99;     ///< share of a tread that the body has passed
+    double ahead_m = 3.0;    ///< going down, farther treads are seen edge-on
+    double median_m = 0.01;  ///< of the errors on one tread, in every check
+    double known = 0.99;     ///< share of a tread behind the body
 };
 
-/// Checks all treads in the window, and adds those that were passed.
+/// Checks all treads in the window, and adds the passed ones to `passed`.
 void check_treads(const Climb& climb,
                   const elevation::ElevationMap& map,
                   double s_m,
                   const Wanted& wanted,
                   std::set<int>& passed) {
-    constexpr int kFew = 40;  ///< of some 170 to 250
+    constexpr int kFew = 40;  ///< of about 170 to 250 cells of a tread
     for (auto& [number, tread] : treads(climb, map, s_m, wanted.ahead_m)) {
         const auto where = testing::Message() << "tread " << number << " seen from " << s_m;
         const auto known = static_cast<int>(tread.errors_m.size());
@@ -165,15 +173,16 @@ TEST(Climb, TwentyStepsUpKeepACorrectMap) {
         if (look % kCheckEvery == 0) check_treads(climb, map, s_m, {}, passed);
     }
     for (int number = 0; number < 20; ++number) EXPECT_EQ(passed.count(number), 1U) << number;
-    EXPECT_GT(climb.T_world_body(climb.length_m()).translation_m.z(), 4.0) << "higher than any cut";
+    EXPECT_GT(climb.T_world_body(climb.length_m()).translation_m.z(), 4.0)
+        << "the path climbs higher than any height cut";
 }
 
-/// Of treads below the cut: how many cells claim a height, and what lines of sight say of them.
+/// Cells of treads below the cut: how many have a height, and how many have free-space evidence.
 struct BelowTheCut {
     int cells = 0;
     int known = 0;
     int evidence = 0;
-    int wrong_evidence = 0;  ///< ground where lines are said to have passed
+    int wrong_evidence = 0;  ///< ground where the map claims free space
 };
 
 void look_below(const Climb& climb,
@@ -181,7 +190,7 @@ void look_below(const Climb& climb,
                 double s_m,
                 double cut_m,
                 BelowTheCut& out) {
-    constexpr double kSlack_m = 0.05;  // noise of the farthest
+    constexpr double kSlack_m = 0.05;  // noise at the farthest cell
     for_level_cells(climb, map.geometry(), s_m, [&](double true_m, grid::Cell cell, double) {
         if (true_m > cut_m - kSlack_m) return;
         ++out.cells;
@@ -193,9 +202,9 @@ void look_below(const Climb& climb,
     });
 }
 
-// With the default cut, and with one that only the nearest five treads below the feet pass. Without
-// the ramps that a matcher invents behind every nose: they are another question
-// (docs/lab/correlated_depth.md).
+// With the default cut, and with one that keeps only the nearest five treads below the feet.
+// Without the ramps that a matcher invents behind every nosing: docs/lab/correlated_depth.md
+// measures these.
 TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
     const Climb climb("flight_20_down");
     sim::AnalyticStereoConfig errors;
@@ -205,7 +214,7 @@ TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
     narrow.prefilter.min_height_m = -1.9;
     elevation::ElevationMap map{elevation::ElevationConfig{}};
     elevation::ElevationMap cut{narrow};
-    // A nose hides half of the tread below it.
+    // A nosing hides half of the tread below it.
     const Wanted wanted{.ahead_m = 1.2, .median_m = 0.015, .known = 0.4};
     const Wanted near{.ahead_m = 0.5, .median_m = 0.015, .known = 0.4};
     std::set<int> passed;
@@ -228,7 +237,7 @@ TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
         EXPECT_EQ(passed_cut.count(number), 1U) << number;
     }
     EXPECT_GT(below.cells, 5000);
-    EXPECT_LT(below.known, below.cells / 200) << "only by noise";
+    EXPECT_LT(below.known, below.cells / 200) << "only noise may pass the height cut";
     EXPECT_GT(below.evidence, below.cells / 4);
     EXPECT_EQ(below.wrong_evidence, 0);
     EXPECT_LT(climb.T_world_body(climb.length_m()).translation_m.z(), -2.0);

@@ -20,9 +20,9 @@ using traversability::Footprint;
 using traversability::FootprintPose;
 
 constexpr double kLook_s = 0.4;
-constexpr double kSafe = 0.80;  ///< of a rating
+constexpr double kSafe = 0.80;  ///< smallest rating of safe ground
 
-/// The way of a scene driven to its end, and what map and ratings say there.
+/// Drives the path of a scene to its end; offers map and ratings there.
 class Drive {
   public:
     explicit Drive(const std::string& name)
@@ -57,7 +57,7 @@ class Drive {
     [[nodiscard]] float rating(grid::Cell cell) const {
         return rating_.traversability.at(cell.ix, cell.iy);
     }
-    /// May a machine `width_m` wide walk straight from one place to another?
+    /// Whether a machine `width_m` wide may go straight from one pose to another.
     [[nodiscard]] bool passable(double width_m, FootprintPose from, FootprintPose to) const {
         const double half_m = 0.5 * width_m;
         const auto body = Footprint::polygon(std::array<Eigen::Vector2d, 4>{
@@ -105,7 +105,7 @@ TEST(Indoors, ADoorwayIsPassable) {
     int cells = 0;
     int blocked = 0;
     int safe = 0;
-    // From before the posts to behind them, two or three cells from each.
+    // From before the posts to behind them, two or three cells away from each post.
     const Eigen::Vector2d reach_m(0.5, half_m - margin_m);
     for_cells(drive.grid(), door_m - reach_m, door_m + reach_m, [&](grid::Cell cell) {
         ++cells;
@@ -115,9 +115,9 @@ TEST(Indoors, ADoorwayIsPassable) {
         safe += static_cast<double>(drive.rating(cell)) >= kSafe ? 1 : 0;
     });
     EXPECT_GT(cells, 1000);
-    EXPECT_EQ(blocked, 0) << "something hangs there, or is not reached";
+    EXPECT_EQ(blocked, 0) << "cells blocked by an overhang or not reached";
     EXPECT_GT(safe, 95 * cells / 100);
-    // A foot with all that is wanted around it needs 0.7 m: along the middle of the door.
+    // A foothold with its margins needs a width of 0.7 m: only the middle of the door has it.
     int middle = 0;
     int footholds = 0;
     const Eigen::Vector2d strip_m(0.5, 0.05);
@@ -130,7 +130,7 @@ TEST(Indoors, ADoorwayIsPassable) {
     const FootprintPose before{door_m.x() - 0.6, door_m.y(), 0.0};
     const FootprintPose behind{door_m.x() + 0.6, door_m.y(), 0.0};
     EXPECT_TRUE(drive.passable(0.6, before, behind));
-    EXPECT_FALSE(drive.passable(1.0, before, behind)) << "into both posts";
+    EXPECT_FALSE(drive.passable(1.0, before, behind)) << "a width of 1.0 m must hit the posts";
 }
 
 TEST(Indoors, ATableIsNotAFloor) {
@@ -138,7 +138,7 @@ TEST(Indoors, ATableIsNotAFloor) {
     const double top_m = drive.parameter("top_m");
     const double near_x_m = drive.parameter("distance_m");
     const double half_width_m = 0.5 * drive.parameter("width_m");
-    // As the scene places it: turned about the middle of the way's end.
+    // The scene rotates the table about the middle of the path's end.
     const Eigen::Rotation2Dd turn(drive.parameter("angle_deg") * std::numbers::pi / 180.0);
     const auto in_table = [&](const Eigen::Vector2d& at_m) {
         const Eigen::Vector2d in_m = turn.inverse() * (at_m - Eigen::Vector2d(near_x_m, 0.0));
@@ -163,9 +163,9 @@ TEST(Indoors, ATableIsNotAFloor) {
         }
     });
     EXPECT_GT(top, 100);
-    EXPECT_LT(top_reached, top / 20) << "mixed with floor along the rim";
-    EXPECT_GT(floor, 1000) << "seen under the rim";
-    // The far side of the top is seen edge-on, and a few cells see it only once from these looks.
+    EXPECT_LT(top_reached, top / 20) << "only cells mixed with floor along the rim may be reached";
+    EXPECT_GT(floor, 1000) << "floor seen under the rim";
+    // The far side of the top is edge-on, and some cells are seen only once from these poses.
     EXPECT_GT(floor_below, 80 * floor / 100);
     const double start_m = near_x_m - 1.0;
     EXPECT_TRUE(drive.passable(0.5, {start_m, 0.0, 0.0}, {start_m + 0.5, 0.0, 0.0}));

@@ -13,15 +13,15 @@
 
 namespace surefoot::terrain {
 
-/// The ZED on the armrest, with the errors of a matcher: noise, seams, and ramps invented where one
-/// eye sees nothing. The scene must outlive it. What goes wrong here throws: a test then fails.
+/// The ZED on the armrest with the errors of a matcher: noise, seams, and ramps where one camera
+/// sees nothing. The scene must outlive this object. Throws on errors, so that the test fails.
 class SceneCameras {
   public:
     explicit SceneCameras(const sim::Scene& scene, const sim::AnalyticStereoConfig& errors = {})
         : stereo_(sim::AnalyticStereo::make(scene, zed_rig(), errors, 1).value()) {}
 
     [[nodiscard]] const camera::RectifiedRig& rig() const { return stereo_.rig(); }
-    /// What they see from there; each look has noise of its own.
+    /// Depth image from a pose, with new noise in every call. Valid until the next call.
     const DepthImage& look_from(const Pose& T_world_body) {
         stereo_.measure(T_world_body, looks_++, serial(), view_, depth_);
         return depth_;
@@ -38,7 +38,7 @@ class SceneCameras {
     int looks_ = 0;
 };
 
-/// Lets a map see what the eyes see from a pose that is exactly known; odom is the world.
+/// Fuses a depth image into the map at the known pose. odom equals the world frame.
 inline void add_look(const SceneCameras& cameras,
                      const DepthImage& depth,
                      const Pose& T_world_body,
@@ -48,7 +48,7 @@ inline void add_look(const SceneCameras& cameras,
     map.add(cameras.rig(), T_world_body, depth, 1'000'000'000 + cameras.looks() * kFrame_ns);
 }
 
-/// A figure that the seed has drawn for a scene.
+/// Value of a parameter that the seed has drawn for a scene. Throws if it is missing.
 inline double drawn(const sim::ScriptedScene& scene, const std::string& name) {
     for (const sim::SceneParameter& parameter : scene.parameters)
         if (parameter.name == name) return std::stod(parameter.value);

@@ -13,11 +13,11 @@
 namespace surefoot::terrain {
 namespace {
 
-constexpr int kFromAfar = 2;  ///< frames: 1.3 m before the sill
-constexpr int kNear = 7;      ///< half a metre nearer
+constexpr int kFromAfar = 2;  ///< number of frames: ends 1.3 m before the sill
+constexpr int kNear = 7;      ///< ends half a metre nearer
 constexpr double kRate_hz = 2.0;
 
-/// Rendered pairs of the way to a sill through the whole chain, with the true motion.
+/// Runs rendered pairs towards a sill through the whole pipeline, with known poses.
 class SillInSight {
   public:
     SillInSight(sim::CameraProfile profile, const std::string& sill, int frames) {
@@ -36,14 +36,14 @@ class SillInSight {
         }
     }
 
-    /// What the map and the flag say in the middle of the sill, a cell from its edges.
+    /// Map and `not resolvable` flag in the middle of the sill, one cell from its edges.
     struct Said {
         int cells = 0;
         int known = 0;
         int not_resolvable = 0;
-        double height_m = 0.0;  ///< mean, over the mean floor before it
+        double height_m = 0.0;  ///< mean, above the mean floor before the sill
     };
-    /// `step_m`: the step that matters.
+    /// `step_m`: the height of a step that matters.
     [[nodiscard]] Said ask(double step_m) const {
         const elevation::ElevationLayers& map = pipeline_->map().layers();
         const grid::GridGeometry& grid = pipeline_->map().geometry();
@@ -83,7 +83,7 @@ class SillInSight {
     }
 
   private:
-    static constexpr double kBegin_m = 1.325;  ///< of the scene file
+    static constexpr double kBegin_m = 1.325;  ///< from the scene file
     static constexpr double kEnd_m = 1.475;
     std::unique_ptr<pipeline::Pipeline> pipeline_;
 };
@@ -107,7 +107,7 @@ TEST(Sill, TwentyMillimetresAreResolvedFromAfarByAnIdealCamera) {
     EXPECT_EQ(said.known, said.cells);
     EXPECT_EQ(said.not_resolvable, 0);
     EXPECT_NEAR(said.height_m, 0.020, 0.003);
-    EXPECT_GT(ideal.ask(0.005).not_resolvable, 90) << "but not one of 5 mm";
+    EXPECT_GT(ideal.ask(0.005).not_resolvable, 90) << "a step of 5 mm must stay unresolvable";
 }
 
 }  // namespace
