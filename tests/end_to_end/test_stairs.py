@@ -56,7 +56,7 @@ class Stairs(CliTest):
                 self.assertEqual(set(thing), {*names.split(), *followed, *gravity}, kind)
                 self.assertEqual(len(thing.get("pose", [0] * 4)), 4)
                 if of_run:
-                    self.assertGreaterEqual(thing["looks"], 2, "a feature of one frame is not confirmed")
+                    self.assertGreaterEqual(thing["observations"], 2, "a feature of one frame is not confirmed")
             for thing in answer["unconfirmed"][kind] if of_run else []:
                 self.assertLess(thing["observations"], 2)
                 self.assertIn("in_final_map", thing)

@@ -86,11 +86,7 @@ struct Tread {
     int passed_known = 0;          ///< known cells among these
     int misplaced = 0;             ///< known cells whose height is nearer to another tread
     std::vector<double> errors_m;  ///< of the known cells
-    [[nodiscard]] double median_m() {
-        const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
-        std::nth_element(errors_m.begin(), middle, errors_m.end());
-        return *middle;
-    }
+    [[nodiscard]] double median_m() { return upper_median_in_place(errors_m); }
 };
 
 /// Calls f(true height, cell, distance ahead of the body) for cells on the path that are two cells

@@ -51,16 +51,16 @@ void add_tread(
     }
     // The nose points to where people come from going up, to where they go going down.
     const bool up = flight.direction == StairDirection::up;
-    Tread motion_model = tread;
-    (up ? motion_model.begin_m : motion_model.end_m) += up ? flight.nosing_m : -flight.nosing_m;
+    Tread support = tread;
+    (up ? support.begin_m : support.end_m) += up ? flight.nosing_m : -flight.nosing_m;
     // The board reaches back to the next riser, which stands under the next nose.
     (up ? tread.end_m : tread.begin_m) += up ? flight.nosing_m : -flight.nosing_m;
     const double under_m = tread.top_m - flight.tread_thickness_m;
     add_block(site, flight, place, tread, under_m);
     if (flight.open) return;
-    (up ? motion_model.end_m : motion_model.begin_m) += up ? flight.nosing_m : -flight.nosing_m;
-    motion_model.top_m = under_m;
-    if (under_m - bottom_m > 1e-6) add_block(site, flight, place, motion_model, bottom_m);
+    (up ? support.end_m : support.begin_m) += up ? flight.nosing_m : -flight.nosing_m;
+    support.top_m = under_m;
+    if (under_m - bottom_m > 1e-6) add_block(site, flight, place, support, bottom_m);
 }
 
 /// A wedge of a spiral as a convex prism; the outer border is a chain of chords.
