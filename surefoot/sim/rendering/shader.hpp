@@ -24,7 +24,7 @@ struct Seen {
 /// (no refraction) and cast no shadow. Immutable after construction.
 class Shader {
   public:
-    /// The scene must outlive the shader. The seed shifts and turns the textures.
+    /// The scene must outlive the shader. The seed shifts the textures.
     Shader(const Scene& scene, std::uint64_t seed);
 
     /// Light from a hit point of a surface.
