@@ -133,15 +133,15 @@ std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
 }
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
-    visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
-    visitor.enumeration("carrier", motion_model, kCarriedByNames, "who goes the scene's way");
-    visitor.boolean("known_motion",
-                    known_motion,
-                    "the start, and the motion but for analytic.drift, are known");
+    visitor.enumeration("sensor", sensor, kSensorNames, "the sensor; analytic makes no images");
+    visitor.enumeration(
+        "carrier", motion_model, kCarriedByNames, "motion model on the scene's path");
+    visitor.boolean(
+        "known_motion", known_motion, "known start pose and motion, except for analytic.drift");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.boolean("machine_motion",
                     machine_motion,
-                    "frames say how the machine moved, with the error of machine_drift");
+                    "frames carry the machine's motion, with the error of machine_drift");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     const ImuKind imu_before = imu;
     visitor.enumeration("imu", imu, kImuNames, "its errors, below; where the rig has an IMU");

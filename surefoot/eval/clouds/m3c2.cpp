@@ -109,12 +109,12 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
                    registration_error_m,
                    0.0,
                    10.0,
-                   "one sigma of how the clouds lie to each other; part of the level of detection");
+                   "one sigma of the registration of the clouds; part of the level of detection");
     visitor.integer("min_points",
                     min_points,
                     1,
                     1000000,
-                    "with fewer points of a cloud in the cylinder nothing is significant");
+                    "with fewer points of a cloud in the cylinder no distance is significant");
 }
 
 std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,

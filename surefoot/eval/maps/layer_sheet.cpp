@@ -221,7 +221,7 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "variance") return millimetre_style("Sigma of the height");
     if (name == "drift") return millimetre_style("Horizontal drift");
     if (name == "clearance") return plain_style("Clearance", "m", ColorMap::magma);
-    if (name == "count") return plain_style("Count", "looks", ColorMap::viridis);
+    if (name == "count") return plain_style("Count", "observations", ColorMap::viridis);
     if (name == "confidence") return share_style("Confidence");
     if (name == "density_ratio") return plain_style("Density ratio", "", ColorMap::magma);
     if (name == "normal_x") return direction_style("Normal, x");
@@ -229,7 +229,7 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "normal_z") return share_style("Normal, z");
     if (name == "free_above") return height_style("Unknown ground is below");
     if (name == "rating_confidence") return share_style("Confidence of the rating");
-    if (name == "smallest_step") return millimetre_style("Smallest step to be told");
+    if (name == "smallest_step") return millimetre_style("Smallest step that can be resolved");
     if (name == "not_resolvable") return share_style("Sill not resolvable");
     if (name == "reach_step") return millimetre_style("Largest step on the way");
     LayerStyle rating = traversability_style(safe_threshold);

@@ -219,7 +219,7 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
     }
     std::string listed;
     for (const std::string& key : keys) listed += (listed.empty() ? "" : ", ") + key;
-    return fmt::format("no calibration that is known here{}. Read are {}",
+    return fmt::format("not a known calibration format{}. Known formats: {}",
                        listed.empty() ? "" : fmt::format(" (its keys: {} ..)", listed),
                        kReadFormats);
 }

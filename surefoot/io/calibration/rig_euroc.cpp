@@ -74,10 +74,11 @@ camera::CameraModel read_model(YamlReader& yaml) {
             yaml, *list, "distortion_coefficients", pinhole_lens(k, std::move(coefficients)));
     }
     if (distortion != "none" && distortion_node != nullptr) {
-        yaml.fail(*distortion_node,
-                  "distortion_model",
-                  quoted(distortion) +
-                      " is none of radial-tangential | rational_polynomial | equidistant | none");
+        yaml.fail(
+            *distortion_node,
+            "distortion_model",
+            quoted(distortion) +
+                " is not one of radial-tangential | rational_polynomial | equidistant | none");
     }
     return make_pinhole(k, {});
 }

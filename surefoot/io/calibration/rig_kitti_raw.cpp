@@ -74,7 +74,7 @@ ImageSize read_sides(RawLines& raw, const std::string& name) {
     const std::vector<double> sides = raw.numbers(name, 2);
     for (const double side_px : sides) {
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px)) continue;
-        raw.fail(fmt::format("{}: {}: {} is no image side of 1 .. {} px",
+        raw.fail(fmt::format("{}: {}: {} is not an image side of 1 .. {} px",
                              raw.file(),
                              name,
                              side_px,
@@ -100,7 +100,8 @@ Pose read_raw_pose(RawLines& raw, const std::string& number) {
     const YamlNode no_document;
     YamlReader reader(raw.file(), no_document);
     Pose pose = pose_from_parts(reader, no_document, "R_" + number, R, T);
-    if (reader.error()) raw.fail(fmt::format("{}: R_{} is no rotation", raw.file(), number));
+    if (reader.error())
+        raw.fail(fmt::format("{}: R_{} is not a rotation matrix", raw.file(), number));
     return pose;
 }
 

@@ -47,7 +47,7 @@ std::string read_type(YamlReader& yaml) {
     if (type != "PinHole" && type != "KannalaBrandt8" && type != "Rectified") {
         yaml.fail(*node,
                   "Camera.type",
-                  quoted(type) + " is none of PinHole | KannalaBrandt8 | Rectified");
+                  quoted(type) + " is not one of PinHole | KannalaBrandt8 | Rectified");
     }
     return type;
 }

@@ -94,7 +94,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     if (model != "plumb_bob") {
         yaml.fail(*yaml.root().find("distortion_model"),  // the default is plumb_bob
                   "distortion_model",
-                  quoted(model) + " is none of plumb_bob | rational_polynomial | equidistant");
+                  quoted(model) + " is not one of plumb_bob | rational_polynomial | equidistant");
         return {};
     }
     const std::size_t given = D.size();
@@ -186,7 +186,7 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
     if (width < 1 || height < 1 || x + width > camera.width || y + height > camera.height) {
         return yaml.fail(*roi,
                          "roi",
-                         fmt::format("{} x {} px at ({}, {}) is no part of the image of {} x {} px",
+                         fmt::format("{} x {} px at ({}, {}) is not inside the image of {} x {} px",
                                      width,
                                      height,
                                      x,
@@ -300,7 +300,7 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
         return input_error(fmt::format(
             "{}: projection_matrix: element (0, 3) says that this camera lies {} m to the right of "
             "the left one; it must be -fx * baseline, below 0, in the right camera's file (0 is a "
-            "calibration of single cameras; above 0 they are exchanged)",
+            "calibration of single cameras; above 0 the cameras are swapped)",
             right.file,
             baseline_m));
     }

@@ -23,8 +23,9 @@ ImageSize read_size(YamlReader& yaml, const YamlNode& node, std::string_view key
     const std::vector<double> values = yaml.numbers(node, key, 2);
     for (const double side_px : values) {
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px)) continue;
-        yaml.fail(
-            node, key, fmt::format("{} is no image side of 1 .. {} px", side_px, kMaxRigSide_px));
+        yaml.fail(node,
+                  key,
+                  fmt::format("{} is not an image side of 1 .. {} px", side_px, kMaxRigSide_px));
         return {1, 1};
     }
     return {static_cast<int>(values[0]), static_cast<int>(values[1])};

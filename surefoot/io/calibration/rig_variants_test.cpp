@@ -177,7 +177,7 @@ TEST(RigVariants, RosBinningAndRegionAreApplied) {
     EXPECT_TRUE(
         contains(message(ros_pair_with("roi:\n  x_offset: 500\n  y_offset: 0\n  height: 240\n"
                                        "  width: 400\n")),
-                 "roi: 400 x 240 px at (500, 0) is no part of the image of 752 x 480 px"));
+                 "roi: 400 x 240 px at (500, 0) is not inside the image of 752 x 480 px"));
     EXPECT_TRUE(
         contains(message(ros_pair_with("binning_x: 5\nbinning_y: 1\n")), "cannot be binned"));
     EXPECT_TRUE(contains(message(ros_pair_with("binning_x: -2\n")), "binning_x: -2 is outside"));
@@ -700,9 +700,9 @@ TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
         {"odometry:\n  x: 1\nelevation:\n  y: 2\n",
          "a settings file of Surefoot; give it with --config"},
         {"alpha: 1\nbeta: 2\n",
-         "no calibration that is known here (its keys: 'alpha', 'beta' ..). Read are"},
-        {"", "no calibration that is known here. Read are"},
-        {"- 1\n- 2\n", "no calibration that is known here"},
+         "not a known calibration format (its keys: 'alpha', 'beta' ..). Known formats:"},
+        {"", "not a known calibration format. Known formats:"},
+        {"- 1\n- 2\n", "not a known calibration format"},
     };
     for (const Case& c : cases) {
         const std::string said = message(parse_rig_file(c.text, "x.yaml"));

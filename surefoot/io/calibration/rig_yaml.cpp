@@ -66,9 +66,10 @@ camera::Camera read_camera(YamlReader& yaml,
     const bool fisheye = model_name == "kannala_brandt";
     const bool rational = model_name == "pinhole_rational";
     if (!fisheye && !rational && model_name != "pinhole") {
-        yaml.fail(*model,
-                  name + ".model",
-                  quoted(model_name) + " is none of pinhole | pinhole_rational | kannala_brandt");
+        yaml.fail(
+            *model,
+            name + ".model",
+            quoted(model_name) + " is not one of pinhole | pinhole_rational | kannala_brandt");
     }
     std::vector<double> coefficients;
     if (const YamlNode* list = node.find("coefficients"); list != nullptr) {
@@ -209,7 +210,7 @@ Result<camera::StereoRig> parse_rig_yaml(std::string_view text, const std::strin
         layout = yaml.text(*node, "layout");
         if (layout != "side_by_side" && layout != "separate" && layout != "rgbd") {
             yaml.fail(
-                *node, "layout", quoted(layout) + " is none of side_by_side | separate | rgbd");
+                *node, "layout", quoted(layout) + " is not one of side_by_side | separate | rgbd");
         }
     }
     ImageSize size;

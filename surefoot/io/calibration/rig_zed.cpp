@@ -57,12 +57,11 @@ class ZedReader {
         for (const std::string& key : keys) {
             if (ini_.find(section, key) != nullptr) return number(section, key);
         }
-        fail(
-            fmt::format("[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
-                        "take 0: download "
-                        "the file of this serial number anew, or add the line '{1} = 0'",
-                        section,
-                        *keys.begin()));
+        fail(fmt::format(
+            "[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
+            "take 0: download the file of this serial number again, or add the line '{1} = 0'",
+            section,
+            *keys.begin()));
         return 0.0;
     }
     void fail(const std::string& what) {
@@ -98,12 +97,12 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     }
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
-        return input_error(fmt::format(
-            "{}: nothing for {} px; it holds {}, and a ZED cuts each of them out of its "
-            "sensor in another way, so that none can be scaled",
-            ini.name,
-            size_text(*size),
-            fmt::join(found, ", ")));
+        return input_error(
+            fmt::format("{}: has no section for {} px; it holds {}. A ZED crops its sensor "
+                        "differently for each resolution, so that no section can be scaled",
+                        ini.name,
+                        size_text(*size),
+                        fmt::join(found, ", ")));
     }
     return input_error(
         fmt::format("{}: holds {}; use it with its images, or take one out with 'surefoot rig "

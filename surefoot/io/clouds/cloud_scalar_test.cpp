@@ -115,7 +115,8 @@ TEST(CloudScalar, BlocksKeepTypesViewpointAndDoubles) {
     EXPECT_TRUE(contains(ply->notes()[1], "'i64' has 64-bit whole numbers"));
     PointCloud other = *back;
     other.scalars[0].values = std::vector<double>{1.0, 2.0};
-    EXPECT_TRUE(contains(ply->add(other).error().message, "other values than the first"));
+    EXPECT_TRUE(
+        contains(ply->add(other).error().message, "other colours or scalars than the first"));
 }
 
 TEST(CloudScalar, WhatAFileHoldsMoreIsSaid) {

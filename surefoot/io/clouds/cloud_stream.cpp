@@ -76,7 +76,7 @@ class CloudStream::Lines final : public Part {
                 const std::size_t end = feed != bytes->npos ? feed : bytes->rfind('\r');
                 if (end == bytes->npos) {
                     return input_error(fmt::format(
-                        "{}: a line of more than {} bytes is no point", path_, kBlockBytes));
+                        "{}: a line of more than {} bytes is not a point", path_, kBlockBytes));
                 }
                 bytes->resize(end + 1);
             }

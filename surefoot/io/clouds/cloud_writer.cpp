@@ -118,7 +118,9 @@ Status CloudWriter::add(const PointCloud& block) {
         note_losses(block);
     } else if (!holds_the_same(first_, block)) {
         return output_error(
-            fmt::format("{}: points with other values than the first ones have", path_));
+            fmt::format("{}: these points have other colours or scalars than the first points; "
+                        "write them to another file",
+                        path_));
     }
     const CloudFormat format{true, format_.double_precision};
     std::string bytes = kind_ == Kind::ply   ? format_ply(block, format)

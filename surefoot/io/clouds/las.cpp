@@ -79,7 +79,7 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if ((format & kCompressed) != 0) {
         return damaged(file,
-                       "compressed (LAZ) points, which nothing here reads: convert the file with "
+                       "compressed (LAZ) points are not supported: convert the file with "
                        "'pdal translate IN.laz OUT.las' or 'laszip'");
     }
     if (format >= kFormats.size())

@@ -112,7 +112,7 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
     if (words[0] == "element" && words.size() == 3) {
         const auto count = parse_int64(words[2]);
         if (!count || *count < 0) {
-            return input_error(fmt::format("element count {} is no count", quoted(words[2])));
+            return input_error(fmt::format("element count {} is not a count", quoted(words[2])));
         }
         header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(*count), {}});
         return {};

@@ -68,7 +68,7 @@ Result<PointCloud> read_cloud(const std::string& path) {
     if (!named && !is_text_cloud(extension)) {
         const char* hint =
             extension == ".laz"
-                ? "nothing packaged reads LAZ: convert it with 'pdal translate "
+                ? "LAZ is not supported: convert it with 'pdal translate "
                   "IN.laz OUT.las' or 'laszip'"
                 : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv .pts";
         return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));

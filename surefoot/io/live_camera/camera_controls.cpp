@@ -107,7 +107,7 @@ Result<LiveAddress> parse_live_address(std::string_view text) {
     const auto wrong = [&] {
         return usage_error(
             fmt::format("v4l2:{}: expected v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]], for example "
-                        "v4l2:/dev/video0@1344x376@30 (WIDTH holds both eyes)",
+                        "v4l2:/dev/video0@1344x376@30 (WIDTH is that of both cameras side by side)",
                         text));
     };
     if (parts.empty() || parts.size() > 3 || !parts[0].starts_with("/") || text.ends_with("@"))

@@ -441,8 +441,9 @@ TEST(LiveCamera, RefusesAnotherFormatThanAskedFor) {
     camera = small_camera();
     EXPECT_TRUE(contains(open_error(camera, {}, {"/dev/fake", 64, 24, 60.0}),
                          "no YUYV or MJPEG mode of 64 x 24 px at 60 Hz; it has YUYV 64x24@30"));
-    EXPECT_TRUE(contains(open_error(camera, {}, {"/dev/fake", 1344, 376, {}}),
-                         "1344 x 376 px with both eyes, but the rig has two eyes of 32 x 24 px"));
+    EXPECT_TRUE(
+        contains(open_error(camera, {}, {"/dev/fake", 1344, 376, {}}),
+                 "1344 x 376 px with both cameras, but the rig has two cameras of 32 x 24 px"));
     CameraConfig config;
     config.format = FormatChoice::mjpeg;
     EXPECT_TRUE(contains(open_error(camera, config), "in the format of live.format"));

@@ -78,7 +78,7 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
         return input_error(fmt::format(
-            "{}: delivers no streamed video (a camera has several nodes; the first is the one)",
+            "{}: delivers no streamed video (a camera has several nodes; use the first one)",
             path));
     }
     device.card_ = text_of(capability.card);
@@ -262,7 +262,7 @@ Status V4l2Device::map_buffer(std::uint32_t slot) {
     buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     buffer.memory = V4L2_MEMORY_MMAP;
     if (const int error = system_->request(VIDIOC_QUERYBUF, &buffer); error != 0)
-        return failed("its buffers cannot be asked for", error);
+        return failed("its buffers cannot be requested", error);
     const std::uint8_t* address = system_->map(buffer.m.offset, buffer.length);
     if (address == nullptr) return failed("its buffers cannot be mapped", ENOMEM);
     mappings_.push_back({address, buffer.length});

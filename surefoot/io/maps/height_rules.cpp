@@ -112,12 +112,12 @@ std::vector<std::string> drop_impossible_heights(grid::Layer& heights_m) {
         const auto mark = find_mark(all_m);
         if (!mark) break;
         const std::int64_t cells = replace(all_m, *mark, *mark);
-        notes.push_back(fmt::format(
-            "{} cells hold {:g} m, more than {:g} m from all other heights: taken for a "
-            "mark for 'no data' that no header declares; they count as unknown",
-            cells,
-            *mark,
-            kFar_m));
+        notes.push_back(
+            fmt::format("{} cells hold {:g} m, more than {:g} m from all other heights: this value "
+                        "counts as an undeclared 'no data' mark, and these cells as unknown",
+                        cells,
+                        *mark,
+                        kFar_m));
     }
     return notes;
 }

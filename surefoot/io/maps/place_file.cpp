@@ -76,7 +76,7 @@ struct Taker {
 
 Error damaged(const std::string& file, const std::string& what) {
     return input_error(fmt::format(
-        "{}: {}; copy the place again, or remove the file and let a run remember it anew",
+        "{}: {}; copy the place again, or remove the file and run again to remember the place",
         file,
         what));
 }
@@ -124,7 +124,7 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
             major,
             outline.minor,
             kPlaceFileMajor,
-            major > kPlaceFileMajor ? "use a newer program" : "let a run remember the place anew"));
+            major > kPlaceFileMajor ? "use a newer program" : "run again to remember the place"));
     }
     const std::size_t content = bytes.size() - kChecksumBytes;
     if (map_checksum(bytes.substr(0, content)) != load_le<std::uint64_t>(bytes.data() + content))

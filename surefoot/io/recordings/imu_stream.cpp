@@ -99,7 +99,7 @@ Result<std::unique_ptr<camera::FrameSource>> with_imu(std::unique_ptr<camera::Fr
     const std::string& path = source->info().path;
     if (source->info().has_imu) {
         return usage_error(
-            fmt::format("--imu {}: {} has an IMU of its own; leave it away", imu_path, path));
+            fmt::format("--imu {}: {} has its own IMU; remove the option --imu", imu_path, path));
     }
     if (!source->rig().imu) {
         return usage_error(

@@ -303,10 +303,9 @@ Status set_stamps(const std::string& folder,
     }
     constant_rate(*rate_hz, recording);
     if (!of_kitti) {
-        recording.info.notes.push_back(
-            fmt::format("the images have no stamps: {:g} frames a second are assumed; --rate says "
-                        "otherwise",
-                        *rate_hz));
+        recording.info.notes.push_back(fmt::format(
+            "the images have no stamps: {:g} frames a second are assumed; --rate sets another rate",
+            *rate_hz));
     }
     return {};
 }

@@ -312,7 +312,7 @@ Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz) {
 Status refuse_rate(const OpenOptions& options, const std::string& file) {
     if (!options.rate_hz) return {};
     return usage_error(fmt::format(
-        "--rate {}: {} has stamps of its own; leave the rate away", *options.rate_hz, file));
+        "--rate {}: {} has its own stamps; remove the option --rate", *options.rate_hz, file));
 }
 
 std::int64_t stamp_at(int index, double rate_hz) noexcept {

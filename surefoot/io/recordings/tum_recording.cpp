@@ -145,12 +145,13 @@ Result<Recording> index_tum_rgbd(const std::string& folder, const OpenOptions& o
                                     fmt::format("{}:{}", found->list, row.line)});
     }
     if (recording.frames.empty()) {
-        return input_error(fmt::format(
-            "{}: no frames: of {} colour and {} depth images none are within {:g} ms of each other",
-            folder,
-            found->colour.size(),
-            found->depth.size(),
-            1e3 * recording.pair_tolerance_s));
+        return input_error(
+            fmt::format("{}: no frames: no two of the {} colour and {} depth images are within "
+                        "{:g} ms of each other",
+                        folder,
+                        found->colour.size(),
+                        found->depth.size(),
+                        1e3 * recording.pair_tolerance_s));
     }
     if (Status status = choose_depth_factor(options, recording); !status) return status.error();
     recording.info.frames = static_cast<int>(recording.frames.size());

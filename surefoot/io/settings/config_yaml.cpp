@@ -124,7 +124,7 @@ class AssignVisitor final : public PathVisitor {
             if (assign_) value = static_cast<int>(i);
             return;
         }
-        fail(*given, key, "is none of " + joined(names));
+        fail(*given, key, "is not one of " + joined(names));
     }
 
   private:

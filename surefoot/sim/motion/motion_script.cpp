@@ -113,7 +113,7 @@ Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
         return usage_error(
-            fmt::format("simulator: height_m is that of a hand; a {} has its own",
+            fmt::format("simulator: height_m is only for a hand; a {} has its own height",
                         kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};

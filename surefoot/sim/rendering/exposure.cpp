@@ -24,7 +24,7 @@ void ExposureConfig::describe(ConfigVisitor& visitor) {
     visitor.number("lag_s", lag_s, 0.0, 10.0, "time constant of the control; 0 = at once");
     visitor.boolean("sun_warm_up", sun_warm_up, "over-exposed for the first 10-30 s");
     visitor.number("warm_up_factor", warm_up_factor, 1.0, 100.0, "too much light at first");
-    visitor.number("right_gain", right_gain, 0.5, 2.0, "right eye relative to the left");
+    visitor.number("right_gain", right_gain, 0.5, 2.0, "right camera relative to the left");
 }
 
 double metered_mean_dn(const Image<float>& signal_dn, double factor) {

@@ -46,9 +46,9 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
 
 void ImageFaultConfig::describe(ConfigVisitor& visitor) {
     visitor.number("drop_probability", drop_probability, 0.0, 1.0, "a frame never arrives");
-    visitor.number("repeat_probability", repeat_probability, 0.0, 1.0, "the last images again");
+    visitor.number("repeat_probability", repeat_probability, 0.0, 1.0, "the previous images again");
     visitor.number("tear_probability", tear_probability, 0.0, 1.0, "bottom of the frame before");
-    visitor.number("freeze_probability", freeze_probability, 0.0, 1.0, "images stop to change");
+    visitor.number("freeze_probability", freeze_probability, 0.0, 1.0, "images stop changing");
     visitor.integer("freeze_frames", freeze_frames, 1, kMaxFreezeFrames, "length of a freeze");
 }
 

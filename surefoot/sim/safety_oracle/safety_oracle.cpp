@@ -116,9 +116,10 @@ std::string describe(const Finding& f) {
                                at,
                                f.limit);
         case Danger::roughness: return against("uneven ground under a landing foot by");
-        case Danger::obstacle_in_way: return against("in the way of a foot is something at");
-        case Danger::body_hits: return against("the body meets something that begins at");
-        case Danger::overhang_too_low: return against("something over the machine begins at");
+        case Danger::obstacle_in_way:
+            return against("an obstacle in the path of a foot has a height of");
+        case Danger::body_hits: return against("the body hits an object that begins at");
+        case Danger::overhang_too_low: return against("an object above the machine begins at");
         case Danger::disconnected: return "the ground of landing is cut off " + at;
     }
     return "unknown danger";

@@ -29,7 +29,8 @@ struct Entry {
 
 void check_info(SceneReader& reader, const Entry& entry) {
     if (!is_name(entry.info.name)) {
-        reader.fail(entry.line, fmt::format("'{}' is no name for a scene", entry.info.name));
+        reader.fail(entry.line,
+                    fmt::format("'{}' is not a valid name for a scene", entry.info.name));
     }
     const std::string& text = entry.info.description;
     if (text.empty() || text.find('\n') != std::string::npos) {

@@ -40,9 +40,10 @@ struct MotionModelSpec {
     double speed_m_s = 0.0;
     double height_m = 0.0;
     void describe(ConfigVisitor& visitor) {
-        visitor.enumeration("carrier", motion_model, kMotionModelNames, "what carries the camera");
-        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = the carrier's own");
-        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = its own");
+        visitor.enumeration(
+            "carrier", motion_model, kMotionModelNames, "motion model of the camera");
+        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = default of the motion model");
+        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = default");
     }
 };
 
@@ -123,8 +124,9 @@ std::optional<std::string> ScriptSpec::problem() const {
     if (which != Script::descend_backwards) return std::nullopt;
     if (steps_ahead < 1) return "key 'steps_ahead' is missing";
     if (carried.motion_model == MotionModel::rex) return std::nullopt;
-    return fmt::format("script descend_backwards is for feet: carrier must be rex, not {}",
-                       kMotionModelNames[static_cast<int>(carried.motion_model)]);
+    return fmt::format(
+        "script descend_backwards needs a walking machine: carrier must be rex, not {}",
+        kMotionModelNames[static_cast<int>(carried.motion_model)]);
 }
 
 MotionScript ScriptSpec::made() const {

@@ -171,8 +171,7 @@ void SceneReader::only_keys(const SceneNode& group, const std::vector<std::strin
         if (std::find(keys.begin(), keys.end(), item.key) != keys.end()) continue;
         return fail(
             item.line,
-            fmt::format(
-                "key '{}' is not known here; there are: {}", item.key, fmt::join(keys, ", ")));
+            fmt::format("unknown key '{}'; known keys: {}", item.key, fmt::join(keys, ", ")));
     }
 }
 
@@ -190,7 +189,7 @@ void SceneReader::read_keys(const SceneNode& group,
 
 void SceneReader::define(const SceneNode& origin, const std::string& name, double value) {
     if (!is_name(name)) {
-        return fail(origin.line, fmt::format("'{}' is no name for a parameter", name));
+        return fail(origin.line, fmt::format("'{}' is not a valid name for a parameter", name));
     }
     if (numbers_.contains(name) || words_.contains(name)) {
         return fail(origin.line, fmt::format("parameter '{}' is there already", name));

@@ -93,7 +93,7 @@ Prism wedge(const Vector2d& axis_m,
 }  // namespace
 
 void FlightSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
+    visitor.choice("material", material, materials, "its material");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     visitor.number("x_m", x_m, -kReach_m, kReach_m, "its first edge");
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "its middle");
@@ -153,8 +153,8 @@ void FlightSpec::add(Site& site) const {
 }
 
 void SpiralSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
-    visitor.choice("pole_material", pole_material, materials, "look of the pole");
+    visitor.choice("material", material, materials, "its material");
+    visitor.choice("pole_material", pole_material, materials, "material of the pole");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     visitor.number("x_m", x_m, -kReach_m, kReach_m, "its axis");
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "its axis");
