@@ -21,7 +21,7 @@ struct Values {
     int line = 0;
 };
 
-/// "NAME: numbers" lines by name; lines whose values are no numbers (calib_time) are left out.
+/// "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
 class RawLines {
   public:
     RawLines(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -41,7 +41,7 @@ class RawLines {
     }
 
     [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
-    /// Exactly `count` numbers; the first failure is kept.
+    /// Reads exactly `count` numbers; keeps the first failure.
     std::vector<double> numbers(const std::string& name, std::size_t count) {
         const auto found = values_.find(name);
         if (found == values_.end()) {

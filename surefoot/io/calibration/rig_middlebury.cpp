@@ -15,7 +15,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Their files print doffs with three decimals.
+/// Middlebury files print doffs with three decimals.
 constexpr double kDoffsTolerance_px = 2e-3;
 
 /// "key=value" lines; the first failure is kept.

@@ -12,7 +12,7 @@
 namespace surefoot::io {
 namespace {
 
-/// A gap in the frame counter larger than this is a counter that started again, not lost frames.
+/// A larger gap in the frame counter means that the counter restarted, not that frames were lost.
 constexpr std::uint32_t kMaxDropped = 100'000;
 
 Result<GreyImage> grey_of_yuyv(const VideoBuffer& buffer, const VideoMode& mode) {

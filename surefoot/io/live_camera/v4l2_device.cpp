@@ -17,7 +17,7 @@
 namespace surefoot::io {
 namespace {
 
-/// No list of a driver is followed further: a faulty one never ends.
+/// Limit for lists of the driver: the list of a faulty driver may never end.
 constexpr std::uint32_t kMaxListed = 256;
 /// Drivers round the frame interval to what the sensor can do.
 constexpr double kRateTolerance = 0.02;
@@ -125,7 +125,7 @@ void V4l2Device::add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes) 
         mode.width = static_cast<int>(discrete ? size.discrete.width : size.stepwise.max_width);
         mode.height = static_cast<int>(discrete ? size.discrete.height : size.stepwise.max_height);
         add_rates(fourcc, mode, modes);
-        if (!discrete) break;  // a range is one entry, here with its largest size
+        if (!discrete) break;  // a range gives one mode, with its largest size
     }
 }
 

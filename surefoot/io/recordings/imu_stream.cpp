@@ -11,7 +11,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Seven numbers of 24 digits: a longer line is no IMU row.
+/// An IMU row has seven numbers of at most 24 digits; a longer line is not an IMU row.
 constexpr std::size_t kMaxLine = 4096;
 
 class SourceWithImu final : public camera::FrameSource {

@@ -34,7 +34,7 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
     return parse_tum_list(*text, path);
 }
 
-/// Which images belong together: what associations.txt says, else by time.
+/// Pairs of images: from associations.txt, else by time.
 struct Association {
     std::string list;  ///< of the colour images
     std::vector<CsvRow> colour;
@@ -88,8 +88,8 @@ Result<Association> associate(const std::string& folder,
     return out;
 }
 
-/// Depths of the first image, which tell millimetres from the codes of the benchmark: no depth
-/// camera measures nearer than a quarter of a metre.
+/// Guesses the depth unit from the first image. The nearest depth decides between millimetres and
+/// the codes of the benchmark, because no depth camera measures nearer than a quarter of a metre.
 Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (options.depth_codes_per_m) {
         const double codes = *options.depth_codes_per_m;
@@ -102,7 +102,7 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     }
     const Result<DepthCodes> codes = read_depth_codes(recording.frames.front().right);
-    if (!codes) return {};  // said when the frame is read
+    if (!codes) return {};  // reported when the frame is read
     std::vector<std::uint16_t> known;
     for (std::size_t i = 0; i < codes->size(); ++i)
         if (codes->data()[i] != 0) known.push_back(codes->data()[i]);

@@ -187,7 +187,7 @@ Status collect(const YamlNode& node,
             return other.starts_with(key + ".");
         });
         if (!known && !group) {
-            // Show the reader a whole key: the first inside a misspelt group is as good as any.
+            // Report a complete key: any key inside a misspelled group serves, so take the first.
             const bool inner = child.is_mapping() && !child.items.empty();
             return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);
         }

@@ -55,7 +55,7 @@ const ModelJoint* joint_above(const std::vector<ModelJoint>& joints, std::string
     return found == joints.end() ? nullptr : &*found;
 }
 
-/// Names go into a URDF, and from there to programs that take them for identifiers.
+/// Reads a name. Names are written to a URDF, and other programs use them as identifiers.
 std::string read_name(YamlGroup& group, const char* key) {
     std::string name = group.text(key, kMaxName);
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
@@ -180,7 +180,7 @@ std::string read_end(YamlGroup& group, const char* key, const MachineModel& mode
     return name;
 }
 
-/// Whether a joint more still leaves a tree; says why not.
+/// Checks that the links still form a tree after this joint is added; reports the reason if not.
 bool fits_into_tree(YamlGroup& group, const MachineModel& model, const ModelJoint& joint) {
     if (const ModelJoint* other = joint_above(model.joints, joint.child)) {
         group.fail("child",
@@ -212,7 +212,8 @@ void read_joint(YamlGroup& group, MachineModel& model) {
     if (fits_into_tree(group, model, joint)) model.joints.push_back(std::move(joint));
 }
 
-/// There is no loop, so that every link hangs on one that hangs on nothing.
+/// Checks that base_link is the only root. There is no loop, so every link has an ancestor that is
+/// a root.
 void check_root(YamlGroup& root, const MachineModel& model) {
     if (find(model.links, kRoot) == nullptr)
         root.fail("links", fmt::format("there is no {}: give the root this name", kRoot));

@@ -14,8 +14,8 @@
 namespace surefoot::io {
 namespace {
 
-/// The limits of machines/rex.yaml: with these the hazards, the faults and the false stops of
-/// docs/evidence/safety.md were counted.
+/// The limits of machines/rex.yaml. The counts of hazards, faults and false stops in
+/// docs/evidence/safety.md were measured with these limits.
 constexpr std::array kRatedLimits{
     RatedLimit{"limits.walk.up_m", 0.02, true, "the flat gait was not tried on higher steps"},
     RatedLimit{"limits.walk.down_m", 0.02, true, "the flat gait was not tried on deeper steps"},
@@ -53,7 +53,8 @@ const YamlNode* node_at(const YamlNode& root, std::string_view key) {
     return node;
 }
 
-/// The number in the file; nothing where its own reader has reported it, or its class is disabled.
+/// The number in the file; no value if its reader has already reported it, or if its class is
+/// disabled.
 std::optional<double> value_at(const YamlNode& root, std::string_view key) {
     for (const std::string_view group : {"limits.walk", "limits.stair"}) {
         if (!key.starts_with(group)) continue;
@@ -102,7 +103,7 @@ Deviation read_line(YamlGroup& line) {
     return deviation;
 }
 
-/// What is wrong with a line, in words.
+/// Describes the problem of an entry; no value if it is valid.
 std::optional<std::string> problem_of(const Deviation& deviation,
                                       const std::vector<Deviation>& before,
                                       const YamlNode& document) {
