@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 constexpr std::size_t kTaken = 256;  ///< core points that one thread takes
 
-/// Points of one cloud in the cylinder, along its axis from its middle.
+/// Statistics of one cloud's points in the cylinder, along its axis from its centre.
 struct InCylinder {
     int count = 0;
     double mean_m = 0.0;
@@ -45,7 +45,8 @@ InCylinder look(const geometry::KdTree& cloud, const geometry::Cylinder& cylinde
     cloud.runs_near_cylinder(cylinder, add);
     if (seen.count == 0) return seen;
     seen.mean_m = sum_m / seen.count;
-    // Heights are counted from the core point: what the difference loses is far below a micrometre.
+    // Heights are relative to the core point, so that cancellation loses far less than a
+    // micrometre.
     seen.std_m = std::sqrt(std::max(0.0, sum_sq_m2 / seen.count - seen.mean_m * seen.mean_m));
     return seen;
 }

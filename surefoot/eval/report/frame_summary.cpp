@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kReasonCount = static_cast<int>(HealthReason::imu_gap) + 1;
 
-/// Digits in groups of three, apart by a narrow space.
+/// Formats digits in groups of three with a narrow space between them.
 std::string grouped(std::int64_t number) {
     std::string digits = fmt::format("{}", number);
     for (std::size_t k = digits.size(); k > 3;) {
@@ -23,7 +23,7 @@ std::string grouped(std::int64_t number) {
     return digits;
 }
 
-/// A reason as words.
+/// Formats a reason as words.
 std::string words(HealthReason reason) {
     std::string name = to_string(reason);
     std::replace(name.begin(), name.end(), '_', ' ');

@@ -19,7 +19,7 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
     const int frames = static_cast<int>(schedule.size());
     int thaw_frame = 0;
     for (int frame = 1; frame < frames; ++frame) {
-        // Two numbers a frame, whatever happens: one setting does not shift the others' faults.
+        // Always draw two numbers per frame, so that one setting does not shift the other faults.
         double chance = rng.uniform();
         const int tear_row = 1 + static_cast<int>(rng.uniform() * std::max(height - 1, 1));
         const auto happens = [&](double probability) {

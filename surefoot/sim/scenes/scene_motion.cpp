@@ -34,7 +34,7 @@ constexpr const char* kScriptNames[] = {"approach",
                                         "descend_backwards",
                                         "pivot_and_reverse"};
 
-/// What every motion may say.
+/// Keys of every motion.
 struct MotionModelSpec {
     MotionModel motion_model = MotionModel::trolley;
     double speed_m_s = 0.0;
@@ -64,7 +64,7 @@ struct WaypointSpec {
     }
 };
 
-/// One of the scripts; which keys there are depends on `script`.
+/// Keys of one script; `script` decides which keys are valid.
 struct ScriptSpec {
     MotionModelSpec carried;
     int script = kRequiredChoice;
@@ -185,7 +185,7 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     return script;
 }
 
-/// Points that must be free, and what they are.
+/// Checks that points are outside solids; the names are for messages.
 void check_free(SceneReader& reader,
                 const SceneNode& group,
                 const SceneBuilder& builder,
@@ -215,8 +215,8 @@ MotionScript read_motion(SceneReader& reader, const SceneNode& group) {
 }
 
 GroundHeight ground_of(const Scene& scene) {
-    // Above the highest riser of the gait, 0.20 m: what is a little higher is refused as a step,
-    // not walked through.
+    // Above the highest riser of the gait, 0.20 m: a slightly higher block is refused as a step
+    // instead of being walked through.
     constexpr double kFootReach_m = 0.25;
     constexpr double kBottomless_m = -1000.0;
     return [&scene, last_m = 0.0](double x_m, double y_m) mutable {

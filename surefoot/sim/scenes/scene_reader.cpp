@@ -78,7 +78,7 @@ class GroupReader final : public ConfigVisitor {
         value = static_cast<int>(found - names.begin());
     }
 
-    /// Keys of the present group that nobody has asked for.
+    /// Refuses keys of the current group that nobody has read.
     void refuse_unknown_keys(const std::vector<std::string_view>& other_keys) {
         if (levels_.back().group == nullptr) return;
         std::vector<std::string_view> known = levels_.back().asked;
@@ -112,7 +112,7 @@ class GroupReader final : public ConfigVisitor {
     std::vector<int> lines_;
 };
 
-/// Would an expression be meant? Otherwise it is a word.
+/// Whether the text is a word, not an expression.
 bool looks_like_a_word(const std::string& text, const NamedNumbers& numbers) {
     return is_name(text) && numbers.find(text) == numbers.end();
 }

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Scenes are places to walk through, not landscapes.
+/// Limit of coordinates: scenes are places to walk through, not landscapes.
 constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 

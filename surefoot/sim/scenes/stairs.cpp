@@ -24,8 +24,7 @@ int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// One tread and what carries it, in the frame of the flight: along x, above z = 0 of its
-/// beginning.
+/// One tread and its support, in the frame of the flight: along x, above z = 0 at its beginning.
 struct Tread {
     double begin_m = 0.0;
     double end_m = 0.0;
@@ -44,13 +43,14 @@ void add_block(
                    flight.label);
 }
 
-/// A solid block, or a board with or without the block under it that is set back by the nosing.
+/// Adds a solid block, or a board with or without a block under it; the block is set back by the
+/// nosing.
 void add_tread(
     Site& site, const FlightSpec& flight, const Place& place, Tread tread, double bottom_m) {
     if (!flight.open && flight.nosing_m == 0.0) {
         return add_block(site, flight, place, tread, bottom_m);
     }
-    // The nose points to where people come from going up, to where they go going down.
+    // The nose points to people who come up the stairs, in the direction of people who go down.
     const bool up = flight.direction == StairDirection::up;
     Tread motion_model = tread;
     (up ? motion_model.begin_m : motion_model.end_m) += up ? flight.nosing_m : -flight.nosing_m;
