@@ -17,7 +17,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
     return count;
 }
 
-/// The first thing that is wrong with the nesting of tags and the use of '<' and '&', or nothing.
+/// First error in the nesting of tags or in the use of '<' and '&'; no value if there is none.
 std::string structure_problem(const std::string& html) {
     static const std::set<std::string> kVoid = {
         "meta", "img", "rect", "line", "polyline", "!DOCTYPE"};

@@ -22,7 +22,7 @@ struct ImageSize {
 
 /// Our rig.yaml. Short form for rectified cameras:
 ///   layout: side_by_side     (side_by_side | separate | rgbd; default separate)
-///   resolution: [672, 376]   (one eye)
+///   resolution: [672, 376]   (one camera)
 ///   baseline_m: 0.12, focal_px: 350 or [fx, fy], principal_px: [336, 188], distortion: none
 /// Full form, one block per camera:
 ///   left:  {model: pinhole, focal_px: [fx, fy], principal_px: [cx, cy], coefficients: [k1, k2, p1,

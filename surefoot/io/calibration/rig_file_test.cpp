@@ -14,7 +14,8 @@ namespace {
 using testing::contains;
 using testing::data_path;
 
-/// Printed doubles read back exactly; only turning a quaternion into a matrix and back rounds.
+/// Tolerance: printed doubles read back exactly; only the conversion of a quaternion to a matrix
+/// and back rounds.
 constexpr double kPoseRounding = 4e-15;
 
 std::string message(const Result<camera::StereoRig>& rig) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration files as people have them, after public reports of users of similar programs: what is
-// read, and what the sentence says where a file cannot be one.
+// Calibration files as users have them, after public reports of users of similar programs. The
+// tests check the values that are read, and the message if a file cannot be a rig.
 #include <gtest/gtest.h>
 
 #include "surefoot/io/calibration/rig_formats.hpp"
@@ -682,7 +682,7 @@ TEST(RigVariants, ZedFilesOfAnyAge) {
                          "or add the line 'RX_HD = 0'"));
 }
 
-// ---- What is no calibration ----------------------------------------------------------------
+// ---- Files that are not calibrations --------------------------------------------------------
 
 TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
     struct Case {
@@ -714,7 +714,7 @@ TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
     }
     EXPECT_TRUE(contains(message(parse_rig_file(std::string("PK\0\3", 4), "rig.npz")),
                          "looks like a binary file; write the matrices into a YAML file"));
-    // A rig.yaml with a mistake is judged by its own keys.
+    // A rig.yaml with an error is checked against its own keys.
     EXPECT_TRUE(contains(
         message(parse_rig_file("resolution: [672, 376]\nfocal: 350\nrate_hz: 15\n", "rig.yaml")),
         "unknown key 'focal'; did you mean 'focal_px'?"));

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxColumns = 256;
 constexpr double kExact = 9007199254740992.0;  // 2^53
 
-/// Is the word a whole number that a double may not hold?
+/// Whether the word is a whole number that a double may not hold exactly.
 bool is_long_number(std::string_view word) {
     constexpr std::size_t kDigits = 16;
     if (word.size() < kDigits || word.find_first_of(".eE") != word.npos) return false;

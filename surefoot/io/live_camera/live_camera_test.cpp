@@ -19,7 +19,7 @@ using testing::FakeCamera;
 using testing::FakeEvent;
 using testing::FakeVideoDevice;
 
-constexpr int kWidth = 32;  // of one eye
+constexpr int kWidth = 32;  // of one camera
 constexpr int kHeight = 24;
 constexpr std::int64_t kStart_us = 5'000'000;
 constexpr std::int64_t kPeriod_us = 33'333;
@@ -39,7 +39,7 @@ FakeCamera small_camera() {
     return camera;
 }
 
-/// Brightness of one pixel of frame `index`, both eyes side by side.
+/// Brightness of one pixel of frame `index`, both cameras side by side.
 std::uint8_t pixel(int index, int u, int v) {
     Rng rng(static_cast<std::uint64_t>((index * kHeight + v) * 2 * kWidth + u));
     return static_cast<std::uint8_t>(rng.below(256));
@@ -337,7 +337,7 @@ TEST_P(Unplugging, IsFollowedByReconnection) {
     unplug.kind = GetParam();
     camera.script.push_back(unplug);
     FakeEvent again = frame_event(90);
-    again.sequence = 5;  // drivers count anew, and the first images may be lost on the way
+    again.sequence = 5;  // drivers restart their counter, and the first images may be lost
     play(camera, again);
     play(camera, frame_event(91));
     camera.script[camera.script.size() - 2].sequence = 6;

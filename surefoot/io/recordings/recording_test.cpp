@@ -76,7 +76,7 @@ void record(const std::string& folder, int frames = 5) {
     ASSERT_TRUE(recorder->finish().ok());
 }
 
-/// Everything that a source says: one line per frame or error.
+/// All outputs of a source: one line per frame or error.
 struct Played {
     std::vector<StereoFrame> frames;
     std::string errors;
@@ -380,7 +380,7 @@ TEST(EurocSource, BeginsAtAnyFrame) {
     EXPECT_TRUE(play(folder / "r", options).frames.empty());
 }
 
-/// Images that were binned two by two: the calibration follows, and the source says so.
+/// Images binned two by two: the calibration is scaled, and a note reports it.
 TEST(EurocSource, ACalibrationOfTwiceTheSizeIsHalved) {
     const TemporaryFolder folder;
     record(folder / "r", 2);

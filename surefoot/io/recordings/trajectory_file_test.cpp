@@ -156,7 +156,7 @@ TEST(TrajectoryFile, ColumnsAndUnitsAreThoseOfTheHead) {
         EXPECT_NEAR(pose.rotation.x(), 0.6, 1e-12) << file.what;
         EXPECT_NEAR(pose.rotation.w(), 0.8, 1e-12) << file.what;
     }
-    // Nanoseconds from another origin are told by their steps.
+    // Nanoseconds from another origin are recognised by their steps.
     const auto relative = parse_trajectory("0 0 0 0 0 0 0 1\n50000000 1 0 0 0 0 0 1\n", "a.tum");
     ASSERT_TRUE(relative.ok());
     EXPECT_EQ(relative->stamps, "ns");

@@ -76,7 +76,7 @@ class VideoSource final : public camera::FrameSource {
     int index_ = 0;
 };
 
-/// The rig of a video of one eye's `size`, if that is known.
+/// The rig of a video; `size` is the image size of one camera, if known.
 Result<camera::StereoRig> rig_of(const std::string& path,
                                  const OpenOptions& options,
                                  std::optional<ImageSize> size) {

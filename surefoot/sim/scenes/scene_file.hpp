@@ -59,8 +59,8 @@ inline constexpr int kMaxPrimitives = 2000;
 [[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
 
 /// Reads one scene; `name` may be empty if the file holds only one. The random stream depends on
-/// seed and scene name: seed 7 of two scenes or variants has nothing in common. `carrier` overrides
-/// the motion model of the scene (same path, default speed of that model).
+/// seed and scene name: seed 7 of two scenes or variants has nothing in common. `motion_model`
+/// replaces that of the scene (same path, default speed of that model).
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
                                                std::uint64_t seed,

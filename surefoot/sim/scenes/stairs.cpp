@@ -50,7 +50,8 @@ void add_tread(
     if (!flight.open && flight.nosing_m == 0.0) {
         return add_block(site, flight, place, tread, bottom_m);
     }
-    // The nose points to people who come up the stairs, in the direction of people who go down.
+    // The nose points against the walking direction in an upward flight, and along it in a
+    // downward flight.
     const bool up = flight.direction == StairDirection::up;
     Tread motion_model = tread;
     (up ? motion_model.begin_m : motion_model.end_m) += up ? flight.nosing_m : -flight.nosing_m;

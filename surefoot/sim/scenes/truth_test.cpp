@@ -26,7 +26,7 @@ SceneTruth truth_from(const char* scene, double x_m) {
     return truth;
 }
 
-/// Is this place on or below the board of the scene `table`?
+/// Whether this point is on or below the board of the scene `table`.
 bool under_board(const ScriptedScene& table, const Eigen::Vector2d& p_m) {
     constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     const auto T_world_side = PlanarPose::of(
