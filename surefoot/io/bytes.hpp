@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-/// Numbers of binary files in a fixed byte order, whatever the machine's own is.
+/// Numbers of binary files in a fixed byte order, on machines of either byte order.
 namespace surefoot::io {
 
 template <typename T>

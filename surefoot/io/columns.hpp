@@ -8,38 +8,38 @@
 #include <string_view>
 #include <vector>
 
-/// Tables in text files: what separates the fields of a line, and columns that have names.
+/// Tables in text files: separators and named columns.
 namespace surefoot::io {
 
-/// What separates the fields of a line: ';' where there is one, else ',' where there is one, else
-/// ' ' (white space, any number of characters).
+/// Separator of the fields of a line: ';' if the line has one, else ',' if it has one, else ' '
+/// (white space, any number of characters).
 [[nodiscard]] char separator_of(std::string_view line) noexcept;
 
-/// The fields of a line, without white space and quotes around them. Fields between two ';', ',' or
-/// a tab may be empty; with ' ' none is.
+/// Splits a line into fields without surrounding white space and quotes. Fields between two ';',
+/// ',' or tabs may be empty; with ' ' no field is empty.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& out);
 
-/// Why no separator can be told: commas and blanks both stand between numbers, as with decimal
-/// commas ("0,5 1,5 2,5"). Nothing where it can.
+/// Explains why the separator is ambiguous: commas and blanks both stand between numbers, as with
+/// decimal commas ("0,5 1,5 2,5"). No value if it is clear.
 [[nodiscard]] std::optional<std::string> separator_problem(std::string_view line);
 
-/// Does the line begin with '#' or "//"?
+/// Whether the line begins with '#' or "//".
 [[nodiscard]] bool is_comment(std::string_view line) noexcept;
 
-/// One column of a head line.
+/// One column of a header line.
 struct Column {
     std::string name;  ///< as written, without quotes
     std::string key;   ///< in lower case, without its unit
-    std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty where there is none
+    std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty without a unit
 };
 
-/// The columns that a line names, which may be a comment.
+/// The columns that a header line names; the line may be a comment.
 [[nodiscard]] std::vector<Column> columns_of(std::string_view line, char separator);
 
-/// 0, 1 or 2 for a column that holds x, y or z (also "x_m"; "points:0" and "points_0" of ParaView).
+/// 0, 1 or 2 for a column named x, y or z (also "x_m"; ParaView's "points:0" and "points_0").
 [[nodiscard]] std::optional<int> axis_named(std::string_view key) noexcept;
 
-/// Where x, y and z are; nothing unless each is there exactly once.
+/// Column numbers of x, y and z; no value unless each occurs exactly once.
 [[nodiscard]] std::optional<std::array<std::size_t, 3>> axes_of(const std::vector<Column>& columns);
 
 }  // namespace surefoot::io

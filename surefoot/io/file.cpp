@@ -36,7 +36,7 @@ int write_all(int descriptor, std::string_view bytes) {
 /// Opens, writes and closes; errno or 0. The result of close counts: some file systems report a
 /// full disk only there.
 int write_and_close(const std::string& path, int flags, std::string_view bytes) {
-    // A FIFO without a reader is an error here, not a wait.
+    // Opening a FIFO without a reader is an error; it must not block.
     const int descriptor =
         ::open(path.c_str(), flags | O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
     if (descriptor < 0) return errno;
@@ -184,7 +184,7 @@ Status AppendFile::append(std::string_view text) {
     if (descriptor_ < 0) return output_error(fmt::format("{}: is closed already", path_));
     const int error = write_all(descriptor_, text);
     if (error != 0) {
-        // Devices cannot be cut; the error that matters is reported anyway.
+        // Truncation fails on devices; the more important error is reported below in any case.
         [[maybe_unused]] const int cut = ::ftruncate(descriptor_, static_cast<off_t>(size_));
         return cannot_write(path_, error);
     }

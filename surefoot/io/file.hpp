@@ -11,23 +11,23 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/files/input_file.hpp"
 
-/// Whole files in and out, with the system's reason in every error.
+/// Reads and writes whole files; every error holds the reason of the operating system.
 namespace surefoot::io {
 
-/// Reading is in `files`: regular files alone, and no more bytes than the format may have.
+/// Reading is in `files`: only regular files, with a size limit per format.
 namespace limits = files::limits;
 using files::read_file;
 
-/// Replaces a file in one step: writes a temporary file in the same folder, then renames it, so
-/// that a reader sees the old content or the whole new one. What is no regular file (a device, a
-/// pipe) is written to directly. On failure (disk full, no permission) the old file stays as it
-/// was.
+/// Replaces a file in one step: writes a temporary file in the same folder, then renames it. A
+/// reader sees either the old or the complete new content. A path that is not a regular file (a
+/// device, a pipe) is written directly. After a failure (disk full, no permission) the old file is
+/// unchanged.
 [[nodiscard]] Status write_file(const std::string& path, std::string_view bytes);
 [[nodiscard]] Status write_file(const std::string& path, std::span<const std::uint8_t> bytes);
-/// Removes a file; one that is not there is no error.
+/// Removes a file; a missing file is not an error.
 [[nodiscard]] Status remove_file(const std::string& path);
 
-/// Makes a folder and those above it; fine when it exists.
+/// Creates a folder and its parents; an existing folder is not an error.
 [[nodiscard]] Status make_folder(const std::string& path);
 
 /// Names (without folder) of the regular files in a folder whose lower-case extension is one of
@@ -35,24 +35,24 @@ using files::read_file;
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 
-/// What the file system of a folder still takes; nothing where it does not tell.
+/// Free bytes in the file system of a folder; no value if the system does not report it.
 [[nodiscard]] std::optional<std::uint64_t> free_bytes(const std::string& folder) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 [[nodiscard]] bool is_file(const std::string& path) noexcept;
-/// "a/b" from "a" and "b"; `b` alone when it is absolute.
+/// Joins "a" and "b" to "a/b"; returns `b` alone if it is absolute.
 [[nodiscard]] std::string join_path(const std::string& folder, const std::string& name);
-/// Folder part of a path, "." without one.
+/// Folder part of a path; "." if there is none.
 [[nodiscard]] std::string folder_of(const std::string& path);
-/// Lower-case extension with its dot, or an empty string.
+/// Lower-case extension with its dot; empty if there is none.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
-/// A text file that grows line by line; every line is with the system before `append` returns, and
-/// a line that does not fit on the disk is taken back: the file always ends in a whole line.
+/// A text file that grows line by line. `append` hands the line to the system before it returns. A
+/// line that does not fit on the disk is removed again: the file always ends in a whole line.
 class AppendFile {
   public:
-    /// Starts an empty file; what is there is replaced.
+    /// Creates an empty file; an existing file is replaced.
     [[nodiscard]] static Result<AppendFile> create(const std::string& path);
-    /// Goes on at the end of what is there; an empty file where nothing is.
+    /// Continues at the end of an existing file, or creates an empty one.
     [[nodiscard]] static Result<AppendFile> resume(const std::string& path);
     ~AppendFile();
     AppendFile(AppendFile&& other) noexcept;

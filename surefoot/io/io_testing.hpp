@@ -10,10 +10,10 @@
 
 #include "surefoot/core/rng.hpp"
 
-/// What the tests of io share: a folder that cleans up, the data folder, and damage to files.
+/// Test helpers of io: a temporary folder, the data folder, and random damage to files.
 namespace surefoot::io::testing {
 
-/// A folder of its own for one test; gone with the object.
+/// A temporary folder for one test; the destructor removes it.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -36,7 +36,7 @@ class TemporaryFolder {
     std::string path_;
 };
 
-/// Path of a data file or folder, or an empty string (and a line that says so) when it is missing.
+/// Path of a data file or folder. If it is missing: an empty string, and a printed line says so.
 inline std::string data_path(const std::string& name) {
     const char* folder = std::getenv("SUREFOOT_DATA_DIR");
     const std::string path =
@@ -48,7 +48,7 @@ inline std::string data_path(const std::string& name) {
     return {};
 }
 
-/// One random damage: a flipped bit, a changed byte, a hole, a doubled piece, a cut, a huge number.
+/// Applies one random damage: flipped bit, changed byte, hole, repeated piece, cut, or huge number.
 inline std::string mutated(std::string bytes, Rng& rng) {
     const auto position = [&] { return static_cast<std::size_t>(rng.below(bytes.size() + 1)); };
     const std::uint64_t damages = 1 + rng.below(3);
@@ -84,7 +84,7 @@ inline std::string mutated(std::string bytes, Rng& rng) {
     return bytes;
 }
 
-/// Feeds `count` damaged versions of a valid file to a parser that must survive all of them.
+/// Passes `count` damaged versions of a valid file to a parser, which must survive all of them.
 inline void for_each_mutation(const std::string& valid,
                               int count,
                               std::uint64_t seed,

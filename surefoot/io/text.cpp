@@ -62,7 +62,7 @@ std::optional<std::int64_t> parse_int64(std::string_view text) noexcept {
 }
 
 std::optional<double> parse_value(std::string_view text) noexcept {
-    // What databases, spreadsheets and the C runtime of Windows print for a missing number.
+    // Words that databases, spreadsheets and the Windows C runtime print for a missing number.
     static constexpr std::string_view kMissing[] = {"null",
                                                     "na",
                                                     "n/a",
@@ -138,7 +138,7 @@ std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept 
 }
 
 std::string format_seconds(std::int64_t time_ns) {
-    // Unsigned, because the magnitude of the smallest int64 is no int64.
+    // Unsigned, because the magnitude of the smallest int64 does not fit in int64.
     const auto magnitude =
         time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
     constexpr auto kSecond = static_cast<std::uint64_t>(kNanosecondsPerSecond);
@@ -228,8 +228,8 @@ LineReader::LineReader(std::string_view text) noexcept : rest_(text), next_feed_
 
 std::optional<std::string_view> LineReader::next() noexcept {
     if (rest_.empty()) return std::nullopt;
-    // The next LF is looked for once: a file that has CR alone would be searched to its end for
-    // every line.
+    // Search the next LF only once: otherwise a file with CR line ends would be searched to its end
+    // for every line.
     if (next_feed_ > rest_.size()) {
         const std::size_t feed = rest_.find('\n');
         next_feed_ = feed == rest_.npos ? 0 : rest_.size() - feed;

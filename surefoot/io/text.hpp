@@ -8,54 +8,54 @@
 #include <string_view>
 #include <vector>
 
-/// Numbers and lines of text files, the same in every locale.
+/// Numbers and lines of text files, independent of the locale.
 namespace surefoot::io {
 
-/// The whole text as a number (a leading '+', nan, inf, .nan and .inf are accepted), or nothing.
+/// Parses the whole text as a number (also a leading '+', nan, inf, .nan and .inf), or no value.
 [[nodiscard]] std::optional<double> parse_double(std::string_view text) noexcept;
-/// The whole text as a decimal integer, or nothing (overflow included).
+/// Parses the whole text as a decimal integer; no value otherwise, also on overflow.
 [[nodiscard]] std::optional<std::int64_t> parse_int64(std::string_view text) noexcept;
 
-/// A number of a data file. The words that programs write where a value is missing ("null", "na",
-/// "n/a", "none", "-nan(ind)", "1.#QNAN") are NaN.
+/// Parses a number of a data file. Common words for a missing value ("null", "na", "n/a", "none",
+/// "-nan(ind)", "1.#QNAN") become NaN.
 [[nodiscard]] std::optional<double> parse_value(std::string_view text) noexcept;
-/// Digits with a comma among them, as in "1,5" and ",25E-01": a decimal comma.
+/// Whether the text has a decimal comma: digits with a comma among them, as in "1,5" and ",25E-01".
 [[nodiscard]] bool has_decimal_comma(std::string_view text) noexcept;
-/// Says why a word of a data file is no number; decimal commas are named.
+/// Explains why a word of a data file is not a number; names decimal commas.
 [[nodiscard]] std::string why_no_number(std::string_view word);
-/// Says why a text cannot be read as it is encoded (UTF-16), or nothing.
+/// Explains why the encoding of a text is not readable (UTF-16); no value if it is.
 [[nodiscard]] std::optional<std::string> encoding_problem(std::string_view text);
 
-/// A decimal number times 10^`decimals` (0 to 9), rounded to the nearest whole number. Exact for
-/// plain digits; an exponent goes through a double. Nothing where it is no number or above 9.2e18.
+/// Parses a decimal number times 10^`decimals` (0 to 9), rounded to the nearest whole number. Exact
+/// for plain digits; an exponent goes through a double. No value for other text or above 9.2e18.
 [[nodiscard]] std::optional<std::int64_t> parse_decimal(std::string_view text,
                                                         int decimals) noexcept;
-/// Seconds written as a decimal number -> nanoseconds, exact for up to 9 decimals (a double cannot
-/// hold 1403715273.262142976). Nothing for anything else, or beyond +-292 years.
+/// Parses decimal seconds to nanoseconds, exact for up to 9 decimals (a double cannot hold
+/// 1403715273.262142976). No value for other text or beyond +-292 years.
 [[nodiscard]] std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept;
-/// Nanoseconds -> seconds with 9 decimals, exact.
+/// Formats nanoseconds as seconds with 9 decimals, exact.
 [[nodiscard]] std::string format_seconds(std::int64_t time_ns);
 
 /// Shortest text that reads back to the same double.
 [[nodiscard]] std::string format_double(double value);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-/// Non-empty parts between any of `separators`.
+/// Non-empty parts of the text between any of the `separators`.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text,
                                                   std::string_view separators = " \t");
 [[nodiscard]] std::string lowercase(std::string_view text);
-/// Without one pair of quotes (" or ') around it.
+/// Removes one pair of quotes (" or ') around the text.
 [[nodiscard]] std::string_view unquoted(std::string_view text) noexcept;
-/// A name without white space ('_' instead), as headers of data files need it.
+/// Replaces white space by '_', because headers of data files need names of one word.
 [[nodiscard]] std::string one_word(std::string_view name);
-/// A value as it may appear in an error message: one line, printable, at most 40 characters.
+/// Formats a value for an error message: one line, printable, at most 40 characters.
 [[nodiscard]] std::string quoted(std::string_view value);
 
 /// Sorts "frame2" before "frame10": runs of digits compare as numbers.
 [[nodiscard]] bool natural_less(std::string_view a, std::string_view b) noexcept;
 
-/// Lines of a text, without their line ends (LF, CR LF or CR), counted from 1. A byte order mark of
-/// UTF-8 at the beginning of a line is stepped over: files are put one behind the other.
+/// Lines of a text without line ends (LF, CR LF or CR), counted from 1. Skips a UTF-8 byte order
+/// mark at the beginning of any line, because files can be concatenated.
 class LineReader {
   public:
     explicit LineReader(std::string_view text) noexcept;
@@ -68,7 +68,7 @@ class LineReader {
 
   private:
     std::string_view rest_;
-    std::size_t next_feed_;  ///< where the next LF is, counted from the end; 0 = there is none
+    std::size_t next_feed_;  ///< position of the next LF, counted from the end; 0 = no LF
     int number_ = 0;
 };
 

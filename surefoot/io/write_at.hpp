@@ -9,10 +9,10 @@
 
 namespace surefoot::io {
 
-/// The system's reason (errno) why a file cannot be written.
+/// Error for a file that cannot be written, with the reason of the operating system (errno).
 [[nodiscard]] Error cannot_write(const std::string& path, int error);
 
-/// All bytes into an open file from `offset` on, whatever it took so far; `path` is for the error.
+/// Writes all bytes to an open file at `offset`, in as many calls as needed; `path` is for errors.
 [[nodiscard]] Status write_at(int descriptor,
                               std::int64_t offset,
                               std::string_view bytes,

@@ -72,7 +72,7 @@ Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, doubl
     return poses;
 }
 
-/// The camera that measures depth, where the left eye of `rig` sits.
+/// The depth camera, at the position of the left camera of `rig`.
 camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) {
     if (!rig.right) return rig;
     camera::StereoRig single = rig;
@@ -85,7 +85,7 @@ camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) 
     return single;
 }
 
-/// The renderer knows pairs only: the right one of these eyes is not looked at.
+/// The renderer needs pairs: it gets a right camera that nobody uses.
 camera::StereoRig as_pair(const camera::StereoRig& single) {
     camera::StereoRig pair = single;
     pair.right = single.left;
@@ -111,7 +111,7 @@ camera::StereoRig rectified_rig(const camera::StereoRig& rig, const camera::Rect
     return ideal;
 }
 
-/// Without images nothing can be torn or shown again.
+/// Whether a fault needs images: only images can be torn or repeated.
 bool needs_images(const ImageFaultConfig& faults) {
     return faults.repeat_probability > 0.0 || faults.tear_probability > 0.0 ||
            faults.freeze_probability > 0.0 ||
@@ -133,15 +133,15 @@ std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
 }
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
-    visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
-    visitor.enumeration("motion_model", motion_model, kCarriedByNames, "who goes the scene's way");
-    visitor.boolean("known_motion",
-                    known_motion,
-                    "the start, and the motion but for analytic.drift, are known");
+    visitor.enumeration("sensor", sensor, kSensorNames, "the sensor; analytic makes no images");
+    visitor.enumeration(
+        "carrier", motion_model, kCarriedByNames, "motion model on the scene's path");
+    visitor.boolean(
+        "known_motion", known_motion, "known start pose and motion, except for analytic.drift");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.boolean("machine_motion",
                     machine_motion,
-                    "frames say how the machine moved, with the error of machine_drift");
+                    "frames carry the machine's motion, with the error of machine_drift");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     const ImuKind imu_before = imu;
     visitor.enumeration("imu", imu, kImuNames, "its errors, below; where the rig has an IMU");
@@ -266,7 +266,7 @@ Status SceneSource::let_command(const SceneOptions& options, const MotionScript&
 }
 
 double SceneSource::now_s() const noexcept {
-    // Half a frame behind the last stamp: exposures and rolling shutters are shorter.
+    // Half a frame after the last stamp: exposures and rolling shutters end earlier.
     const double frames = next_pose_ == 0 ? 0.0 : static_cast<double>(next_pose_) - 0.5;
     return frames / rate_hz_;
 }
@@ -275,7 +275,7 @@ std::optional<RexJoints> SceneSource::rex_joints(std::int64_t time_ns) const {
     return walker_->rex_joints(seconds_from_ns(time_ns - kStart_ns));
 }
 
-/// A commanded source learns where the next frame is when it is asked for.
+/// For a commanded source this sets the pose of the next frame.
 bool SceneSource::has_next() {
     if (!commanded_) return next_pose_ < truth_.trajectory.size();
     if (next_pose_ == frame_limit_) return false;
@@ -283,7 +283,7 @@ bool SceneSource::has_next() {
     return true;
 }
 
-/// Sets the rig of the truth, that which the frames are told to come from.
+/// Sets the rig of the truth: the rig that the frames claim to come from.
 Status SceneSource::make_sensor(const SceneOptions& options, const camera::StereoRig& rig) {
     switch (options.sensor) {
         case Sensor::stereo: truth_.rig = rig; return make_renderer(options);
@@ -350,7 +350,7 @@ Pose SceneSource::carried_body(const StampedPose& now) const {
     return motion_->at(seconds_from_ns(now.time_ns - kStart_ns)).T_world_body;
 }
 
-/// Exposes both eyes at a stamp; the exposure control lives on, whatever becomes of the images.
+/// Exposes both cameras at a stamp. The exposure control continues even if the images get lost.
 void SceneSource::take_pictures(const StampedPose& now) {
     const double since_start_s = seconds_from_ns(now.time_ns - kStart_ns);
     std::swap(older_left_, pair_.left);
@@ -371,7 +371,7 @@ void SceneSource::take_pictures(const StampedPose& now) {
                           measured_);
 }
 
-/// What arrives of the last exposure.
+/// Applies a fault to the images of the last exposure.
 void SceneSource::damage(const InjectedFault* fault) {
     const bool stale = fault != nullptr &&
                        (fault->kind == ImageFault::repeated || fault->kind == ImageFault::frozen);
@@ -385,7 +385,7 @@ void SceneSource::damage(const InjectedFault* fault) {
     tear(older_depth_m_, fault->tear_row, shown_depth_m_);
 }
 
-/// What the chain would have made of images that nobody renders.
+/// Depth that the processing chain would compute from images; they are not rendered.
 DepthImage SceneSource::model_depth(const StampedPose& now) {
     DepthImage depth;
     const int frame = static_cast<int>(next_pose_);

@@ -25,63 +25,63 @@
 
 namespace surefoot::sim {
 
-/// What looks at the scene.
+/// The sensor that records the scene.
 enum class Sensor : std::uint8_t {
     stereo,        ///< two images
     depth_camera,  ///< one image and its depth (RGB-D); both through one lens
-    analytic,      ///< no image: depth as a matcher would say it, motion as odometry would
+    analytic,      ///< no image: depth with a matcher's errors, motion with odometry's errors
 };
 inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analytic"};
 
-/// What carries the camera along the scene's way: what the scene says, or another carrier.
+/// Motion model of the camera: the one of the scene file, or an override.
 enum class CarriedBy : std::uint8_t { scene, trolley, rex, hand };
 inline constexpr const char* kCarriedByNames[] = {"scene", "trolley", "rex", "hand"};
-/// Nothing for `CarriedBy::scene`.
+/// The motion model; no value for `CarriedBy::scene`.
 [[nodiscard]] std::optional<MotionModel> motion_model_of(CarriedBy carried_by);
 
 struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";         ///< ignored if `rig` is set
-    std::optional<camera::StereoRig> rig;       ///< any stereo rig; T_body_left as it says
-    std::uint64_t seed = 1;                     ///< textures, noise, centimetres of the path
-    CarriedBy motion_model = CarriedBy::scene;  ///< an error where it cannot go the scene's way
-    /// A REX that stands where the scene's way begins, and goes where `SceneSource::commanded` is
-    /// told to, instead of that way. It has no end but `frames`.
+    std::optional<camera::StereoRig> rig;       ///< any stereo rig; keeps its T_body_left
+    std::uint64_t seed = 1;                     ///< for textures, noise, offsets of the path
+    CarriedBy motion_model = CarriedBy::scene;  ///< error if it cannot follow the scene's path
+    /// A REX under live command: it stands at the start of the scene's path and takes its steps
+    /// from `SceneSource::commanded`. The run ends only after `frames`.
     bool commanded = false;
     int frames = 0;  ///< 0 = to the end of the path
     double rate_hz = 10.0;
     Sensor sensor = Sensor::stereo;
-    ImuKind imu = ImuKind::consumer;               ///< samples, where the rig has an IMU
-    CameraProfile profile = CameraProfile::ideal;  ///< added to the camera below
+    ImuKind imu = ImuKind::consumer;               ///< inertial samples, if the rig has an IMU
+    CameraProfile profile = CameraProfile::ideal;  ///< errors of a real camera, added to `camera`
     double noise = 1.0;                  ///< factor on every noise amplitude of images and depths
     CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
     double contrast = 1.0;               ///< factor on the contrast of every material
-    CalibrationError calibration_error;  ///< of the images; `rig()` stays what it was
+    CalibrationError calibration_error;  ///< of the images; `rig()` stays nominal
     ImageFaultConfig faults;
-    KnockConfig knock;  ///< the truth's poses are those of the machine, before and after
+    KnockConfig knock;  ///< the true poses are the machine's, before and after the knock
     ImuNoiseConfig imu_noise = imu_noise_of(imu);
-    /// Also the lens, unless `rig` is one of RGB-D; where it sits is the place of the left eye.
+    /// Also its lens, unless `rig` is an RGB-D rig. It sits at the place of the left camera.
     DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
     DepthCameraConfig depth_errors = depth_camera_preset(depth_camera).config;
     AnalyticStereoConfig analytic;
-    /// The source tells where it starts, and frames bring their motion along: the true one with
-    /// `drift`. It keeps odometry and ground alignment out of what is measured. The analytic sensor
-    /// always brings motion.
+    /// Frames carry known motion: the true motion with the errors of `drift`, and the source
+    /// reports its start pose. This keeps errors of odometry and ground alignment out of a
+    /// measurement. The analytic sensor always carries known motion.
     bool known_motion = false;
     DriftConfig drift;
-    /// Frames bring what the machine says of its own motion: the true one with this error. The
-    /// default is a guess at joints that are read to a few tenths of a degree.
+    /// Frames carry the machine's own motion estimate: the true motion with this error. The default
+    /// is a guess for joints that are read to a few tenths of a degree.
     bool machine_motion = false;
     DriftConfig machine_drift = {.position_m_sqrt_m = 0.01, .turn_deg_sqrt_m = 0.5};
 
-    /// The numbers that a configuration file may set. Choosing another IMU or depth camera replaces
-    /// its figures; what is set later, or with it, stays on top.
+    /// The values that a configuration file can set. Choosing another IMU or depth camera replaces
+    /// its values; values set in the same call or later override them.
     void describe(ConfigVisitor& visitor);
 };
 
-/// A simulated recording: frames of the sensor with IMU samples, and the truth about them. Stamps
-/// start at 1 s; IMU samples begin 0.1 s before the first frame, while the trolley still stands.
-/// Inertial samples of a dropped frame come with the next one that arrives.
+/// A simulated recording: sensor frames with IMU samples, and their ground truth. Stamps start at 1
+/// s; IMU samples start 0.1 s before the first frame, while the camera still stands. IMU samples of
+/// a dropped frame come with the next frame that arrives.
 class SceneSource final : public camera::FrameSource {
   public:
     SceneSource(const SceneSource&) = delete;  // the sensors point into the truth
@@ -91,35 +91,35 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
-    /// Fills in the images of a frame whose stamp is set, or says false.
+    /// Fills in the images of a frame whose stamp is set; returns false if it has none.
     using KnownImages = std::function<bool(StereoFrame& frame)>;
-    /// Frames whose images `known` has from an earlier call with the same options are not rendered
-    /// again. False, and they are, where an image depends on those before it: automatic exposure,
-    /// faults that show older images. After such a frame `last_shot` and `last_depth_m` are those
-    /// of the last one that was rendered.
+    /// Skips rendering of frames whose images `known` has from a run with the same options. Returns
+    /// false, and renders all frames, if an image depends on earlier images: automatic exposure, or
+    /// faults that show older images. After a skipped frame `last_shot` and `last_depth_m` still
+    /// belong to the last rendered frame.
     bool use_known_images(KnownImages known);
-    /// How many were not rendered for that reason.
+    /// Number of frames that were not rendered because their images were known.
     [[nodiscard]] int known_frames() const noexcept { return known_frames_; }
 
-    /// Who steers it, if it is to be steered. A step may begin at `now_s` or later.
+    /// Live steering; null unless `SceneOptions::commanded`. A step may begin at `now_s` or later.
     [[nodiscard]] const std::shared_ptr<CommandedMotion>& commanded() const noexcept {
         return commanded_;
     }
-    /// Time of the motion from which on nothing was exposed yet.
+    /// Earliest motion time that no frame has exposed yet.
     [[nodiscard]] double now_s() const noexcept;
-    /// Of a REX at the time of a frame; nothing where something else carries the camera. A
-    /// commanded motion has forgotten what it was told to forget.
+    /// Joint angles of a REX at the time of a frame; no value for the other motion models. A
+    /// commanded motion has dropped the steps that it was told to forget.
     [[nodiscard]] std::optional<RexJoints> rex_joints(std::int64_t time_ns) const;
-    /// Poses of all frames, also of those that are still to come, and the scene. Of a commanded
-    /// source, which may run for hours, the pose of the last frame alone.
+    /// The scene and the poses of all frames, future frames included. A commanded source can run
+    /// for hours and keeps only the pose of the last frame.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
-    /// What was injected into the whole recording. `InjectedFault::frame` counts the poses of
-    /// `truth().trajectory`; a dropped one has no StereoFrame, so indices of frames stay behind.
+    /// All faults of the recording. `InjectedFault::frame` counts poses of `truth().trajectory`;
+    /// frames have smaller indices, because a dropped frame has no StereoFrame.
     [[nodiscard]] const std::vector<InjectedFault>& faults() const noexcept { return faults_; }
-    /// How the last frame was exposed (sensors with images).
+    /// Exposure of the last frame (sensors with images only).
     [[nodiscard]] const Shot& last_shot() const noexcept { return shot_; }
-    /// Depth of the raw left camera at the last frame, exact, NaN where no surface is. Also when
-    /// the images are older: what they should have shown.
+    /// Exact depth of the raw left camera at the last frame; NaN without a surface. If the images
+    /// are older because of a fault, this is the depth that they should have shown.
     [[nodiscard]] const Image<float>& last_depth_m() const noexcept {
         return analytic_ ? exact_depth_m_ : pair_.depth_m;
     }
@@ -134,7 +134,7 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] Status make_renderer(const SceneOptions& options);
     [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
     [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
-    /// base_link as the camera carries it: that of the machine until the camera is knocked.
+    /// Pose of base_link as the camera sees it: equal to the machine's until the camera is knocked.
     [[nodiscard]] Pose carried_body(const StampedPose& now) const;
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
@@ -143,11 +143,11 @@ class SceneSource final : public camera::FrameSource {
     camera::SourceInfo info_;
     SceneTruth truth_;
     std::shared_ptr<const Motion> motion_;  ///< of the camera
-    std::shared_ptr<const Motion> walker_;  ///< of the machine: no blow on the camera moves it
+    std::shared_ptr<const Motion> walker_;  ///< of the machine, which a knock does not move
     std::shared_ptr<CommandedMotion> commanded_;
     double rate_hz_ = 0.0;
     std::size_t frame_limit_ = 0;
-    std::optional<Renderer> renderer_;         ///< both sensors with images
+    std::optional<Renderer> renderer_;         ///< both image sensors
     std::optional<DepthCamera> depth_camera_;  ///< that sensor only
     std::optional<AnalyticStereo> analytic_;   ///< that sensor only
     std::optional<ModelledOdometry> odometry_;
@@ -159,8 +159,8 @@ class SceneSource final : public camera::FrameSource {
     Executor* executor_ = nullptr;
     CleanPair clean_;
     Shot shot_;
-    RenderedPair pair_;     ///< of the last exposure, unharmed
-    GreyImage older_left_;  ///< of the exposure before it
+    RenderedPair pair_;     ///< of the last exposure, without faults
+    GreyImage older_left_;  ///< of the exposure before
     GreyImage older_right_;
     GreyImage shown_left_;  ///< as delivered
     GreyImage shown_right_;
@@ -178,9 +178,9 @@ class SceneSource final : public camera::FrameSource {
     std::int64_t imu_until_ns_ = 0;
 };
 
-/// Usage errors: unknown scene or rig preset (the names are listed), a rig that cannot be used, a
-/// number out of range, image faults where no images are. `executor` renders rows in parallel and
-/// must outlive the source; without one the calling thread does.
+/// Usage errors: unknown scene or rig preset (the message lists the names), an unusable rig, a
+/// number out of range, image faults for a sensor without images. `executor` renders rows in
+/// parallel and must outlive the source; without an executor the calling thread renders.
 [[nodiscard]] Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options,
                                                               Executor* executor = nullptr);
 

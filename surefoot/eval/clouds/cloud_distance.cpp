@@ -12,7 +12,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Points that are put into an order of their own at once, and those that one thread takes.
+/// Points that are sorted at once, and points per thread task.
 constexpr std::size_t kSorted = 1U << 20U;
 constexpr std::size_t kTaken = 1U << 13U;
 
@@ -43,12 +43,13 @@ std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
             Neighbour last;
             for (std::size_t i = begin; i < end; ++i) {
                 const Eigen::Vector3f& p_m = points_m[order[i]];
-                // What was nearest to the point before is near to this one.
+                // The nearest point of the previous point is a good start for this point.
                 const Neighbour start = last.index == Neighbour::kNone
                                             ? Neighbour{}
                                             : reference.neighbour(p_m, last.index);
                 last = reference.nearest(p_m, start);
-                if (last.index == Neighbour::kNone) {  // the square of the distance is no float
+                if (last.index ==
+                    Neighbour::kNone) {  // the square of the distance overflows a float
                     distances_m[from + order[i]] = std::numeric_limits<float>::infinity();
                     continue;
                 }

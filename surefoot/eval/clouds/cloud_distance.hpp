@@ -11,22 +11,22 @@
 
 namespace surefoot::eval {
 
-/// C2C: from each compared point to the nearest *point* of the reference [m], in the order of
-/// `compared_m`; points must be finite, the reference not empty. Never negative, and never smaller
-/// than what the reference's own spacing allows: of two clouds of one surface it tells the spacing.
+/// C2C: distance from each compared point to the nearest *point* of the reference [m], in the order
+/// of `compared_m`. Points must be finite, the reference not empty. Never negative. The point
+/// spacing of the reference is a lower limit: two clouds of one surface measure the spacing.
 [[nodiscard]] std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
                                                    std::span<const Eigen::Vector3f> compared_m,
                                                    Executor& executor = serial());
 
-/// Distances in figures; NaN values are left out, and every figure but count is NaN without values.
+/// Statistics of distances. NaN values are left out; without values all fields but count are NaN.
 struct DistanceFigures {
     std::int64_t count = 0;
     double mean_m = 0.0;
-    double std_m = 0.0;  ///< divided by n
+    double std_m = 0.0;  ///< population form, divided by n
     double rms_m = 0.0;
     double least_m = 0.0;
     double most_m = 0.0;
-    double p50_m = 0.0;  ///< percentiles of the values as they are, linear between two ranks
+    double p50_m = 0.0;  ///< percentiles of the signed values, linear between two ranks
     double p90_m = 0.0;
     double p99_m = 0.0;
     double median_abs_m = 0.0;

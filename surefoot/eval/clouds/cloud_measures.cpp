@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Bins whose count stands out of those around, the fullest of any within the least step.
+/// Bins with a prominent count; within the smallest step only the fullest bin.
 std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
                                   std::size_t points,
                                   const LevelConfig& config) {
@@ -53,7 +53,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
     return peaks;
 }
 
-/// The plane of the points near a height, those left out that lie off it.
+/// Fits a plane to the points near a height, without outliers.
 std::optional<Level> level_near(std::span<const Vector3f> points_m,
                                 double height_m,
                                 const LevelConfig& config) {
@@ -66,7 +66,7 @@ std::optional<Level> level_near(std::span<const Vector3f> points_m,
     std::optional<geometry::PlaneFit> fit;
     constexpr int kRounds = 4;
     for (int round = 0; round < kRounds; ++round) {
-        // First around the peak alone.
+        // The first round uses only points close to the peak.
         const double limit_m = round == 0 ? 2.0 * config.bin_m : 3.0 * fit->rms_m;
         std::vector<Eigen::Vector3d> kept_m;
         for (const Eigen::Vector3d& p_m : near_m) {
@@ -110,8 +110,8 @@ bool is_step(const Level& lower, const Level& upper) {
     return upper.height_m - lower.height_m <= kHighestRiser_m;
 }
 
-/// Levels that follow each other by one riser, upward from the first and downward from it: of all
-/// that lie near where the next tread must be the one with most points.
+/// Chains levels that are one riser apart, upward and downward from the first level. Among several
+/// levels near the expected height the one with most points is the tread.
 std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
     constexpr double kUneven = 0.08;  // of a riser
     constexpr double kLeastShare = 0.15;
@@ -124,7 +124,7 @@ std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, do
             });
         for (const Level& level : std::span(first_level, levels.end())) {
             if (level.height_m > low_m + 2.0 * kUneven * riser_m) break;
-            // A patch of a few points is no tread beside one of many.
+            // A patch with few points is not a tread next to a level with many points.
             if (static_cast<double>(level.points) < kLeastShare * static_cast<double>(from.points))
                 continue;
             if (best == nullptr || level.points > best->points) best = &level;
@@ -138,8 +138,9 @@ std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, do
     return chain;
 }
 
-/// The levels of a flight: the longest row of treads with one riser, of two as long the one on more
-/// points. Surfaces beside the flight and patches of noise between two treads are in none.
+/// The levels of a flight: the longest chain of treads with one riser; of equal lengths the one
+/// with more points. Surfaces beside the flight and patches of noise between two treads are in no
+/// chain.
 std::vector<Level> flight_of(std::span<const Level> levels) {
     std::vector<Level> best;
     std::int64_t best_points = 0;
@@ -159,8 +160,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
     return best;
 }
 
-/// Where points along a line crowd: the fullest 20 mm, if it holds far more than an even spread, as
-/// that of a wall beside, would put into the fullest by chance.
+/// Position of a cluster along a line: the fullest 20 mm, if it holds far more points than chance
+/// could put there from an even spread, such as that of a side wall.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;
@@ -186,27 +187,27 @@ std::optional<double> crowd_m(std::vector<double> along_m) {
     return sum_m / static_cast<double>(best);
 }
 
-/// Places along the line uphill.
+/// Positions along the uphill line.
 class Uphill {
   public:
     Uphill(const SortedSurfaces& surfaces, const Eigen::Vector2d& direction)
         : surfaces_(surfaces), direction_(direction) {}
 
-    /// Of the riser between two levels: where its face is, or else the middle between the end of
-    /// the lower level and the beginning of the upper one, beside which they are looked at.
+    /// Position of the riser between two levels: its face if there are points on it. Otherwise the
+    /// middle between the end of the lower level and the beginning of the upper level.
     [[nodiscard]] std::optional<double> riser_m(const Level& lower, const Level& upper) const {
         const double rise_m = upper.height_m - lower.height_m;
         std::vector<double> face_m;
         for (const Vector3f& p_m : surfaces_.upright_m) {
             const double share = (static_cast<double>(p_m.z()) - lower.height_m) / rise_m;
-            constexpr double kEnds = 0.3;  // of the face, that noise of the levels may reach
+            constexpr double kEnds = 0.3;  // share of the face that noise of the levels can reach
             if (share > kEnds && share < 1.0 - kEnds) face_m.push_back(along(p_m));
         }
         if (const auto face = crowd_m(std::move(face_m))) return face;
         const auto low_m = ends_m(lower, upper);
         const auto high_m = ends_m(upper, upper);
         if (!low_m || !high_m) return std::nullopt;
-        // Seen from the upper level's middle, the lower one ends before it.
+        // The lower level must end before the upper level begins.
         return 0.5 * (low_m->second + high_m->first);
     }
 
@@ -214,7 +215,8 @@ class Uphill {
     [[nodiscard]] double along(const Vector3f& p_m) const {
         return direction_.dot(p_m.head<2>().cast<double>());
     }
-    /// First and last place of a level's points beside the middle of another, but for a hundredth.
+    /// First and last position of a level's points beside the middle of another level, without the
+    /// outermost hundredth.
     [[nodiscard]] std::optional<std::pair<double, double>> ends_m(const Level& level,
                                                                   const Level& beside) const {
         constexpr double kStrip_m = 0.2;
@@ -240,7 +242,7 @@ class Uphill {
     Eigen::Vector2d direction_;
 };
 
-/// Along which the middles of the levels rise.
+/// Direction along which the centres of the levels rise.
 Eigen::Vector2d uphill_of(std::span<const Level> levels) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Level& level : levels) {
@@ -307,8 +309,8 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
 StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Level> all) {
     const std::vector<Level> flight = flight_of(all);
     const std::span<const Level> levels = flight.empty() ? all : std::span<const Level>(flight);
-    constexpr double kLongestTread_m = 0.5;   // what is longer is a landing
-    constexpr double kShortestTread_m = 0.1;  // no foot stands on less: not one flight
+    constexpr double kLongestTread_m = 0.5;   // a longer level is a landing
+    constexpr double kShortestTread_m = 0.1;  // a foot cannot stand on less: not one flight
     StairMeasures measures;
     std::vector<double> rises_m;
     for (std::size_t i = 1; i < levels.size(); ++i) {
@@ -340,7 +342,7 @@ std::optional<double> door_width_m(std::span<const Vector3f> points_m, const Doo
     constexpr double kLow_m = 0.3;
     constexpr double kHigh_m = 1.8;
     constexpr double kOpen_m = 3.0;
-    constexpr double kFace_m = 0.015;  // what noise makes of a jamb
+    constexpr double kFace_m = 0.015;  // spread of a jamb due to noise
     const Eigen::Vector2d way(std::cos(door.yaw_rad), std::sin(door.yaw_rad));
     const Eigen::Vector2d left(-way.y(), way.x());
     std::vector<double> sides_m[2];

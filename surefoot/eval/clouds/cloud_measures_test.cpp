@@ -17,7 +17,7 @@ constexpr double kGoing_m = 0.285;
 constexpr double kWidth_m = 1.25;
 constexpr int kSteps = 8;
 
-/// A flight along `yaw_rad` behind a floor, with a wall on its right; `faces`: risers are seen.
+/// A flight along `yaw_rad` behind a floor, with a wall on its right; `faces`: risers have points.
 Points flight(double yaw_rad, bool faces, double noise_m, std::uint64_t seed) {
     Rng rng(seed);
     Points points_m;

@@ -14,7 +14,7 @@ namespace {
 
 using testing::Points;
 
-/// The definition, every point against every other.
+/// Reference implementation: compares every point with every other point.
 std::vector<bool> kept_by_definition(const Points& points_m, const OutlierConfig& config) {
     std::vector<double> means_m;
     for (std::size_t i = 0; i < points_m.size(); ++i) {

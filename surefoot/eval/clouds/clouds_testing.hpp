@@ -10,8 +10,8 @@ namespace surefoot::eval::testing {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// A floor and three steps of 0.17 m by 0.285 m, 0.8 m wide, with their risers, as a scanner with
-/// 2 mm noise sees them.
+/// Point cloud of a floor and three steps with risers (0.17 m by 0.285 m, 0.8 m wide), as a scanner
+/// with 2 mm noise measures it.
 inline Points steps(std::size_t count, std::uint64_t seed) {
     constexpr double kRiser_m = 0.17;
     constexpr double kGoing_m = 0.285;

@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 constexpr std::size_t kTaken = 256;  ///< core points that one thread takes
 
-/// Points of one cloud in the cylinder, along its axis from its middle.
+/// Statistics of one cloud's points in the cylinder, along its axis from its centre.
 struct InCylinder {
     int count = 0;
     double mean_m = 0.0;
@@ -45,7 +45,8 @@ InCylinder look(const geometry::KdTree& cloud, const geometry::Cylinder& cylinde
     cloud.runs_near_cylinder(cylinder, add);
     if (seen.count == 0) return seen;
     seen.mean_m = sum_m / seen.count;
-    // Heights are counted from the core point: what the difference loses is far below a micrometre.
+    // Heights are relative to the core point, so that cancellation loses far less than a
+    // micrometre.
     seen.std_m = std::sqrt(std::max(0.0, sum_sq_m2 / seen.count - seen.mean_m * seen.mean_m));
     return seen;
 }
@@ -109,12 +110,12 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
                    registration_error_m,
                    0.0,
                    10.0,
-                   "one sigma of how the clouds lie to each other; part of the level of detection");
+                   "one sigma of the registration of the clouds; part of the level of detection");
     visitor.integer("min_points",
                     min_points,
                     1,
                     1000000,
-                    "with fewer points of a cloud in the cylinder nothing is significant");
+                    "with fewer points of a cloud in the cylinder no distance is significant");
 }
 
 std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,

@@ -15,26 +15,26 @@
 namespace surefoot::eval {
 
 enum class M3c2Normals : std::uint8_t {
-    vertical,  ///< heights are compared, as maps do
-    pca,       ///< across the reference's surface around each core point, pointing up
+    vertical,  ///< compares heights, as maps do
+    pca,       ///< normal of the reference around each core point, pointing up
 };
 inline constexpr const char* kM3c2NormalsNames[] = {"vertical", "pca"};
 
-/// Sizes as CloudCompare's plugin names them: two diameters and a half length.
+/// Parameters with the names of CloudCompare's plugin: two diameters and a half length.
 struct M3c2Config {
     M3c2Normals normals = M3c2Normals::vertical;
-    double normal_diameter_m = 0.10;      ///< of the ball whose points give the normal
+    double normal_diameter_m = 0.10;      ///< of the ball of points for the normal
     double projection_diameter_m = 0.05;  ///< of the cylinder along the normal
     double half_length_m = 0.10;          ///< of the cylinder
     double registration_error_m = 0.0;    ///< added to the level of detection
-    int min_points = 5;                   ///< of each cloud, below which nothing is significant
+    int min_points = 5;                   ///< per cloud; fewer points: never significant
     void describe(ConfigVisitor& visitor);
 };
 
-/// What M3C2 says at one core point.
+/// Result of M3C2 at one core point.
 struct M3c2Value {
     double distance_m = kNan;  ///< compared - reference along the normal; NaN: a cloud has no point
-    double lod95_m = kNan;     ///< what scatter and registration may look like; NaN: too few points
+    double lod95_m = kNan;     ///< level of detection (95 %); NaN: too few points
     double std_reference_m = kNan;  ///< along the normal, divided by n
     double std_compared_m = kNan;
     int count_reference = 0;
@@ -44,9 +44,9 @@ struct M3c2Value {
 };
 
 /// M3C2 of Lague, Brodu and Leroux 2013, "Accurate 3D comparison of complex topography with
-/// terrestrial laser scanner": around each core point both clouds' points in one cylinder are
-/// averaged along its axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error). In the
-/// order of `cores_m`, which must be finite.
+/// terrestrial laser scanner": averages both clouds' points in one cylinder around each core point
+/// along its axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error). Results are in
+/// the order of `cores_m`, which must be finite.
 [[nodiscard]] std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,
                                           const geometry::KdTree& compared,
                                           std::span<const Eigen::Vector3f> cores_m,

@@ -16,13 +16,13 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kMostBits = 63;
-/// Pieces of the points that are numbered and dealt out at once, and pieces of the voxels that are
-/// then worked on by themselves.
+/// Number of pieces: of the points that are numbered and distributed at once, and of the voxels
+/// that are then processed independently.
 constexpr std::size_t kTaken = 1U << 16U;
 constexpr int kBucketBits = 9;
 constexpr std::size_t kBuckets = 1U << kBucketBits;
 
-/// Voxels of a box as whole numbers that ascend with x, then y, then z.
+/// Numbers the voxels of a box; numbers increase with x, then y, then z.
 class VoxelKeys {
   public:
     VoxelKeys(const geometry::PointBox& box, double size_m)
@@ -51,13 +51,14 @@ class VoxelKeys {
     Numbers bits_ = Numbers::Zero();
 };
 
-/// Never read before it is written: memory is first touched by the threads that fill it.
+/// Uninitialised on purpose: it is written before it is read, and the threads that fill the memory
+/// touch it first.
 struct Keyed {  // NOLINT(*-member-init)
     std::uint64_t key;
     Vector3f point_m;
 };
 
-/// Points by the first bits of their voxel's number, in their order.
+/// Points grouped by the first bits of their voxel number, in their original order.
 struct Dealt {
     std::unique_ptr<Keyed[]> points;  // NOLINT(*-avoid-c-arrays): a vector would fill it first
     std::vector<std::size_t> first;   ///< of each bucket, and the end
@@ -129,7 +130,7 @@ std::int64_t voxel_number(float p_m, double size_m) noexcept {
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {
-    // Beyond this the numbers themselves would not fit.
+    // Beyond this limit the numbers do not fit.
     const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
     return static_cast<double>(most_m) / size_m < 1e18 &&
            VoxelKeys(box, size_m).bits() <= kMostBits;

@@ -14,7 +14,7 @@ namespace {
 
 using testing::Points;
 
-/// The definition: a sum for each voxel, in a map that is in order.
+/// Reference implementation: one sum per voxel, in an ordered map.
 Points means_by_definition(const Points& points_m, double size_m) {
     std::map<std::array<std::int64_t, 3>, std::pair<Eigen::Vector3d, int>> sums;
     for (const auto& p_m : points_m) {
@@ -48,7 +48,7 @@ TEST(Voxels, BordersLieOnMultiples) {
     EXPECT_EQ(voxel_number(0.0F, 0.5), 0);
     EXPECT_EQ(voxel_number(-0.1F, 0.5), -1);
     EXPECT_EQ(voxel_number(0.5F, 0.5), 1);
-    // Slabs one after the other give what the whole gives.
+    // Slabs, one after another, give the result of the whole cloud.
     const Points points_m = testing::steps(20000, 2);
     Points near_m;
     Points far_m;

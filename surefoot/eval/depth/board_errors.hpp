@@ -10,8 +10,8 @@
 
 namespace surefoot::eval {
 
-/// The plane through points of a board in front of a camera: 1/z = (x/z, y/z, 1) . inverse_depth.
-/// Noise of a disparity is even in 1/z, so that the fit has no bias.
+/// Plane through the points of a board in front of a camera: 1/z = (x/z, y/z, 1) . inverse_depth.
+/// Disparity noise is symmetric in 1/z, so that the fit has no bias.
 struct BoardPlane {
     Eigen::Vector3d inverse_depth_1_m = Eigen::Vector3d::Zero();
     /// Depth [m] on the optical axis.
@@ -22,24 +22,24 @@ struct BoardPlane {
     }
 };
 
-/// Least squares, repeated without the points beyond 4 sigma (by the median absolute deviation).
-/// Nothing for fewer than 100 points, points in one line, or a plane through the camera.
+/// Least squares, repeated without points beyond 4 sigma (from the median absolute deviation). No
+/// value for fewer than 100 points, collinear points, or a plane through the camera.
 [[nodiscard]] std::optional<BoardPlane> fit_board(std::span<const Eigen::Vector3d> points_m);
 
-/// How a stereo camera sees a flat board that stands across its optical axis.
+/// Errors of a stereo camera on a flat board across its optical axis.
 struct BoardErrors {
     double axial_m = 0.0;  ///< distance of the fitted plane on the axis - true distance
     double std_m = 0.0;    ///< of all depths about the fitted plane, outliers included
-    /// axial_m over the distance: by this share a length on the board errs because its depth does.
-    /// A consequence, not a measurement of its own: a textured board has no marks whose distance
-    /// from each other is known, and a lens that errs across the image does not show in it.
+    /// axial_m divided by the distance: the relative error of a length on the board due to its
+    /// depth error. Derived from axial_m, not an independent measurement: a textured board has no
+    /// marks at known distances, and a lens error across the image does not show in it.
     double scale_share = 0.0;
     std::int64_t points = 0;
 };
 [[nodiscard]] std::optional<BoardErrors> board_errors(std::span<const Eigen::Vector3d> points_m,
                                                       double distance_m);
 
-/// Several looks at one distance: mean of the axial errors, rms of the deviations.
+/// Combines several measurements at one distance: mean axial error, rms of the deviations.
 [[nodiscard]] BoardErrors mean_of(std::span<const BoardErrors> looks);
 
 }  // namespace surefoot::eval

@@ -7,7 +7,7 @@
 
 namespace surefoot::eval {
 
-/// A stereo camera that looks down on the floor.
+/// A stereo camera that points down at the floor.
 struct DepthDesign {
     double baseline_m = 0.12;
     double focal_px = 342.0;
@@ -17,11 +17,11 @@ struct DepthDesign {
     double camera_height_m = 1.0;
     double pitch_deg = 32.0;  ///< below the horizon
 
-    /// First reason why it cannot be, with the value; or nothing.
+    /// Describes the first impossible value; no value if the design is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Smallest vertical step of the floor that can be told from a flat one, straight ahead.
+/// Smallest vertical step ahead that is distinguishable from a flat floor.
 ///
 /// The floor at the horizontal range R lies sqrt(R^2 + H^2) = L away, phi = atan(H / R) below the
 /// horizon, at the depth Z = L cos(phi - pitch). A disparity that is off by one sigma moves its
@@ -29,22 +29,22 @@ struct DepthDesign {
 /// Shafer, "Error modeling in stereo navigation", 1987), and so in height by
 ///   sigma_h = H Z sigma_d / (f b).
 /// noise limit: 3 sigma of the difference between two such heights, 3 sqrt(2) sigma_h, no
-/// averaging. pixel limit: the step must cover 3 rows, the window of the matcher: 3 L / (f
-/// cos(phi)). ASSUMPTION: rows near the axis; independent errors of neighbours (averaging n pixels
-/// would divide the noise limit by sqrt(n), a matcher's smoothing takes that back).
+/// averaging. pixel limit: the step must cover 3 rows, the matcher's window: 3 L / (f cos(phi)).
+/// ASSUMPTION: rows near the axis; independent errors of neighbours (averaging n pixels would
+/// divide the noise limit by sqrt(n); the smoothing of a matcher cancels this gain).
 struct ResolvableHeight {
     double range_m = 0.0;
-    bool in_view = false;  ///< between the lower and the upper border of the image
+    bool in_view = false;  ///< between the lower and the upper image border
     double depth_m = 0.0;
     double sigma_depth_m = 0.0;
     double noise_limit_m = 0.0;
     double pixel_limit_m = 0.0;
     double height_m = 0.0;  ///< the larger limit
 };
-/// `design` must have no problem(); ranges above 0.
+/// Precondition: `design` has no problem(), and the range is above 0.
 [[nodiscard]] ResolvableHeight resolvable_height(const DepthDesign& design, double range_m);
 
-/// Nearest floor that the image shows, straight ahead [m].
+/// Distance of the nearest floor point in the image, straight ahead [m].
 [[nodiscard]] double nearest_floor_m(const DepthDesign& design);
 
 }  // namespace surefoot::eval

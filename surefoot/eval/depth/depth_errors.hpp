@@ -11,11 +11,11 @@
 
 namespace surefoot::eval {
 
-/// A disparity image beside the truth [px]; NaN = unknown in both.
+/// A disparity image and its ground truth [px]; NaN = unknown in both.
 struct DepthPair {
     ImageView<const float> estimate_px;
     ImageView<const float> truth_px;
-    ImageView<const std::uint8_t> mask;  ///< empty = everywhere; else only where it is not 0
+    ImageView<const std::uint8_t> mask;  ///< empty = all pixels; else only non-zero pixels
     ImageView<const float> sigma_px;     ///< of the estimate; may be empty
 };
 
@@ -26,34 +26,34 @@ struct BadPixels {
     double over_2_percent = 0.0;
 };
 
-/// Pixels count where the truth is known and the mask is set. Figures without pixels are NaN.
+/// Counts pixels with known truth inside the mask. Without such pixels the fields are NaN.
 struct DepthErrors {
-    /// Over all counted pixels; where the estimate is unknown it is filled first (see `filled`), so
-    /// that a matcher cannot win by answering only where it is easy. A pixel that stays unknown is
+    /// Over all counted pixels. Unknown estimates are filled first (see `filled`), so that a
+    /// matcher gains nothing by answering only at easy pixels. A pixel that stays unknown counts as
     /// bad.
     BadPixels bad;
-    BadPixels known_bad;           ///< over the counted pixels that the estimate knows
-    double density_percent = 0.0;  ///< counted pixels that the estimate knows, of all counted
-    ErrorFigures known;            ///< estimate - truth over the known ones [px]
-    SigmaCoverage coverage;        ///< of the known ones; empty without sigma
+    BadPixels known_bad;           ///< over the counted pixels with a known estimate
+    double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
+    ErrorFigures known;            ///< estimate - truth at the known estimates [px]
+    SigmaCoverage coverage;        ///< of the known estimates; empty without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
-    /// Median of truth / estimate where both are known and positive; about 1 when both are in
-    /// pixels, NaN without such pixels.
+    /// Median of truth / estimate where both are known and positive. About 1 if both are in pixels;
+    /// NaN without such pixels.
     double truth_over_estimate = 0.0;
 };
 
-/// Unknown pixels take the smaller of the nearest known disparities to their left and right in the
-/// row (the background of an occlusion), as Middlebury fills sparse results. A row without any
-/// known pixel stays unknown.
+/// Fills an unknown pixel with the smaller of the nearest known disparities to its left and right
+/// in the row (the background of an occlusion), as Middlebury fills sparse results. A row without
+/// any known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
 
-/// By how much the truth is too large (4) or too small (1/16) to be in pixels: the factor, of those
-/// with which data sets store disparities, that explains the ratio. Nothing when truth and estimate
-/// agree within what a matcher may get wrong, or differ by no such factor.
+/// Suspected scale factor of the truth, for example 4 or 1/16: the factor, among those that data
+/// sets use to store disparities, that explains the ratio. No value if truth and estimate agree
+/// within the possible error of a matcher, or if no factor fits.
 [[nodiscard]] std::optional<double> suspected_factor(double truth_over_estimate) noexcept;
 
-/// Errors: images of different sizes.
+/// Error if the images differ in size.
 [[nodiscard]] Result<DepthErrors> depth_errors(const DepthPair& pair);
 
 }  // namespace surefoot::eval

@@ -148,7 +148,7 @@ TEST(DepthErrors, NoticeATruthThatIsNotInPixels) {
     for (const float factor : {3.0F, 4.0F, 16.0F, 256.0F, 1.0F / 16.0F})
         EXPECT_EQ(suspected_factor(truth_times(factor)),
                   std::optional<double>(static_cast<double>(factor)));
-    // A bad estimate is no proof: nothing stores 1.4 times the disparity.
+    // A bad estimate does not prove a wrong scale: no data set stores 1.4 times the disparity.
     EXPECT_FALSE(suspected_factor(truth_times(1.4F)).has_value());
     EXPECT_FALSE(suspected_factor(std::nan("")).has_value());
 }

@@ -12,7 +12,7 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Areas that differ by less than rounding of the sums: all errors are equal.
+/// Smaller differences of areas are rounding errors of the sums: all errors are equal.
 constexpr double kEqualAreas = 1e-12;
 
 struct Value {

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// The definition for sigmas that all differ: sort, take away, average, from the start each time.
+/// Reference implementation for sigmas that all differ: sorts, removes and averages from the start
+/// each time.
 double area_slowly(const std::vector<float>& errors, const std::vector<float>& keys) {
     std::vector<std::size_t> order(errors.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
-/// Height difference per cell along one axis from whichever neighbours are known, else 0.
+/// Height difference per cell along one axis, from the known neighbours; 0 without any.
 double difference_along(const grid::Layer& height_m, grid::Cell cell, int dx, int dy) {
     const auto at = [&](int sign) {
         const int ix = cell.ix + sign * dx;

@@ -14,18 +14,19 @@
 namespace surefoot::eval {
 namespace {
 
-/// 2^27 cells are 1 GB of sums and counts twice over: a wrong unit or resolution, not a map.
+/// Largest number of cells. 2^27 cells need 1 GB for the sums and 1 GB for the counts; a larger map
+/// means a wrong unit or resolution.
 constexpr double kMostCells = 134217728.0;
 /// Whole numbers up to here are exact in double, and fit an int after the first is subtracted.
 constexpr double kLargestNumber = 1e15;
 /// Sums of heights are whole numbers of 2^-23 m (0.12 um), which double adds exactly up to 10^9 m.
 constexpr double kSteps = 8388608.0;
-/// Cells of all threads together: 1 GB. Larger grids have fewer threads.
+/// Cells of all threads together: 1 GB. Larger grids use fewer threads.
 constexpr std::size_t kMostPartCells = 1U << 26U;
-/// Points that are worth a thread's while.
+/// Smallest number of points that justifies a thread.
 constexpr std::size_t kPiece = 1U << 14U;
 
-/// Is this a point that a height map may hold?
+/// Whether a height map may hold this point.
 bool is_mappable(const Eigen::Vector3d& p_m) {
     return p_m.allFinite() && std::abs(p_m.z()) <= kMaxHeight_m;
 }

@@ -12,12 +12,12 @@
 
 namespace surefoot::eval {
 
-/// Which height of its points a cell takes.
+/// How a cell combines the heights of its points.
 enum class Reduce : std::uint8_t { max, mean, min };
 
-/// Where the cells of a height map lie.
+/// Alignment of the cells of a height map.
 enum class Lattice : std::uint8_t {
-    cell,  ///< borders on multiples of the resolution (NOTATION.md): maps of one place fit together
+    cell,  ///< borders at multiples of the resolution (NOTATION.md): maps align
     node,  ///< centres at the smallest x and y and every resolution from there, as CloudCompare's
            ///< RASTERIZE: a point belongs to the nearest centre, the greater one in the middle
 };
@@ -30,12 +30,12 @@ struct DemGrid {
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
 };
 
-/// The cell of a point, ix + iy * nx; `kNoCell` outside, and where a coordinate is not finite.
+/// Cell index of a point, ix + iy * nx; `kNoCell` outside, and if a coordinate is not finite.
 inline constexpr std::uint32_t kNoCell = 0xffffffffU;
 [[nodiscard]] std::uint32_t cell_number(const DemGrid& grid, const Eigen::Vector3d& p_m) noexcept;
 
-/// The box around points that are given in any number of pieces; points with a coordinate that is
-/// not finite, or a height beyond kMaxHeight_m, are counted and left out.
+/// Bounding box of points that are added in any number of pieces. Points that are not finite and
+/// points with a height beyond kMaxHeight_m are counted and left out.
 class CloudBounds {
   public:
     void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
@@ -43,7 +43,7 @@ class CloudBounds {
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
 
-    /// The cells that hold all points. Errors: no point; more cells than a map may have.
+    /// The cells that contain all points. Errors: no point; more cells than a map may have.
     [[nodiscard]] Result<DemGrid> grid(double resolution_m, Lattice lattice) const;
 
   private:
@@ -55,18 +55,18 @@ class CloudBounds {
     std::int64_t skipped_ = 0;
 };
 
-/// Heights of points on a grid, in any number of pieces: memory grows with the cells and the
-/// threads, not with the points. Each thread has cells of its own. Neither the highest and the
-/// lowest nor the mean (sums of whole numbers of 0.12 um) depend on the order of the points or on
-/// the number of threads.
+/// Builds a height map from points in any number of pieces. Memory depends on the number of cells
+/// and threads, not on the points: each thread has its own cells. The result does not depend on the
+/// order of the points or the number of threads: not for highest and lowest, and not for the mean
+/// (sums of whole numbers of 0.12 um).
 class DemBuilder {
   public:
     DemBuilder(const DemGrid& grid, Reduce reduce);
 
-    /// Points outside the grid are left out, and those that CloudBounds leaves out.
+    /// Leaves out points outside the grid and points that CloudBounds leaves out.
     void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
 
-    /// Heights so far; NaN where no point fell.
+    /// Heights so far; NaN in cells without a point.
     [[nodiscard]] grid::Layer heights_m() const;
 
   private:

@@ -60,7 +60,7 @@ TEST(Dem, NodeLatticeByHand) {
     EXPECT_EQ(mean.at(2, 0), 8.0F);
 }
 
-/// As three threads that happen to do the last first.
+/// Simulates three threads; the last piece runs first.
 class Backward final : public Executor {
   public:
     void parallel_for(int count, const std::function<void(int)>& work) override {

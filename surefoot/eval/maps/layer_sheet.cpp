@@ -32,7 +32,7 @@ TextStyle small_text(TextAnchor anchor = TextAnchor::left) {
     return style;
 }
 
-/// Cells that are shown: half-open along both axes.
+/// Shown cells, half-open along both axes.
 struct Shown {
     int ix0 = 0;
     int iy0 = 0;
@@ -73,7 +73,7 @@ Shown shown_cells(const grid::GridGeometry& geometry,
             std::min(geometry.ny, shown.iy1 + kAround)};
 }
 
-/// Where the maps of a sheet lie; all have one size.
+/// Positions of the maps of a sheet; all have one size.
 struct Layout {
     Shown shown;
     int cell_px = 1;
@@ -229,7 +229,7 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "normal_z") return share_style("Normal, z");
     if (name == "free_above") return height_style("Unknown ground is below");
     if (name == "rating_confidence") return share_style("Confidence of the rating");
-    if (name == "smallest_step") return millimetre_style("Smallest step to be told");
+    if (name == "smallest_step") return millimetre_style("Smallest step that can be resolved");
     if (name == "not_resolvable") return share_style("Sill not resolvable");
     if (name == "reach_step") return millimetre_style("Largest step on the way");
     LayerStyle rating = traversability_style(safe_threshold);
@@ -264,7 +264,7 @@ Picture render_layer_sheet(const grid::GridGeometry& geometry,
         SUREFOOT_ASSERT(layer.values.width() == geometry.nx &&
                         layer.values.height() == geometry.ny);
         drawn.scale_bar = overlays.scale_bar && i == 0;
-        // The way is told once; over every map it would hide more than it says.
+        // The path is drawn once; on every map it would hide more than it shows.
         if (i == 1) drawn.trajectory_m.clear();
         draw_panel(sheet, geometry, layer, layout, layout.plot(static_cast<int>(i)), drawn);
     }

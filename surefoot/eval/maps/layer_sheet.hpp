@@ -8,19 +8,19 @@
 
 namespace surefoot::eval {
 
-/// One layer of a sheet, in the colours of its style; the title stands over it.
+/// One layer of a sheet, in the colours of its style, with a title above it.
 struct SheetLayer {
     grid::Layer values;
     LayerStyle style;
 };
 
-/// The style of a layer of the map or of its rating by its name in files ("variance" is shown as
-/// one sigma in mm and expects one in m); any other name is a plain number.
+/// Style of a layer of the map or of its rating, by its name in files. "variance" is shown as one
+/// sigma in mm and expects one sigma in m. Any other name is a plain number.
 [[nodiscard]] LayerStyle style_of_layer(std::string_view name, double safe_threshold);
 
-/// Layers of one map side by side, `columns` in a row, each with its own legend: x forward is up, y
-/// left is left, unknown is hatched grey. Shown is what is known in any of them, and the way there.
-/// Empty without a layer.
+/// Draws layers of one map side by side, `columns` in a row, each with its own legend. x forward is
+/// up, y left is left, unknown is hatched grey. Shows the cells that any layer knows, and the path
+/// there. Returns an empty picture without a layer.
 [[nodiscard]] Picture render_layer_sheet(const grid::GridGeometry& geometry,
                                          const std::vector<SheetLayer>& layers,
                                          int columns,

@@ -10,9 +10,9 @@
 namespace surefoot::eval {
 namespace {
 
-/// Half metres where the next steps land, then what is only looked at.
+/// Bins of half a metre where the next steps land, wider bins farther away.
 constexpr double kDistanceEdges_m[] = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0};
-/// Enough to tell the sides of the image from its middle, few enough to fill each.
+/// Enough bins to separate the sides of the image from its middle, few enough to fill each bin.
 constexpr int kColumnBins = 8;
 
 std::span<const float> values_of(const grid::Layer& layer) {

@@ -11,39 +11,39 @@
 
 namespace surefoot::eval {
 
-/// The camera of a run, for the image column where each cell was seen.
+/// Camera of a run; used to find the image column of each cell at its last observation.
 struct CameraTrack {
     PinholeView view;
     Trajectory T_world_camera;  ///< optical frame in the map's frame, in time order
-    double max_depth_m = 10.0;  ///< beyond it nothing was mapped
+    double max_depth_m = 10.0;  ///< cells farther away were not mapped
 };
 
-/// A live map and the truth on the same cells; a layer that is not there is empty.
+/// A live map and the truth on the same cells; an empty layer = not available.
 struct MapPair {
     grid::GridGeometry geometry;
     grid::Layer live_m;
     grid::Layer live_var_m2;  ///< may be empty
     /// One sigma of the angle between the live map's z axis and the vertical, about any horizontal
-    /// axis: what it does to heights counts in `MapComparison::sigma`. NaN = not known.
+    /// axis. `MapComparison::sigma` includes its effect on the heights. NaN = unknown.
     double tilt_sigma_rad = 0.0;
     grid::Layer live_traversability;
     grid::Layer truth_m;
-    /// The true surface that each live height is compared with, where that is not the highest one:
-    /// floor under a table top. Empty = truth_m.
+    /// The true surface to compare each live height with, if it is not the highest surface: floor
+    /// under a table top. Empty = truth_m.
     grid::Layer compared_m;
     grid::Layer truth_traversability;
     Trajectory trajectory;              ///< base_link in the map's frame; may be empty
-    std::optional<CameraTrack> camera;  ///< nothing: no figures by column and range
+    std::optional<CameraTrack> camera;  ///< no value: no errors by column and range
 };
 
-/// Everything that is measured about one live map. Figures without cells are NaN, lists without
-/// their input are empty. Lengths in m.
+/// All measurements of one live map. Fields without cells are NaN, lists without their input are
+/// empty. Lengths in m.
 struct MapComparison {
     ElevationErrors elevation;
     ElevationErrors elevation_away_from_edges;
     std::vector<ErrorBin> by_distance;  ///< to the nearest position of the machine [m]
-    std::vector<ErrorBin> by_range;     ///< from the camera that saw the cell last [m]
-    std::vector<ErrorBin> by_column;    ///< of the image where the cell was seen last [px]
+    std::vector<ErrorBin> by_range;     ///< to the camera at the cell's last observation [m]
+    std::vector<ErrorBin> by_column;    ///< image column of the cell's last observation [px]
     SigmaCoverage sigma;                ///< of the height, away from edges
     double coverage = 0.0;
     TraversabilityErrors traversability;
@@ -54,9 +54,9 @@ struct MapComparison {
     grid::Layer error_m;
 };
 
-/// Compares; nothing is aligned. Edges and floor look at level_floor of the truth. By distance,
-/// range and column: the errors away from edges, since a cell at a step is off by the step when the
-/// map is shifted by one cell, wherever it was seen.
+/// Compares the maps without any alignment. Edges and floor use level_floor of the truth. Errors by
+/// distance, range and column leave out edges: at a step, a shift of the map by one cell causes an
+/// error of the step height, for every camera position.
 [[nodiscard]] MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config);
 
 }  // namespace surefoot::eval

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSigma_m = 0.003;
 
-/// A floor with a 0.2 m block on it, seen from x = -1; the live map has honest noise.
+/// A floor with a 0.2 m block on it, seen from x = -1; the noise of the live map matches its sigma.
 MapPair floor_with_block() {
     Rng rng(1);
     MapPair maps;

@@ -8,27 +8,27 @@
 
 namespace surefoot::eval {
 
-/// Cells of the largest level surface of a true map, away from its edges (as away_from_edges): of
-/// the heights that are left, the 4 mm (kFloorBand_m) that hold the most cells; of equals the
-/// lowest. On it every height difference of a live map is the map's own error. A tilted floor is
-/// not level: only a contour strip of it would be found.
+/// Cells of the largest level surface of a true map, away from its edges (as away_from_edges).
+/// Selects the 4 mm height band (kFloorBand_m) with the most cells; ties: the lowest. On this
+/// surface every height difference of a live map is an error of the map. A tilted floor is not
+/// level: the result is only a strip along a contour of it.
 [[nodiscard]] CellMask level_floor(const grid::Layer& truth_height_m, const EvalMapsConfig& config);
 inline constexpr double kFloorBand_m = 0.004;
 
-/// Height differences between neighbouring cells, the jagged edges of a map.
+/// Height differences between neighbouring cells: the jaggedness of a map.
 struct HeightJumps {
     std::vector<float> jump_m;  ///< height of the right or upper cell minus that of the other
     std::vector<float> key;     ///< mean of the two cells' keys
 };
 
-/// All pairs of four-neighbours that are both known and both in the mask (empty = all cells).
-/// `key` is any per-cell value to sort the jumps by, as the image column where the cell was seen;
-/// it may be empty: the keys are NaN then. error_figures and by_bins make figures of the result.
+/// All pairs of four-neighbours that are both known and both in the mask (empty = all cells). `key`
+/// is any value per cell to bin the jumps by, for example the image column of the observation; if
+/// it is empty, the keys are NaN. Use error_figures and by_bins to summarise the result.
 [[nodiscard]] HeightJumps height_jumps(const grid::Layer& height_m,
                                        const CellMask& mask,
                                        const grid::Layer& key);
 
-/// How far the cells of a floor lie from one plane; NaN and 0 cells where there is no plane.
+/// Distances of the cells of a floor from one plane; NaN and 0 cells if there is no plane.
 struct FloorSpread {
     double spread_m = 0.0;   ///< 1.4826 times the median |residual - median|: one sigma if normal
     double rms_m = 0.0;      ///< of all residuals, outliers included
@@ -37,8 +37,8 @@ struct FloorSpread {
     std::int64_t count = 0;  ///< known cells in the mask
 };
 
-/// The plane is fitted by total least squares, again and again without the cells that are off by
-/// more than three spreads, until they stay the same; the figures are of all cells in the mask.
+/// Fits the plane by total least squares, and repeats without cells that are off by more than three
+/// spreads until nothing changes. The statistics cover all cells in the mask.
 [[nodiscard]] FloorSpread floor_spread(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const CellMask& mask);

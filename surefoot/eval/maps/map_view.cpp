@@ -26,7 +26,7 @@ int tick_count(int length_px) {
     return std::max(2, length_px / 110);
 }
 
-/// The plot alone, so that nothing is drawn over its border.
+/// Copies the plot area, so that drawing cannot cross its border.
 Picture cut_out(const Picture& picture, const RectPx& rect) {
     Picture part(rect.width, rect.height);
     paste(part, picture, -rect.left, -rect.top);
@@ -76,7 +76,7 @@ std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Str
     return ticks;
 }
 
-/// The head of an arrow that ends at the last point, its tip first; none without a direction.
+/// The head of an arrow at the last point, tip first; empty without a direction.
 std::vector<PointPx> arrow_head(const MapView& view, const Stroke& stroke) {
     const std::vector<PointPx> points = to_px(view, stroke.points_m);
     if (!stroke.arrow || points.size() < 2) return {};
@@ -96,7 +96,7 @@ std::vector<PointPx> arrow_head(const MapView& view, const Stroke& stroke) {
              tip.v - (back_px - ahead_px) * v - side_px * u}};
 }
 
-/// All white edges first, so that no line cuts another.
+/// Draws all white edges first, so that no line cuts another.
 void draw_strokes(Picture& picture, const MapView& view, const std::vector<Stroke>& strokes) {
     const auto draw_all = [&](bool halo) {
         for (const Stroke& stroke : strokes) {
@@ -139,7 +139,7 @@ void draw_badges(Picture& picture, const MapView& view, const std::vector<Badge>
     }
 }
 
-/// One row of the key for each line of the label; a label that is there already gets none.
+/// Adds one legend row for each line of the label; skips labels that already exist.
 void add_label(const std::string& label,
                Symbol symbol,
                Rgb8 color,

@@ -13,7 +13,7 @@
 
 namespace surefoot::eval {
 
-/// The ground seen from above: x forward is up, y left is left.
+/// Top view of the ground: x forward is up, y left is left.
 struct MapView {
     RectPx plot;
     double x_max_m = 0.0;  ///< at the upper border
@@ -31,38 +31,38 @@ struct MapView {
     [[nodiscard]] double y_min_m() const { return y_max_m - plot.width / px_per_m; }
 };
 
-/// What is drawn over a map; coordinates of the map's frame [m].
+/// A closed line over a map; coordinates in the map's frame [m].
 struct Outline {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
-    std::string label;  ///< in the key; outlines with the same label share one entry
+    std::string label;  ///< in the legend; outlines with equal labels share one entry
 };
 /// A line with a white edge.
 struct Stroke {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
     int width_px = 4;
-    /// As of outlines; what follows a line break stands in a row of its own.
+    /// Legend entry, as for outlines; a line break starts a new row.
     std::string label = {};
-    bool ticks = false;  ///< on the right-hand side, as maps show where the ground falls
+    bool ticks = false;  ///< on the right-hand side, the map symbol for falling ground
     bool arrow = false;  ///< at the last point
 };
-/// A word of a few letters on a disc, as the number of a step. One that would cover an earlier one
-/// is left out.
+/// A short text on a disc, for example the number of a step. A badge that would cover an earlier
+/// badge is left out.
 struct Badge {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
     std::string text;
     Rgb8 color = palette::kInk;
 };
-/// Small squares at places, under all lines.
+/// Small squares at positions, drawn below all lines.
 struct Dots {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
-    std::string label;  ///< in the key, where there are points
+    std::string label;  ///< in the legend, if there are points
 };
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-    std::string label;  ///< in the key: words over the map hide what they are about
+    std::string label;  ///< in the legend: text over the map would hide the map
 };
 struct Overlays {
     std::optional<Pose> T_odom_body;
@@ -73,14 +73,14 @@ struct Overlays {
     std::vector<Mark> marks;
     Dots dots;
     bool scale_bar = true;
-    /// Length of the arrow for the body; nothing: 0.35 m, but not too small to be seen.
+    /// Arrow length of the body symbol; no value: 0.35 m, but at least a visible length.
     std::optional<double> body_px = {};
 };
 
-/// Ticks and names of the two axes around the plot.
+/// Draws ticks and names of the two axes around the plot.
 void draw_axes(Picture& picture, const MapView& view);
-/// A bar of 1 m, or of the round length that fits the plot better, in its lower left corner; a plot
-/// too small for it gets none.
+/// Draws a bar of 1 m, or of a round length that fits the plot better, in the lower left corner. A
+/// plot that is too small gets no bar.
 void draw_scale_bar(Picture& picture, const MapView& view);
 /// Draws inside the plot only.
 void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays);

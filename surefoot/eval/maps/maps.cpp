@@ -14,8 +14,8 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNoShare = std::numeric_limits<double>::quiet_NaN();
-/// A centre that lies on a border up to rounding counts as on it: far below a cell, far above the
-/// rounding of coordinates of some kilometres.
+/// A centre this close to a border counts as on it: far below a cell, far above the rounding errors
+/// of coordinates of some kilometres.
 constexpr double kBorderCells = 1e-6;
 
 template <typename T>
@@ -63,7 +63,7 @@ bool is_edge(const grid::Layer& height_m, int ix, int iy, double step_m) {
 Call call_of(float live, float truth, double safe_threshold) {
     if (std::isnan(truth)) return Call::no_truth;
     if (std::isnan(live)) return Call::unknown;
-    // The threshold is rounded like the layer, so that 0.80 in a file is safe at 0.80.
+    // The threshold is rounded to float like the layer, so that a stored 0.80 is safe at 0.80.
     const auto threshold = static_cast<float>(safe_threshold);
     const bool is_safe = truth >= threshold;
     const bool called_safe = live >= threshold;

@@ -11,24 +11,24 @@ namespace surefoot::eval {
 
 struct EvalMapsConfig {
     double safe_threshold = 0.80;  ///< a cell is safe when its traversability is at least this
-    double edge_step_m = 0.03;     ///< neighbouring true heights that differ more are an edge
-    int edge_margin_cells = 2;     ///< cells at most this far from an edge are left out
-    double large_error_m = 0.05;   ///< counted in share_over_50mm
+    double edge_step_m = 0.03;     ///< a larger jump between true neighbours is an edge
+    int edge_margin_cells = 2;     ///< cells within this distance of an edge are left out
+    double large_error_m = 0.05;   ///< threshold of share_over_50mm
     void describe(ConfigVisitor& visitor);
 };
 
-/// Which cells are looked at: 0 = not, anything else = yes. Same element order as grid::Layer.
+/// Selected cells: 0 = no, any other value = yes. Same element order as grid::Layer.
 using CellMask = Image<std::uint8_t>;
 
-/// `layer` of grid `from` read at the cell centres of grid `to`: the cell that holds the centre
-/// (a centre on a border belongs to the greater index), NaN outside.
+/// Reads `layer` of grid `from` at the cell centres of grid `to`: takes the cell that contains the
+/// centre (on a border: the cell with the greater index), NaN outside.
 [[nodiscard]] grid::Layer resample_nearest(const grid::GridGeometry& from,
                                            const grid::Layer& layer,
                                            const grid::GridGeometry& to);
 
-/// Cells with a known true height that are farther than the margin from every edge cell (both sides
-/// of a jump between eight-neighbours; distance = larger of the two cell differences). Unknown
-/// neighbours make no edge.
+/// Cells with a known true height that are farther than the margin from every edge cell. Edge cells
+/// are both sides of a jump between eight-neighbours; the distance is the larger of the two cell
+/// differences. An unknown neighbour is not an edge.
 [[nodiscard]] CellMask away_from_edges(const grid::Layer& truth_height_m,
                                        const EvalMapsConfig& config);
 
@@ -40,7 +40,7 @@ using CellMask = Image<std::uint8_t>;
 /// Cells that are set in both masks (of the same size).
 [[nodiscard]] CellMask both(const CellMask& a, const CellMask& b);
 
-/// Errors live - truth over the cells known in both [m]; every figure but count is NaN without
+/// Errors live - truth over the cells known in both maps [m]; all fields but count are NaN without
 /// cells. Percentiles interpolate linearly between the two nearest ranks.
 struct ElevationErrors {
     double median_abs_m = 0.0;
@@ -51,7 +51,7 @@ struct ElevationErrors {
     std::int64_t count = 0;
 };
 
-/// Live minus true height per cell, NaN where either is unknown.
+/// Live minus true height per cell; NaN if either is unknown.
 [[nodiscard]] grid::Layer height_error(const grid::Layer& live_m, const grid::Layer& truth_m);
 
 /// `mask` empty = all cells.
@@ -60,32 +60,32 @@ struct ElevationErrors {
                                                const CellMask& mask,
                                                const EvalMapsConfig& config);
 
-/// Share of the cells whose truth is known (and that are in the mask) where live is known too; NaN
-/// when there is no such cell.
+/// Share of the cells with known truth (inside the mask) that live knows too; NaN if there is no
+/// such cell.
 [[nodiscard]] double coverage(const grid::Layer& live,
                               const grid::Layer& truth,
                               const CellMask& mask);
 
-/// What a live map says about one cell whose truth is known.
+/// Result of a live map for one cell with known truth.
 enum class Call : std::uint8_t {
     no_truth,
-    unknown,  ///< live does not know the cell
+    unknown,  ///< unknown in the live map
     true_safe,
     true_unsafe,
-    false_safe,    ///< unsafe called safe: the dangerous error
-    false_unsafe,  ///< safe called unsafe: the hindering error
+    false_safe,    ///< an unsafe cell rated safe: the dangerous error
+    false_unsafe,  ///< a safe cell rated unsafe: the hindering error
 };
 [[nodiscard]] Image<Call> classify(const grid::Layer& live_traversability,
                                    const grid::Layer& truth_traversability,
                                    double safe_threshold);
 
-/// Shares of the cells known in both maps; NaN where there is nothing to share.
+/// Shares of the cells known in both maps; NaN if the denominator is 0.
 struct TraversabilityErrors {
-    double false_safe = 0.0;              ///< of the truly unsafe cells: called safe
-    double false_unsafe = 0.0;            ///< of the truly safe cells: called unsafe
-    double true_safe = 0.0;               ///< of the truly safe cells: called safe
-    double true_unsafe = 0.0;             ///< of the truly unsafe cells: called unsafe
-    double unknown = 0.0;                 ///< of all cells with a truth: live does not know
+    double false_safe = 0.0;              ///< share of the truly unsafe cells rated safe
+    double false_unsafe = 0.0;            ///< share of the truly safe cells rated unsafe
+    double true_safe = 0.0;               ///< share of the truly safe cells rated safe
+    double true_unsafe = 0.0;             ///< share of the truly unsafe cells rated unsafe
+    double unknown = 0.0;                 ///< share of all cells with a truth: unknown in live
     std::int64_t truly_safe_cells = 0;    ///< known in both
     std::int64_t truly_unsafe_cells = 0;  ///< known in both
     std::int64_t unknown_cells = 0;

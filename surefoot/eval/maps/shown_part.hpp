@@ -7,13 +7,13 @@
 
 namespace surefoot::eval {
 
-/// The part of a map that is worth showing; its narrow rim may lie beyond the map.
+/// The displayed part of a map; its narrow rim may extend beyond the map.
 struct ShownPart {
     grid::GridGeometry geometry;
-    int first_ix = 0;  ///< of the map
+    int first_ix = 0;  ///< cell index in the map
     int first_iy = 0;
 
-    /// That part of a layer of the map; `beyond` where there is no map.
+    /// This part of a layer of the map; `beyond` outside the map.
     template <typename T>
     [[nodiscard]] Image<T> of(const Image<T>& layer, T beyond) const {
         Image<T> part(geometry.nx, geometry.ny, beyond);
@@ -26,8 +26,8 @@ struct ShownPart {
     }
 };
 
-/// What is known, and what the overlays name (marks, the way, the body), with some cells around it;
-/// the whole map where there is nothing of that.
+/// The known cells and the overlays (marks, path, body), with some cells around them; the whole map
+/// if there are neither.
 [[nodiscard]] ShownPart shown_part(const grid::GridGeometry& geometry,
                                    const grid::Layer& height_m,
                                    const Overlays& overlays);

@@ -16,24 +16,24 @@ struct PinholeView {
     double cy_px = 0.0;
 };
 
-/// Where in the image, and how far away, each cell was seen last; NaN = never.
+/// Image column and distance of each cell at its last observation; NaN = never observed.
 struct Sightings {
     grid::Layer column_px;  ///< image column of the cell's centre
     grid::Layer range_m;    ///< from the camera to the cell, horizontally
 };
 
 /// For each known cell the latest pose from which its centre, at its height, falls into the image
-/// and is at most `max_depth_m` away along the optical axis. What stands in between is not looked
-/// at: a cell counts as seen though something may hide it. `T_world_camera`: poses of the optical
-/// frame in the map's frame, in time order.
+/// and is at most `max_depth_m` away along the optical axis. Occlusion is ignored: a cell counts as
+/// observed although another object may hide it. `T_world_camera`: poses of the optical frame in
+/// the map's frame, in time order.
 [[nodiscard]] Sightings last_sightings(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const Trajectory& T_world_camera,
                                        const PinholeView& view,
                                        double max_depth_m);
 
-/// Horizontal distance from each cell's centre to the nearest position of a trajectory: how near
-/// the machine came. NaN everywhere for an empty trajectory.
+/// Horizontal distance from each cell's centre to the nearest position of a trajectory, that is, to
+/// the machine. NaN everywhere for an empty trajectory.
 [[nodiscard]] grid::Layer distance_to(const grid::GridGeometry& geometry,
                                       const Trajectory& trajectory);
 

@@ -7,26 +7,26 @@
 
 namespace surefoot::eval {
 
-/// How the thesis' step query decided (Lange 2016): the mean traversability under one rectangle at
-/// the target of base_link, with the yaw that the robot has there. Cells without a rating, and
-/// those beyond the map, count as `unmapped`. For comparison only: it allows ground that nobody has
-/// seen.
+/// Step query of the reference thesis (Lange 2016): the mean traversability under one rectangle at
+/// the target of base_link, with the robot's yaw at the target. Cells without a rating and cells
+/// beyond the map count as `unmapped`. For comparison only: this policy allows ground that was
+/// never observed.
 struct ThesisPolicy {
     double length_m = 0.20;   ///< of the rectangle, along the robot
     double width_m = 0.40;    ///< across
-    double safe_mean = 0.80;  ///< allowed from here on (safeTraverse)
-    double unmapped = 1.0;    ///< traversability_default of its configuration
+    double safe_mean = 0.80;  ///< allowed from this mean on (safeTraverse)
+    double unmapped = 1.0;    ///< traversability_default in the configuration of Lange 2016
 };
 
 struct ThesisAnswer {
     bool allowed = false;
-    double mean = 0.0;  ///< of all cells whose middle lies under the rectangle; 0 without any
+    double mean = 0.0;  ///< of all cells whose centre lies under the rectangle; 0 without cells
     int cells = 0;
-    int unmapped = 0;  ///< of these
+    int unmapped = 0;  ///< number of these cells that are unmapped
 };
 
-/// `rating`: traversability of the cells of `geometry`, 1 to 0, NaN = unmapped. `target` in the
-/// frame of the map.
+/// `rating`: traversability of the cells of `geometry`, 1 to 0, NaN = unmapped. `target` is in the
+/// map's frame.
 [[nodiscard]] ThesisAnswer thesis_policy(const ThesisPolicy& policy,
                                          const traversability::FootprintPose& target,
                                          const grid::GridGeometry& geometry,

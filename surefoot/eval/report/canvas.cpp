@@ -27,7 +27,7 @@ cv::Scalar scalar(Rgb8 color) {
     return {double(color.r), double(color.g), double(color.b)};
 }
 
-/// Pixel centres are whole numbers for OpenCV, halves here.
+/// OpenCV puts pixel centres at whole numbers, this code at halves.
 cv::Point fixed_point(PointPx p) {
     const double scale = 1 << kShift;
     return {nearest_px((p.u - 0.5) * scale), nearest_px((p.v - 0.5) * scale)};

@@ -13,7 +13,7 @@ namespace surefoot::eval {
 
 using Picture = Image<Rgb8>;
 
-/// A place on a picture [px]; pixel (u, v) covers [u, u + 1) x [v, v + 1).
+/// A position on a picture [px]; pixel (u, v) covers [u, u + 1) x [v, v + 1).
 struct PointPx {
     double u = 0.0;
     double v = 0.0;
@@ -33,18 +33,18 @@ struct TextStyle {
     Rgb8 color = palette::kInk;
     TextAnchor anchor = TextAnchor::left;
     bool bold = false;
-    bool upward = false;  ///< turned by 90 deg, read from below
+    bool upward = false;  ///< rotated by 90 deg, reads upward
     bool halo = false;    ///< white edge, for text on a map
 };
 
-/// The whole number nearest to a place; those beyond all pictures become one that is 10^9 px away,
-/// and NaN becomes 0.
+/// Rounds a position to a whole number. Positions beyond all pictures become one 10^9 px away, and
+/// NaN becomes 0.
 [[nodiscard]] int nearest_px(double place_px) noexcept;
 
-/// Drawing. Everything is clipped at the picture's border and anti-aliased. Text is printable
-/// ASCII; any other character shows as '?'.
+/// Text width. All drawing is clipped at the border of the picture and anti-aliased. Text is
+/// printable ASCII; any other character appears as '?'.
 [[nodiscard]] double text_width_px(const std::string& text, const TextStyle& style);
-/// `at` is the anchor in the middle of the capital letters' height.
+/// `at` is the anchor, at half the height of the capital letters.
 void draw_text(Picture& picture, PointPx at, const std::string& text, const TextStyle& style);
 void draw_line(Picture& picture, PointPx from, PointPx to, int width_px, Rgb8 color);
 void draw_polyline(Picture& picture,
@@ -55,17 +55,17 @@ void draw_polyline(Picture& picture,
 void fill_polygon(Picture& picture, std::span<const PointPx> points, Rgb8 color);
 void draw_circle(Picture& picture, PointPx center, double radius_px, int width_px, Rgb8 color);
 void fill_circle(Picture& picture, PointPx center, double radius_px, Rgb8 color);
-/// `opacity` 1 covers what is below.
+/// `opacity` 1 hides the pixels below.
 void fill_rect(Picture& picture, const RectPx& rect, Rgb8 color, double opacity = 1.0);
 void draw_rect(Picture& picture, const RectPx& rect, int width_px, Rgb8 color);
 /// Copies `source` with its top left corner at (left, top).
 void paste(Picture& picture, const Picture& source, int left, int top);
 
-/// Colour of unknown at a pixel: light grey with diagonal stripes, seen as "no value" in any
+/// Colour of an unknown pixel: light grey with diagonal stripes, recognisable as "no value" in any
 /// palette.
 [[nodiscard]] Rgb8 hatched_grey(int u, int v) noexcept;
 
-/// PNG file of the picture as bytes; none for an empty picture. Same picture, same bytes.
+/// Encodes the picture as a PNG file; no bytes for an empty picture. Deterministic.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Picture& picture);
 
 }  // namespace surefoot::eval

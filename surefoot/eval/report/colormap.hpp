@@ -13,12 +13,12 @@ struct Rgb8 {
     friend bool operator==(const Rgb8&, const Rgb8&) = default;
 };
 
-/// Colour maps that stay readable with every common colour vision deficiency. Sequential maps grow
-/// monotonically in lightness; diverging maps are lightest in the middle. `safety` jumps from
-/// orange to blue there: each colour belongs to one side of the limit.
+/// Colour maps that stay readable with all common colour vision deficiencies. Sequential maps get
+/// monotonically lighter; diverging maps are lightest in the middle. `safety` jumps there from
+/// orange to blue: each colour belongs to one side of the limit.
 enum class ColorMap : std::uint8_t {
     viridis,  ///< sequential (Smith and van der Walt 2015)
-    pale,     ///< sequential: viridis with much white, ground under coloured lines
+    pale,     ///< sequential: viridis with much white, as a background for coloured lines
     cividis,  ///< sequential (Nunez, Anderton and Renslow 2018)
     magma,    ///< sequential (Smith and van der Walt 2015)
     grey,     ///< sequential, black to white
@@ -26,7 +26,7 @@ enum class ColorMap : std::uint8_t {
     balance,  ///< diverging: red below, blue above
 };
 
-/// Colour at position s in [0, 1]; outside is clamped. s must be a number.
+/// Colour at position s, clamped to [0, 1]. s must not be NaN.
 [[nodiscard]] Rgb8 color_at(ColorMap map, double s);
 [[nodiscard]] bool is_diverging(ColorMap map) noexcept;
 
@@ -36,7 +36,7 @@ enum class ColorMap : std::uint8_t {
 /// (1 - weight) * a + weight * b, rounded.
 [[nodiscard]] Rgb8 mixed(Rgb8 a, Rgb8 b, double weight);
 
-/// Values to colours: low and high are the ends; a diverging map has its middle at `centre`.
+/// Maps values to colours between low and high; a diverging map has its middle at `centre`.
 struct ColorScale {
     ColorMap map = ColorMap::viridis;
     double low = 0.0;

@@ -9,7 +9,7 @@
 
 namespace surefoot::eval {
 
-/// Figures of signed errors, in the unit of the errors; every figure but count is NaN without
+/// Statistics of signed errors, in the unit of the errors; all fields but count are NaN without
 /// errors. Percentiles interpolate linearly between the two nearest ranks.
 struct ErrorFigures {
     double median_abs = 0.0;
@@ -24,23 +24,23 @@ struct ErrorFigures {
 /// NaN errors are left out.
 [[nodiscard]] ErrorFigures error_figures(std::span<const float> errors);
 
-/// The errors whose key is in [from, to); the last bin holds its upper end too.
+/// Errors whose key is in [from, to); the last bin includes its upper end.
 struct ErrorBin {
     double from = 0.0;
     double to = 0.0;
     ErrorFigures errors;
-    ErrorHistogram histogram;  ///< of the same errors, to be added up over many maps
+    ErrorHistogram histogram;  ///< of the same errors, to add up over many maps
 };
 
-/// Errors sorted into bins by a second quantity: by distance, by image column. `keys` has one key
-/// per error; `edges` ascends strictly and makes edges.size() - 1 bins, empty ones included. An
-/// error that is NaN, or whose key is NaN or outside all bins, is left out.
+/// Sorts errors into bins by a second quantity, for example distance or image column. `keys` has
+/// one key per error. `edges` increases strictly and makes edges.size() - 1 bins, empty bins
+/// included. An error that is NaN, or whose key is NaN or outside all bins, is left out.
 [[nodiscard]] std::vector<ErrorBin> by_bins(std::span<const float> errors,
                                             std::span<const float> keys,
                                             std::span<const double> edges);
 
-/// How often the truth lies within one, two and three sigma: shares 0..1, NaN without errors. An
-/// honest normal sigma gives 0.683, 0.954, 0.997.
+/// Share of the errors within one, two and three sigma: 0..1, NaN without errors. A calibrated
+/// normal sigma gives 0.683, 0.954, 0.997.
 struct SigmaCoverage {
     double within_1_sigma = 0.0;
     double within_2_sigma = 0.0;
@@ -48,8 +48,8 @@ struct SigmaCoverage {
     std::int64_t count = 0;
 };
 
-/// Share of |error| <= k sigma. Left out: errors that are NaN, and sigmas that are not finite or
-/// negative. A sigma of 0 counts, and covers an error of 0 alone.
+/// Share of |error| <= k sigma. Leaves out NaN errors and sigmas that are not finite or negative. A
+/// sigma of 0 counts, and covers only an error of 0.
 [[nodiscard]] SigmaCoverage sigma_coverage(std::span<const float> errors,
                                            std::span<const float> sigmas);
 

@@ -6,17 +6,17 @@
 
 namespace surefoot::eval {
 
-/// How many |errors| are how large, so that percentiles over many maps together can be told without
-/// keeping every error. Bins grow by a tenth, which is the resolution of `percentile`; adding up
-/// histograms is exact and does not depend on the order. Errors in m.
+/// Histogram of |error|, for percentiles over many maps without keeping every error. Each bin is a
+/// tenth wider than the previous bin; this is the resolution of `percentile`. Adding histograms is
+/// exact and does not depend on the order. Errors in m.
 class ErrorHistogram {
   public:
-    /// Up to 0.1 mm, then 97 bins up to 1.04 m, then everything above.
+    /// Up to 0.1 mm, then 97 bins up to 1.04 m, then one bin for all larger errors.
     static constexpr int kBins = 99;
     static constexpr double kFirstEdge_m = 1e-4;
     static constexpr double kGrowth = 1.1;
 
-    /// NaN is left out.
+    /// Ignores NaN.
     void add(double error_m);
     /// `bin` in [0, kBins).
     void add_count(int bin, std::int64_t count);
@@ -26,8 +26,8 @@ class ErrorHistogram {
     [[nodiscard]] std::int64_t count_in(int bin) const {
         return counts_[static_cast<std::size_t>(bin)];
     }
-    /// |error| below which `fraction` (0..1) of all lie, linear within its bin; NaN without errors.
-    /// What is in the last bin counts as its lower end.
+    /// The |error| below which `fraction` (0..1) of all errors lie, linear within its bin; NaN
+    /// without errors. An error in the last bin counts as the lower end of that bin.
     [[nodiscard]] double percentile(double fraction) const;
 
     friend bool operator==(const ErrorHistogram&, const ErrorHistogram&) = default;

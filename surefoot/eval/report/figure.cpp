@@ -69,7 +69,7 @@ void draw_bar_ticks(Figure& figure, const ColorBar& bar, const RectPx& rect) {
               text_style(TextAnchor::left, palette::kSoftInk));
 }
 
-/// A pointed end says that values beyond the bar exist and share its last colour.
+/// A pointed end means that values beyond the bar exist and share its last colour.
 void draw_pointed_ends(Figure& figure, const ColorBar& bar, const RectPx& rect) {
     const auto point = [&](double base_v, double tip_v, double value) {
         const std::array<PointPx, 3> triangle = {PointPx{rect.left - 0.5, base_v},
@@ -129,7 +129,7 @@ void draw_words(Figure& figure, const ColorBar& bar, const RectPx& rect) {
 }
 
 PointPx along(PointPx center, PointPx direction, double forward_px, double left_px) {
-    // Left of a direction on a picture whose rows grow downward.
+    // Left of a direction; picture rows grow downward.
     return {center.u + forward_px * direction.u + left_px * direction.v,
             center.v + forward_px * direction.v - left_px * direction.u};
 }

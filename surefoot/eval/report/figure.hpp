@@ -24,7 +24,7 @@ inline constexpr int kMinBodyHeight_px = 420;
 inline constexpr int kMinPictureWidth_px = 900;
 }  // namespace layout
 
-/// A white sheet: title on top, the plot, and a column for legends to its right.
+/// A white sheet: title on top, the plot, and a legend column to its right.
 struct Figure {
     Picture picture;
     RectPx plot;
@@ -35,20 +35,20 @@ struct FigureText {
     std::string title;
     std::string subtitle;  ///< may be empty
 };
-/// Room [px] for legends; width 0 = no column.
+/// Room [px] for legends; width 0 = no legend column.
 struct ColumnSize {
     int width_px = 0;
     int height_px = 0;
 };
-/// `with_axes` leaves room for tick labels left of and below the plot; a plot lower than the column
-/// is centred beside it.
+/// `with_axes` leaves room for tick labels left of and below the plot. A plot that is lower than
+/// the legend column is centred beside it.
 [[nodiscard]] Figure make_figure(int plot_width_px,
                                  int plot_height_px,
                                  bool with_axes,
                                  const ColumnSize& column,
                                  const FigureText& text);
 
-/// `text` shortened with "..." until it is at most `width_px` wide.
+/// Shortens `text` with "..." until it is at most `width_px` wide.
 [[nodiscard]] std::string fitted_text(const std::string& text,
                                       const TextStyle& style,
                                       double width_px);
@@ -62,13 +62,13 @@ struct SecondScale {
 struct ColorBar {
     ColorScale scale;
     std::string unit;
-    bool clipped_low = false;  ///< values below the bar exist: its end is drawn pointed
+    bool clipped_low = false;  ///< values below the bar exist: its end is pointed
     bool clipped_high = false;
     std::optional<SecondScale> second;
     std::string low_word;  ///< beside the part below the centre, e.g. "unsafe"
     std::string high_word;
 };
-/// Draws the bar at the top of the column; returns the row [px] below it.
+/// Draws the bar at the top of the legend column; returns the row [px] below it.
 int draw_color_bar(Figure& figure, const ColorBar& bar, int key_rows);
 
 enum class Symbol : std::uint8_t { hatch, body, line, ticked_line, outline, mark, square, none };
@@ -78,15 +78,15 @@ struct KeyEntry {
     std::string label;
     std::optional<Rgb8> dot = {};  ///< Symbol::square: a dot of another colour inside
 };
-/// Draws entries from row `top_px` downward in the column.
+/// Draws legend entries from row `top_px` downward in the legend column.
 void draw_key(Figure& figure, int top_px, const std::vector<KeyEntry>& entries);
 enum class BarKind : std::uint8_t { none, one_scale, two_scales };
-/// The smallest column that holds a colour bar and the key below it.
+/// The smallest legend column for a colour bar and the legend entries below it.
 [[nodiscard]] ColumnSize column_size(const std::vector<KeyEntry>& entries, BarKind bar);
 
-/// Arrow head at `center` that points along `direction` (picture axes, unit length).
+/// Draws an arrow head at `center` along `direction` (picture axes, unit length).
 void draw_body_symbol(Picture& picture, PointPx center, PointPx direction, double size_px);
-/// Circle with a cross and a white edge.
+/// Draws a circle with a cross and a white edge.
 void draw_mark_symbol(Picture& picture, PointPx center);
 
 }  // namespace surefoot::eval

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kReasonCount = static_cast<int>(HealthReason::imu_gap) + 1;
 
-/// Digits in groups of three, apart by a narrow space.
+/// Formats digits in groups of three with a narrow space between them.
 std::string grouped(std::int64_t number) {
     std::string digits = fmt::format("{}", number);
     for (std::size_t k = digits.size(); k > 3;) {
@@ -23,7 +23,7 @@ std::string grouped(std::int64_t number) {
     return digits;
 }
 
-/// A reason as words.
+/// Formats a reason as words.
 std::string words(HealthReason reason) {
     std::string name = to_string(reason);
     std::replace(name.begin(), name.end(), '_', ' ');
@@ -55,7 +55,7 @@ void add_health(ReportContent& content, std::span<const FrameReport> frames) {
         content.health.push_back({time_s, frame.motion.health, frame.motion.reason});
         ++counts[static_cast<std::size_t>(frame.motion.reason)];
     }
-    ReportTable table{"What was said of the motion estimate", {"reason", "frames"}, {}};
+    ReportTable table{"Messages about the motion estimate", {"reason", "frames"}, {}};
     for (int reason = 1; reason < kReasonCount; ++reason) {
         const int count = counts[static_cast<std::size_t>(reason)];
         if (count == 0) continue;
@@ -65,8 +65,8 @@ void add_health(ReportContent& content, std::span<const FrameReport> frames) {
     const int blind = counts[static_cast<std::size_t>(HealthReason::imu_gap)];
     if (blind > 0)
         content.reasons.push_back(fmt::format(
-            "In {} of {} frames samples of the IMU were missing or useless: the motion there comes "
-            "from the images alone, and would be lost at once with them.",
+            "In {} of {} frames IMU samples were missing or unusable. The motion in these frames "
+            "comes from the images alone; if the images fail too, tracking is lost at once.",
             blind,
             frames.size()));
 }
@@ -83,7 +83,7 @@ void add_counts(ReportContent& content, std::span<const FrameReport> frames) {
     for (const FrameReport& frame : frames) sum += frame.fusion;
     const std::int64_t n = sum.points;
     if (n > 0) {
-        content.bars.push_back({"What happened to the depth points",
+        content.bars.push_back({"Depth points by outcome",
                                 {bar_of("offered", n, n),
                                  bar_of("too near or too far", sum.gated_range, n),
                                  bar_of("too high or too low", sum.gated_height, n),
@@ -94,7 +94,7 @@ void add_counts(ReportContent& content, std::span<const FrameReport> frames) {
     }
     const std::int64_t m = sum.cells_measured;
     if (m > 0) {
-        content.bars.push_back({"What happened to the measured cells",
+        content.bars.push_back({"Measured cells by outcome",
                                 {bar_of("measured", m, m),
                                  bar_of("new", sum.cells_new, m),
                                  bar_of("agreed, fused", sum.cells_fused, m),

@@ -17,19 +17,19 @@ struct ReportPicture {
     bool wide = false;  ///< takes the whole width of the page
 };
 
-/// One number to remember.
+/// A highlighted number.
 struct KeyFigure {
     std::string label;
     std::string value;
     std::string unit;
-    std::string note;  ///< small, below; may be empty
+    std::string note;  ///< small text below; may be empty
 };
 
 struct ReportTable {
     std::string title;
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;
-    std::string hint = {};  ///< small, below
+    std::string hint = {};  ///< small text below
     bool wide = false;      ///< takes the whole width of the page
     bool folded = false;    ///< only its title is shown until the reader opens it
 };
@@ -38,21 +38,21 @@ struct ReportTable {
 struct ReportPlot {
     std::string title;
     std::string svg;
-    std::string hint = {};  ///< small, below
+    std::string hint = {};  ///< small text below
 };
 
-/// Amounts of one kind beside each other.
+/// Bars that compare quantities of one kind.
 struct ReportBars {
     struct Bar {
         std::string label;
         double value = 0.0;  ///< length; >= 0
-        std::string text;    ///< what is written beside it
+        std::string text;    ///< text beside the bar
     };
     std::string title;
     std::vector<Bar> bars;
 };
 
-/// A part of the page about one thing.
+/// A section of the page.
 struct ReportSection {
     std::string title;
     std::vector<ReportPicture> pictures;
@@ -60,38 +60,38 @@ struct ReportSection {
     std::string note = {};  ///< under them
 };
 
-/// Everything that a report shows, in the order of the page. Empty parts are left out.
+/// Contents of a report, in the order of the page. Empty parts are left out.
 struct ReportContent {
     std::string title;
     std::vector<std::string> summary;  ///< one sentence per line
     std::vector<ReportPicture> pictures;
     std::vector<ReportSection> sections;  ///< after the pictures
     std::vector<KeyFigure> figures;
-    std::vector<std::string> reasons;  ///< why something is missing or refused, in words
+    std::vector<std::string> reasons;  ///< why a part is missing or refused, in words
     std::vector<StageTiming> stages;
-    std::vector<double> frame_ms;  ///< all stages of one frame
+    std::vector<double> frame_ms;  ///< total time of all stages of each frame
     double frame_limit_ms = 0.0;   ///< time between frames; 0 = none
     std::vector<HealthSample> health;
     std::string plots_title = "Errors";
     std::vector<ReportPlot> plots;
     std::string thumbnails_title = "Pictures";
     std::vector<ReportPicture> thumbnails;  ///< small, many in a row
-    std::string details_title = "Counts";   ///< over bars and tables
+    std::string details_title = "Counts";   ///< title above bars and tables
     std::vector<ReportBars> bars;
     std::vector<ReportTable> tables;
-    ReportTable configuration;  ///< what the run really used
+    ReportTable configuration;  ///< configuration that the run used
     std::string footer;
 };
 
-/// Adds what the frames of a run tell: stage and frame times, health, where the points went, and
-/// the table of the health reasons.
+/// Adds statistics of the frames of a run: stage and frame times, health, number of points per
+/// stage, and a table of the health reasons.
 void add_frames(ReportContent& content, std::span<const FrameReport> frames);
 
-/// One self-contained HTML page: pictures inside, no script, nothing from outside; light or dark as
-/// the reader's system, and printable. All texts are escaped.
+/// Renders one self-contained HTML page: embedded pictures, no script, no external resource. It
+/// follows the reader's light or dark mode and is printable. All texts are escaped.
 [[nodiscard]] std::string render_html(const ReportContent& content);
 
-/// RFC 4648 with padding.
+/// Base64 of RFC 4648 with padding.
 [[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace surefoot::eval

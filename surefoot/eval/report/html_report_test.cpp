@@ -17,7 +17,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
     return count;
 }
 
-/// The first thing that is wrong with the nesting of tags and the use of '<' and '&', or nothing.
+/// First error in the nesting of tags or in the use of '<' and '&'; no value if there is none.
 std::string structure_problem(const std::string& html) {
     static const std::set<std::string> kVoid = {
         "meta", "img", "rect", "line", "polyline", "!DOCTYPE"};
@@ -242,7 +242,7 @@ TEST(HtmlReport, EveryReasonOfTheMotionIsCountedAndAGapOfTheImuIsExplained) {
         {"first frame", "1"}, {"blur", "1"}, {"imu gap", "3"}};
     EXPECT_EQ(content.tables[0].rows, rows);
     ASSERT_EQ(content.reasons.size(), 1u);
-    EXPECT_NE(content.reasons[0].find("In 3 of 20 frames samples of the IMU"), std::string::npos)
+    EXPECT_NE(content.reasons[0].find("In 3 of 20 frames IMU samples"), std::string::npos)
         << content.reasons[0];
 }
 

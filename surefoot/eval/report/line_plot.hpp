@@ -6,7 +6,7 @@
 
 namespace surefoot::eval {
 
-/// Lines over a quantity, both axes from 0, as an SVG that stands alone and fits into a report.
+/// Lines over a quantity, both axes from 0; a standalone SVG that also fits into a report.
 struct LinePlot {
     struct Point {
         double x = 0.0;
@@ -14,16 +14,16 @@ struct LinePlot {
     };
     struct Line {
         std::string label;
-        std::vector<Point> points;  ///< ascending in x; one that is not finite interrupts the line
-        bool dashed = false;        ///< what others found
+        std::vector<Point> points;  ///< ascending in x; a non-finite point interrupts the line
+        bool dashed = false;        ///< results of other authors
     };
     std::string title;
     std::string x_label;  ///< with their units
     std::string y_label;
-    std::vector<Line> lines;  ///< kColours at most
+    std::vector<Line> lines;  ///< at most kColours
     static constexpr std::size_t kColours = 5;
 };
-/// Empty string when no line has a finite point.
+/// Returns an empty string if no line has a finite point.
 [[nodiscard]] std::string line_plot_svg(const LinePlot& plot);
 
 }  // namespace surefoot::eval

@@ -17,7 +17,7 @@ constexpr double kWantedSide_px = 800.0;
 constexpr double kLargestSide_px = 1600.0;
 constexpr int kConfusionCell_px = 3;  ///< a dot and its surrounding need this
 
-/// Whole pixels per cell when the map fits, otherwise a fraction that makes it fit.
+/// Whole pixels per cell if the map fits, otherwise the fraction that makes it fit.
 double px_per_cell(const grid::GridGeometry& geometry, int smallest_px) {
     const double longest = std::max({geometry.nx, geometry.ny, 1});
     if (longest > kLargestSide_px) return kLargestSide_px / longest;
@@ -76,8 +76,8 @@ void draw_note(Picture& picture, const RectPx& plot, const std::string& note) {
 struct CallColors {
     Rgb8 ground;
     Rgb8 dot;
-    double dot_share =
-        0.0;  ///< of the cell's side; errors are larger than hits so that few still show
+    double dot_share = 0.0;  ///< share of the cell's side; errors are larger than hits, so that few
+                             ///< errors stay visible
 };
 
 CallColors colors_of(Call call) {

@@ -13,12 +13,12 @@ constexpr int kHeight_px = 400;
 constexpr int kTickLength_px = 6;
 constexpr double kShowMetresFrom_m = 1.0;
 
-/// Where a time and an error lie on the plot; the error axis begins at 0.
+/// Position of a time and an error on the plot; the error axis begins at 0.
 struct Axes {
     RectPx plot;
     double start_s = 0.0;
     double end_s = 1.0;
-    double top = 1.0;  ///< in the unit that is shown
+    double top = 1.0;  ///< in the displayed unit
     double per_m = 1e3;
 
     [[nodiscard]] PointPx to_px(double time_s, double error_m) const {

@@ -8,7 +8,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// A few wild values must not flatten the colours of all others.
+/// A few outliers must not flatten the colours of all other values.
 constexpr double kLowShare = 0.01;
 constexpr double kHighShare = 0.99;
 constexpr double kSmallestRelativeSpan = 1e-6;

@@ -6,10 +6,10 @@
 
 namespace surefoot::eval {
 
-/// At least one finite value.
+/// Whether there is a finite value.
 [[nodiscard]] bool any_known(const Image<float>& values);
 
-/// The legend of `values` drawn in a style: range, clipping, words.
+/// The legend of `values` in a style: range, clipping, words.
 [[nodiscard]] ColorBar color_bar_of(const Image<float>& values, const LayerStyle& style);
 
 }  // namespace surefoot::eval

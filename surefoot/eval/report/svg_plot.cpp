@@ -72,7 +72,7 @@ std::string x_axis(
     return body + text_at(0.5 * (left + right), bottom + 38.0, "label", "middle", unit);
 }
 
-/// Neighbours merged to their largest value, so that a spike is never lost.
+/// Merges neighbours to their largest value, so that a spike is never lost.
 std::vector<double> largest_of_groups(const std::vector<double>& values, std::size_t most) {
     const std::size_t group = (values.size() + most - 1) / most;
     std::vector<double> merged;
@@ -315,7 +315,7 @@ std::string health_svg(const std::vector<HealthSample>& samples) {
 
 std::string bin_plot_svg(const BinPlot& plot) {
     double largest = 0.0;
-    std::size_t first = plot.edges.size();  // bins in which anything is
+    std::size_t first = plot.edges.size();  // first and last bin with a value
     std::size_t end = 0;
     for (const BinPlot::Line& line : plot.lines) {
         SUREFOOT_ASSERT(line.values.size() + 1 == plot.edges.size());

@@ -8,7 +8,7 @@
 
 namespace surefoot::eval {
 
-/// Wall times of one stage in the frames where it ran [ms].
+/// Wall times of one stage in the frames in which it ran [ms].
 struct StageTiming {
     std::string name;
     std::vector<double> ms;
@@ -20,38 +20,38 @@ struct HealthSample {
     HealthReason reason = HealthReason::none;
 };
 
-/// `text` with the five characters that mean something in HTML and SVG replaced, and control
-/// characters that XML forbids turned into spaces.
+/// Escapes `text` for HTML and SVG: replaces the five special characters, and turns control
+/// characters that XML forbids into spaces.
 [[nodiscard]] std::string escaped(const std::string& text);
 
-/// Inline SVG drawings without script or outside resource; colours come from the page's style sheet
-/// (classes axis, label, value, median, tail, line, second, limit, ok, degraded, lost).
+/// Inline SVG drawings without script or external resource. Colours come from the page's style
+/// sheet (classes axis, label, value, median, tail, line, second, limit, ok, degraded, lost).
 
 /// One bar per stage: solid to the median, thin to the 99th percentile. Stages without samples are
-/// left out; an empty string when none is left.
+/// left out. Returns an empty string if no stage has samples.
 [[nodiscard]] std::string stage_bars_svg(const std::vector<StageTiming>& stages);
 
-/// Time of each frame, the largest of neighbouring frames where there are more than pixels.
-/// `limit_ms` > 0 is drawn as a line. Empty string for fewer than two frames.
+/// Time of each frame; for more frames than pixels, the largest time of neighbouring frames. Draws
+/// `limit_ms` > 0 as a line. Returns an empty string for fewer than two frames.
 [[nodiscard]] std::string frame_times_svg(const std::vector<double>& frame_ms, double limit_ms);
 
-/// Health over time as a coloured band with its legend; samples in time order. Empty string without
-/// samples.
+/// Health over time as a coloured band with its legend; samples in time order. Returns an empty
+/// string without samples.
 [[nodiscard]] std::string health_svg(const std::vector<HealthSample>& samples);
 
-/// Figures over bins of a quantity, as lines with a mark in the middle of each bin.
+/// Values over bins of a quantity: lines with a mark in the middle of each bin.
 struct BinPlot {
     struct Line {
         std::string label;
-        std::vector<double> values;  ///< one per bin; NaN = nothing there, the line has a gap
+        std::vector<double> values;  ///< one per bin; NaN = no value, the line has a gap
     };
     std::string x_label;        ///< with its unit
     std::string unit;           ///< of the values
-    std::vector<double> edges;  ///< of the bins, ascending; one more than there are values
-    std::vector<Line> lines;    ///< two at most
+    std::vector<double> edges;  ///< bin edges, ascending; one more than values
+    std::vector<Line> lines;    ///< at most two
     double high = 0.0;          ///< upper end of the y axis; 0 = just above the largest value
 };
-/// Empty string when no line has a value.
+/// Returns an empty string if no line has a value.
 [[nodiscard]] std::string bin_plot_svg(const BinPlot& plot);
 
 }  // namespace surefoot::eval

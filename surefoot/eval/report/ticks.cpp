@@ -11,7 +11,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Rounding of a quotient of two doubles: a bound that lies on a tick keeps its tick.
+/// Rounding error of a quotient of two doubles: a bound on a tick keeps its tick.
 constexpr double kRounding = 1e-9;
 
 }  // namespace

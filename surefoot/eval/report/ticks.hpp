@@ -10,7 +10,7 @@ namespace surefoot::eval {
 struct Ticks {
     std::vector<double> values;  ///< ascending, within the range
     double step = 1.0;
-    int decimals = 0;  ///< enough to tell neighbours apart
+    int decimals = 0;  ///< enough to distinguish neighbours
     [[nodiscard]] std::string label(double value) const;
 };
 

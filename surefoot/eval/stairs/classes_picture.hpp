@@ -6,13 +6,13 @@
 
 namespace surefoot::eval {
 
-/// Colour of a class, told apart by everybody: hues of Okabe and Ito (2008), neighbours on the
-/// ground (floor, kerb, drop; tread, riser) far apart in lightness too. What is dangerous is warm,
-/// what stands is dark. Unknown has none: it is hatched.
+/// Colour of a class, for all common kinds of colour vision: hues of Okabe and Ito (2008); classes
+/// that meet on the ground (floor, kerb, drop; tread, riser) also differ in lightness. Danger is
+/// warm, standing objects are dark. Unknown has no colour: it is hatched.
 [[nodiscard]] Rgb8 color_of(stairs::GroundClass name);
 
-/// What the ground is, cell by cell, with the area of each class that there is. Shown is what is
-/// known, and what the overlays name, with some cells around it.
+/// Draws the ground class of each cell, with the area of each class in the legend. Shows the known
+/// cells and the overlays, with some cells around them.
 [[nodiscard]] Picture render_classes(const grid::GridGeometry& geometry,
                                      const grid::Layer& height_m,
                                      const stairs::GroundClasses& classes,

@@ -15,12 +15,12 @@ namespace {
 
 using stairs::FeaturePose;
 
-/// What all kinds are compared by.
+/// Common properties for the comparison of all kinds of features.
 struct Placed {
     FeaturePose pose;
     double height_m = 0.0;
-    bool down = false;     ///< leads down: matched with those alone that do too
-    bool two_way = false;  ///< means the same with its pose turned round
+    bool down = false;     ///< leads down: matches only features that lead down too
+    bool two_way = false;  ///< has the same meaning with its pose turned by 180 deg
 };
 
 struct Pair {
@@ -36,7 +36,7 @@ double turn_between(const Placed& found, const Placed& truth) {
     return truth.two_way ? std::min(turn, std::numbers::pi - turn) : turn;
 }
 
-/// Pairs that may be, nearest first.
+/// Possible pairs, nearest first.
 std::vector<Pair> candidates(const std::vector<Placed>& found,
                              const std::vector<Placed>& truth,
                              const FeatureMatch& match) {
@@ -85,7 +85,7 @@ MatchErrors figures_of(const std::vector<double>& all_m) {
     return figures;
 }
 
-/// Fills what all kinds have, and returns the pairs.
+/// Fills the fields that all kinds share, and returns the pairs.
 std::vector<Pair> compare(const std::vector<Placed>& found,
                           const std::vector<Placed>& truth,
                           const FeatureMatch& match,
@@ -140,7 +140,7 @@ std::vector<Placed> placed(const std::vector<Feature>& features, const AsPlaced&
     return out;
 }
 
-/// The height of a drop whose bottom was not seen is a bound, no measure.
+/// The height of a drop whose bottom was not observed is a lower bound, not a measurement.
 Placed of_line(const stairs::LineFeature& line) {
     return {line.pose,
             line.bottom_seen ? std::abs(line.height_m) : kNan,

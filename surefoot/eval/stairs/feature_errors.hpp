@@ -8,40 +8,40 @@
 
 namespace surefoot::eval {
 
-/// When something that was found is what the truth has: turned by at most so much, its middle off
-/// by at most so much across the line (along the way that leads over it) and along it.
+/// Limits for a match between a found and a true feature: rotation, and offset of the middle across
+/// the line (along the path over it) and along the line.
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
     double turn_deg = 20.0;
 };
 
-/// Found minus true, of matched pairs whose both values are known.
+/// Found minus true, for matched pairs whose two values are both known.
 struct MatchErrors {
     std::size_t count = 0;
-    double mean_m = 0.0;     ///< NaN without pairs, as the others
+    double mean_m = 0.0;     ///< NaN without pairs, as the other fields
     double std_m = 0.0;      ///< about the mean, divided by n
     double max_abs_m = 0.0;  ///< the largest
 };
 
-/// One kind of feature. Pairs are made nearest first, each feature in one pair at most.
+/// Errors of one kind of feature. Pairs are formed nearest first; a feature is in at most one pair.
 struct KindErrors {
     std::size_t truth = 0;
     std::size_t found = 0;
     std::size_t matched = 0;
-    std::vector<stairs::FeaturePose> missed;  ///< of the truth
-    std::vector<stairs::FeaturePose> extra;   ///< found where the truth has none
-    std::vector<std::size_t> missed_at;       ///< where in their lists they stand
+    std::vector<stairs::FeaturePose> missed;  ///< true features without a match
+    std::vector<stairs::FeaturePose> extra;   ///< found features without a match
+    std::vector<std::size_t> missed_at;       ///< indices of the missed features in their lists
     std::vector<std::size_t> extra_at;
-    MatchErrors across;  ///< of its place, along the way over it
+    MatchErrors across;  ///< of its position, along the path over it
     MatchErrors height;  ///< riser of flights; sill of doors
 
-    [[nodiscard]] double recall() const;     ///< NaN without a truth
-    [[nodiscard]] double precision() const;  ///< NaN without one found
+    [[nodiscard]] double recall() const;     ///< NaN without a true feature
+    [[nodiscard]] double precision() const;  ///< NaN without a found feature
 };
 
 struct FlightErrors : KindErrors {
-    std::size_t steps_right = 0;  ///< pairs of equal number of steps
+    std::size_t steps_right = 0;  ///< pairs with an equal number of steps
     MatchErrors going;
     MatchErrors width;
 };
@@ -51,15 +51,15 @@ struct DoorErrors : KindErrors {
 };
 
 struct FeatureErrors {
-    FlightErrors flights;  ///< up and down are never one
+    FlightErrors flights;  ///< an upward flight never matches a downward flight
     KindErrors drops;
     KindErrors kerbs;
     KindErrors sills;
-    DoorErrors doors;  ///< also where one leads through the other way
-    KindErrors edges;  ///< all of them, the lower ground on the same side
+    DoorErrors doors;  ///< also matches the opposite direction of passage
+    KindErrors edges;  ///< all edges, matched with the lower ground on the same side
 };
 
-/// What was found against what is there, both in one frame.
+/// Compares found features with the truth, both in one frame.
 [[nodiscard]] FeatureErrors feature_errors(const stairs::TerrainFeatures& found,
                                            const stairs::TerrainFeatures& truth,
                                            const FeatureMatch& match);

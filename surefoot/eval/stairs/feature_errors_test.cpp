@@ -64,7 +64,8 @@ TEST(FeatureErrors, LimitsOfAMatch) {
     EXPECT_TRUE(matches(line_at(1.0, 0.0, -0.349, -0.2)));
     EXPECT_FALSE(matches(line_at(1.0, 0.0, 0.351, -0.2)));
     EXPECT_TRUE(matches(line_at(1.0, 0.0, 2.0 * std::numbers::pi, -0.2)));
-    // Up is not down, and over it from the other side is another thing.
+    // An upward flight does not match a downward one, and the opposite direction over a line is a
+    // different feature.
     EXPECT_FALSE(matches(line_at(1.0, 0.0, 0.0, 0.2)));
     EXPECT_FALSE(matches(line_at(1.0, 0.0, std::numbers::pi, -0.2)));
 }

@@ -19,7 +19,7 @@ using stairs::FlightKind;
 using stairs::LineFeature;
 
 constexpr int kStep_px = 5;
-constexpr int kDrop_px = 9;  ///< shows beside the first step of a flight that goes down
+constexpr int kDrop_px = 9;  ///< stays visible beside the first step of a flight that goes down
 constexpr int kThin_px = 3;
 constexpr std::size_t kFlightsInKey = 4;
 constexpr std::size_t kDoorsInKey = 4;
@@ -32,7 +32,7 @@ Rgb8 color_of(FlightKind kind) {
     return kind == FlightKind::up ? ground_palette::kUp : ground_palette::kDown;
 }
 
-/// A, B, C, ... as flights are named on the map; nothing for a single one, and for the 27th on.
+/// Name of a flight on the map: A, B, C, ...; empty for a single flight and from the 27th on.
 std::string name_of(std::size_t index, std::size_t count) {
     return count < 2 || index > 25 ? std::string() : std::string(1, static_cast<char>('A' + index));
 }
@@ -79,7 +79,8 @@ void add_lines(const std::vector<LineFeature>& lines,
     }
 }
 
-/// From before the first edge over the middles of all to behind the last, a turn included.
+/// The path along a flight: from before the first edge over the middles of all edges to behind the
+/// last one, a turn included.
 std::vector<Vector2d> way_along(const Flight& flight) {
     constexpr double kBefore_m = 0.30;
     constexpr double kBehind_m = 0.20;
@@ -93,7 +94,7 @@ std::vector<Vector2d> way_along(const Flight& flight) {
     return way;
 }
 
-/// Its steps with their numbers, and an arrow along it.
+/// Adds the numbered steps of a flight and an arrow along it.
 void add_flight(const Flight& flight,
                 const std::string& name,
                 const std::string& label,
@@ -106,8 +107,8 @@ void add_flight(const Flight& flight,
                                     .color = color,
                                     .width_px = kStep_px,
                                     .label = label});
-        // From one end to the other the lower ground is on the right hand: who walks up has the
-        // first end on the left.
+        // Along an edge the lower ground is on the right-hand side. For a person walking up, the
+        // first end is therefore on the left.
         const bool up = flight.kind == FlightKind::up;
         const Vector2d left_m = up ? edge.from_m : edge.to_m;
         const Vector2d right_m = up ? edge.to_m : edge.from_m;
@@ -155,7 +156,7 @@ void add_doors(const std::vector<stairs::Door>& doors, Overlays& overlays) {
     }
 }
 
-/// Edges that nothing else was made of.
+/// Adds edges that belong to no other feature.
 void add_other_edges(const stairs::TerrainFeatures& features, Overlays& overlays) {
     const auto is_line = [](const Edge& edge, const std::vector<LineFeature>& lines) {
         return std::any_of(lines.begin(), lines.end(), [&](const LineFeature& line) {
@@ -224,7 +225,7 @@ Picture render_features(const grid::GridGeometry& geometry,
     const grid::Layer part_m = shown.of(height_m, std::nanf(""));
     LayerStyle style = elevation_style();
     style.map = ColorMap::pale;
-    style.hill_shading = false;  // the lines say where it is steep
+    style.hill_shading = false;  // the lines mark steep ground
     style.text = text;
     return render_layer(shown.geometry, part_m, style, with_features(features, overlays));
 }

@@ -74,7 +74,7 @@ stairs::Flight flight_of(stairs::FlightKind kind) {
     for (int k = 0; k < 3; ++k) {
         stairs::Edge edge;
         const double x_m = 1.0 + 0.3 * k;
-        // The lower ground is on the right hand: behind one who walks up along x.
+        // The lower ground is on the right-hand side: behind a person who walks up along x.
         edge.from_m = {x_m, 0.5};
         edge.to_m = {x_m, -0.5};
         if (kind == stairs::FlightKind::down) std::swap(edge.from_m, edge.to_m);

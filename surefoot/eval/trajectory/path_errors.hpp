@@ -8,7 +8,7 @@
 
 namespace surefoot::eval {
 
-/// Relative errors over stretches of one length; NaN where no stretch has it.
+/// Relative errors over path stretches of one length; NaN if no stretch has this length.
 struct PathError {
     double length_m = 0.0;
     double trans_rmse_m = 0.0;
@@ -20,12 +20,12 @@ struct PathError {
 /// Lengths that matter for a step (0.1, 0.5 m), a manoeuvre (1, 2 m) and a room (5 m).
 inline const std::vector<double> kPathLengths_m = {0.1, 0.5, 1.0, 2.0, 5.0};
 
-/// Relative pose errors over path lengths (Sturm et al. 2012, over metres instead of seconds).
-/// From every matched pose a stretch reaches to the later one whose true path from it is nearest to
-/// `length_m` (of equals the earliest), if that is off by at most a tenth of the length. These are
-/// evo's rules for `evo_rpe --delta M --delta_unit m --all_pairs --pairs_from_reference` with its
-/// usual tolerance; the error of a stretch is relative_error, so no alignment plays a part.
-/// `pairs`: as TrajectoryErrors has them. Lengths must be above 0.
+/// Relative pose errors over path lengths (Sturm et al. 2012, over metres instead of seconds). From
+/// every matched pose a stretch reaches to the later pose whose true path length from it is nearest
+/// to `length_m` (ties: the earliest), if the difference is at most a tenth of the length. evo uses
+/// the same rules for `evo_rpe --delta M --delta_unit m --all_pairs --pairs_from_reference` with
+/// its usual tolerance. The error of a stretch is relative_error, so that alignment has no effect.
+/// `pairs`: as in TrajectoryErrors. Lengths must be above 0.
 [[nodiscard]] std::vector<PathError> errors_over_path(const Trajectory& estimate,
                                                       const Trajectory& truth,
                                                       const std::vector<PosePair>& pairs,

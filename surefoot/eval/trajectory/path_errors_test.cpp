@@ -71,7 +71,7 @@ TEST(PathErrors, TurningIsFoundPerLength) {
     EXPECT_TRUE(std::isnan(errors[2].trans_percent));
 }
 
-/// The rule, word by word: all later poses are tried.
+/// Reference implementation of the rule: tries all later poses.
 std::vector<PosePair> stretches_slowly(const Trajectory& truth, double length_m) {
     std::vector<PosePair> found;
     for (std::size_t i = 0; i < truth.size(); ++i) {

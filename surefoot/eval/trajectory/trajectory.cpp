@@ -191,7 +191,8 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
 
 void EvalTrajectoryConfig::describe(ConfigVisitor& visitor) {
     static constexpr std::array<const char*, 3> kNames = {"se3", "yaw", "none"};
-    visitor.enumeration("align", align, kNames, "motion taken away before positions are compared");
+    visitor.enumeration(
+        "align", align, kNames, "transformation removed before positions are compared");
     visitor.number("tolerance_s", tolerance_s, 0.0, 10.0, "largest time between matched poses");
     visitor.number(
         "rpe_interval_s",

@@ -11,7 +11,7 @@
 
 namespace surefoot::eval {
 
-/// The motion of the estimate's world frame that is taken away before positions are compared.
+/// Transformation of the estimate's world frame that is removed before positions are compared.
 enum class Alignment : std::uint8_t {
     se3,   ///< rotation and translation (Umeyama 1991, without scale)
     yaw,   ///< translation and rotation about z: both world frames have z up
@@ -25,7 +25,7 @@ struct EvalTrajectoryConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// An estimated pose and its true pose, as positions in the two trajectories.
+/// An estimated pose and its true pose, as indices in the two trajectories.
 struct PosePair {
     std::size_t estimate = 0;
     std::size_t truth = 0;
@@ -39,13 +39,13 @@ struct PosePair {
                                               double tolerance_s);
 
 /// T_truth_estimate that brings the columns of `estimate_m` closest to those of `truth_m` (least
-/// squares; columns correspond). Where the points leave a rotation open any best one is returned.
+/// squares; columns correspond). If the points leave a rotation open, it returns any best one.
 [[nodiscard]] Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
                                    const Eigen::Matrix3Xd& truth_m,
                                    Alignment align);
 
-/// How much the estimated motion from pair a to pair b differs from the true one:
-/// (Q_a^-1 Q_b)^-1 (P_a^-1 P_b) with P estimated and Q true.
+/// Difference between the estimated and the true motion from pair a to pair b: (Q_a^-1 Q_b)^-1
+/// (P_a^-1 P_b) with P estimated and Q true.
 [[nodiscard]] Pose relative_error(const Trajectory& estimate,
                                   const Trajectory& truth,
                                   const PosePair& a,
@@ -56,8 +56,8 @@ struct TrajectoryErrors {
     double ate_rmse_m = 0.0;        ///< positions after alignment
     double rpe_trans_rmse_m = 0.0;  ///< of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), any alignment
     double rpe_rot_rmse_deg = 0.0;
-    /// 100 |t| / path length, t = error of the motion from the first to the last matched pose. It
-    /// needs no alignment. NaN when the true path is shorter than 1 mm.
+    /// 100 |t| / path length; t = error of the motion from the first to the last matched pose,
+    /// which needs no alignment. NaN if the true path is shorter than 1 mm.
     double drift_percent = 0.0;
     int matched = 0;
     double path_length_m = 0.0;  ///< of the matched true positions
@@ -67,14 +67,14 @@ struct TrajectoryErrors {
     std::vector<double> position_error_m;  ///< per pair, after alignment
 };
 
-/// Compares an estimated trajectory with the truth; both give poses of the same body. Truth without
-/// stamps (KITTI) gets the estimate's stamps from the caller.
-/// Errors: a pose that is not finite; too few poses that match in time (3 for se3, otherwise 2).
+/// Compares an estimated trajectory with the truth; both give poses of the same body. If the truth
+/// has no stamps (KITTI), the caller assigns the estimate's stamps first. Errors: a pose that is
+/// not finite; too few poses that match in time (3 for se3, otherwise 2).
 [[nodiscard]] Result<TrajectoryErrors> evaluate_trajectory(const Trajectory& estimate,
                                                            const Trajectory& truth,
                                                            const EvalTrajectoryConfig& config);
 
-/// Every pose moved into the truth's world: T_truth_estimate * T_estimate_body.
+/// Moves every pose into the truth's world: T_truth_estimate * T_estimate_body.
 [[nodiscard]] Trajectory transformed(const Pose& T_truth_estimate, const Trajectory& estimate);
 
 }  // namespace surefoot::eval

@@ -45,7 +45,7 @@ double sum_sq(const Pose& T, const Eigen::Matrix3Xd& estimate, const Eigen::Matr
     return sum;
 }
 
-/// The definition, word by word: take the closest pair of all that are left, again and again.
+/// Reference implementation: takes the closest pair of all remaining pairs, again and again.
 std::vector<PosePair> associate_slowly(const Trajectory& estimate,
                                        const Trajectory& truth,
                                        std::int64_t tolerance_ns) {

@@ -19,7 +19,7 @@ constexpr const char* kReadFormats =
     "ORB-SLAM2/3 stereo settings, ZED SN*.conf, KITTI calib.txt and calib_cam_to_cam.txt, "
     "Middlebury calib.txt, and EuRoC folders";
 
-/// A text file is recognised by its head; the rest may be long.
+/// Number of first lines that are searched for a format; files can be long.
 constexpr int kHeadLines = 200;
 
 bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {
@@ -47,7 +47,8 @@ bool any_key_starts_with(const YamlNode& root, std::initializer_list<const char*
     });
 }
 
-/// "P0: 7.2e+02 0 ...": numbers behind the colon. OpenCV's files have a "P1: !!opencv-matrix".
+/// A line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes "P1:
+/// !!opencv-matrix".
 bool is_kitti_line(std::string_view line) {
     if (line.size() < 3 || line[0] != 'P' || line[1] < '0' || line[1] > '3' || line[2] != ':')
         return false;
@@ -55,8 +56,8 @@ bool is_kitti_line(std::string_view line) {
     return !words.empty() && parse_double(words[0]).has_value();
 }
 
-/// The lines of a file of camera_calibration_parsers, or of a sensor_msgs/CameraInfo that was
-/// printed (ROS 1 writes K, ROS 2 writes k).
+/// Whether the document is a file of camera_calibration_parsers or a printed sensor_msgs/CameraInfo
+/// (ROS 1 writes K, ROS 2 writes k).
 bool is_ros(const YamlNode& root) {
     if (has_any(root, {"camera_matrix"}) &&
         has_any(root, {"projection_matrix", "rectification_matrix", "camera_name"}))
@@ -71,7 +72,7 @@ bool is_surefoot(const YamlNode& root) {
     return has_group_with(root, "left", {"focal_px", "principal_px", "coefficients"});
 }
 
-/// A rig.yaml whose important keys are missing or misspelt.
+/// Whether the document may be a rig.yaml whose important keys are missing or misspelled.
 bool may_be_surefoot(const YamlNode& root) {
     return count_of(
                root,
@@ -112,7 +113,7 @@ CalibrationKind kind_of_text(std::string_view text) {
             return CalibrationKind::middlebury;
         if (content.starts_with("delta_f:")) return CalibrationKind::kitti_sensors;
     }
-    // calib_imu_to_velo.txt: nothing but the time and a motion, as bare numbers.
+    // calib_imu_to_velo.txt holds only the time and a motion, as bare numbers.
     if (text.starts_with("calib_time:") && text.find("\nR: ") != text.npos)
         return CalibrationKind::kitti_sensors;
     return CalibrationKind::unknown;
@@ -219,7 +220,7 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
     }
     std::string listed;
     for (const std::string& key : keys) listed += (listed.empty() ? "" : ", ") + key;
-    return fmt::format("no calibration that is known here{}. Read are {}",
+    return fmt::format("not a known calibration format{}. Known formats: {}",
                        listed.empty() ? "" : fmt::format(" (its keys: {} ..)", listed),
                        kReadFormats);
 }

@@ -23,7 +23,7 @@ struct Entry {
     NamedNode named;
 };
 
-/// The keys of the document and of its groups. A matrix {rows, cols, data} is no group.
+/// The keys of the document and of its groups. A matrix {rows, cols, data} is not a group.
 std::vector<Entry> entries_of(const YamlNode& root) {
     std::vector<Entry> entries;
     for (const YamlNode& item : root.items) {
@@ -51,7 +51,7 @@ NamedNode find_first(const std::vector<Entry>& entries, std::initializer_list<co
     return {};
 }
 
-/// What tells the cameras apart in the names of a file.
+/// The parts of key names that mark the left and the right camera.
 struct Sides {
     const char* left;
     const char* right;
@@ -81,20 +81,21 @@ bool is_matrix(const NamedNode& named) {
            named.node->kind != YamlNode::Kind::null;
 }
 
-/// "K1" and "1K": what follows or leads the name of a matrix.
+/// Finds a matrix with the camera mark after or before its name: "K1" or "1K".
 NamedNode find_sided(const std::vector<Entry>& entries, const std::string& base, const char* side) {
     NamedNode found = find_name(entries, base + side);
     if (!is_matrix(found)) found = find_name(entries, side + base);
     return is_matrix(found) ? found : NamedNode{};
 }
 
-/// The first naming for which both cameras have the matrix; else the first that one camera has.
+/// Finds the first naming with the matrix of both cameras, else the first naming with the matrix of
+/// one camera.
 Pair find_pair(const std::vector<Entry>& entries,
                std::initializer_list<const char*> bases,
                const Sides* wanted) {
     Pair half;
     for (const Sides& sides : kSides) {
-        // D1 beside K0 and K1 is the right camera's: numbers must count alike.
+        // Numbering must be consistent: D1 beside K0 and K1 belongs to the right camera.
         if (wanted != nullptr && wanted->numbered && sides.numbered && wanted != &sides) continue;
         for (const char* base : bases) {
             Pair pair{find_sided(entries, base, sides.left),

@@ -63,7 +63,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         }
         return make_pinhole(k, coefficients);
     }
-    if (distortion == "rational_polynomial") {  // our extension, with the name that ROS gave it
+    if (distortion == "rational_polynomial") {  // our extension; the name is that of ROS
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
@@ -74,10 +74,11 @@ camera::CameraModel read_model(YamlReader& yaml) {
             yaml, *list, "distortion_coefficients", pinhole_lens(k, std::move(coefficients)));
     }
     if (distortion != "none" && distortion_node != nullptr) {
-        yaml.fail(*distortion_node,
-                  "distortion_model",
-                  quoted(distortion) +
-                      " is none of radial-tangential | rational_polynomial | equidistant | none");
+        yaml.fail(
+            *distortion_node,
+            "distortion_model",
+            quoted(distortion) +
+                " is not one of radial-tangential | rational_polynomial | equidistant | none");
     }
     return make_pinhole(k, {});
 }
@@ -135,7 +136,7 @@ std::string format_euroc_camera(const EurocCamera& camera) {
     const bool fisheye = is_kannala_brandt(camera.camera.model);
     const bool rational = is_rational(camera.camera.model);
     std::vector<double> coefficients = coefficients_of(camera.camera.model);
-    // Other readers know four coefficients; the fifth is written only where it is needed.
+    // Other readers accept four coefficients, so the fifth is written only if it is not 0.
     if (!fisheye && !rational && coefficients.back() == 0.0) coefficients.pop_back();
     std::string out = "sensor_type: camera\n" + format_sensor_pose(camera.T_body_camera);
     out += fmt::format(

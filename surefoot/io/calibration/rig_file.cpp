@@ -14,7 +14,8 @@
 namespace surefoot::io {
 namespace {
 
-/// OpenCV's sample writes intrinsics.yml and extrinsics.yml; together they are one calibration.
+/// Reads OpenCV calibrations. OpenCV's sample program writes one calibration as intrinsics.yml and
+/// extrinsics.yml.
 Result<RigFile> read_opencv(YamlNode root, const std::string& path, std::optional<ImageSize> size) {
     const std::string beside = join_path(folder_of(path), "extrinsics.yml");
     const OpenCvNames names = find_opencv_names(root);
@@ -60,7 +61,7 @@ Result<std::string> read_ros_text(const std::string& file) {
     const Result<YamlNode> root = parse_yaml(*text, file);
     if (!root) return root.error();
     const CalibrationKind kind = kind_of_document(*root);
-    // A document that is nothing known may be a damaged one: its own reader names the key.
+    // An unknown document may be a damaged ROS file; the ROS reader names the bad key.
     if (kind == CalibrationKind::ros || kind == CalibrationKind::unknown ||
         kind == CalibrationKind::opencv_camera)
         return text;
@@ -84,7 +85,7 @@ Result<RigFile> read_ros(const std::string& left_file) {
                          {std::move(right).value(), *right_file});
 }
 
-/// ROS's pair, a calibration under its usual name, or an EuRoC recording.
+/// Reads a folder: a ROS pair, a calibration under its usual name, or an EuRoC recording.
 Result<RigFile> read_folder(const std::string& path, std::optional<ImageSize> size) {
     const std::string left = join_path(path, "left.yaml");
     if (is_file(left)) return read_ros(left);
@@ -103,7 +104,7 @@ Result<RigFile> read_folder(const std::string& path, std::optional<ImageSize> si
                     path));
 }
 
-/// A YAML or JSON document of a recognised kind, but for the pairs of files.
+/// Parses a YAML or JSON document of a recognised kind, except formats with two files.
 Result<RigFile> parse_document(const YamlNode& root,
                                CalibrationKind kind,
                                const std::string& text,
@@ -121,7 +122,7 @@ Result<RigFile> parse_document(const YamlNode& root,
     }
 }
 
-/// A text that is not YAML; nothing where it may be.
+/// Parses a text format that is not YAML; no value if the text may be YAML.
 std::optional<Result<RigFile>> parse_other(const std::string& text,
                                            const std::string& file,
                                            std::optional<ImageSize> size) {
@@ -145,7 +146,7 @@ Result<YamlNode> parse_mapping(const std::string& text, const std::string& file)
     return input_error(fmt::format("{}: {}", file, why_no_rig(CalibrationKind::unknown, &*root)));
 }
 
-/// Into a folder as left.yaml and right.yaml, or beside each other.
+/// Writes left.yaml and right.yaml into a folder, or the two files beside each other.
 Result<std::vector<std::string>> write_ros(const std::string& path, const RosTexts& texts) {
     std::string left = path;
     if (extension_of(path) != ".yaml" && extension_of(path) != ".yml") {

@@ -14,7 +14,8 @@ namespace {
 using testing::contains;
 using testing::data_path;
 
-/// Printed doubles read back exactly; only turning a quaternion into a matrix and back rounds.
+/// Tolerance: printed doubles read back exactly; only the conversion of a quaternion to a matrix
+/// and back rounds.
 constexpr double kPoseRounding = 4e-15;
 
 std::string message(const Result<camera::StereoRig>& rig) {
@@ -127,8 +128,8 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     EXPECT_TRUE(
         contains(bad("baseline_m: 0.12\n", ""), "baseline_m: this key is missing; a camera"));
     EXPECT_TRUE(
-        contains(bad("[672, 376]", "[672, 0]"), "rig.yaml:2: resolution: 0 is no image side"));
-    EXPECT_TRUE(contains(bad("side_by_side", "stacked"), "is none of side_by_side"));
+        contains(bad("[672, 376]", "[672, 0]"), "rig.yaml:2: resolution: 0 is not an image side"));
+    EXPECT_TRUE(contains(bad("side_by_side", "stacked"), "is not one of side_by_side"));
     EXPECT_TRUE(contains(bad("none", "radtan"), "only 'none' here"));
     EXPECT_TRUE(contains(message(parse_rig_yaml("", "rig.yaml")), "this one nothing"));
     const std::string full = format_rig_yaml(random_rig(6, false));
@@ -136,7 +137,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
         return message(parse_rig_yaml(replaced(full, from, to), "rig.yaml"));
     };
     EXPECT_TRUE(contains(bad_full("model: pinhole", "model: fish"),
-                         "none of pinhole | pinhole_rational | kannala_brandt"));
+                         "not one of pinhole | pinhole_rational | kannala_brandt"));
     EXPECT_TRUE(
         contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "7 numbers; pinhole has 5"));
     EXPECT_TRUE(contains(bad_full("T_left_right: [", "T_left_right: [5"), "not a rigid motion"));
@@ -164,7 +165,7 @@ TEST(RigEuroc, RoundTripsAndReadsInlineComments) {
     EXPECT_TRUE(
         contains(bad("intrinsics: [", "intrinsics: [nan, "), "sensor.yaml:9: intrinsics: nan"));
     EXPECT_TRUE(contains(bad("intrinsics: [", "intrinsics: [-"), "must be above 0"));
-    EXPECT_TRUE(contains(bad("equidistant", "fov"), "is none of radial-tangential"));
+    EXPECT_TRUE(contains(bad("equidistant", "fov"), "is not one of radial-tangential"));
 }
 
 TEST(RigEuroc, ReadsTheRealRig) {

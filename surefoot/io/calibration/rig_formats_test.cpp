@@ -15,10 +15,10 @@ namespace {
 
 using testing::contains;
 
-/// Printed doubles read back exactly; a pose goes through a matrix or a rotation vector and its
-/// inverse.
+/// Tolerance: printed doubles read back exactly, but a pose goes through a matrix or a rotation
+/// vector and its inverse.
 constexpr double kPoseRounding = 2e-14;
-/// The same in pixels at f < 1000 px.
+/// The same tolerance in pixels, for f < 1000 px.
 constexpr double kPixelRounding_px = 1e-10;
 
 template <typename T>
@@ -44,7 +44,7 @@ camera::CameraModel lens(Lens kind, double f) {
     return {};
 }
 
-/// A rig with ZED's size, turned a little; ideal lenses make a rectified one.
+/// A rig with the image size of a ZED and a small rotation; with ideal lenses it is rectified.
 camera::StereoRig rig_with(Lens kind) {
     camera::StereoRig rig;
     rig.name = "test";
@@ -59,7 +59,7 @@ camera::StereoRig rig_with(Lens kind) {
     return rig;
 }
 
-/// What a calibration is about: where both cameras see a point.
+/// The purpose of a calibration: the pixels at which both cameras see a point.
 void expect_same_geometry(const camera::StereoRig& a, const camera::StereoRig& b) {
     EXPECT_EQ(a.left.width, b.left.width);
     EXPECT_EQ(a.right->height, b.right->height);
@@ -84,7 +84,7 @@ struct Holds {
     std::vector<Lens> refused;
 };
 
-/// Which lenses each format has a place for.
+/// Lenses that each format can store.
 std::vector<Holds> formats() {
     return {{RigFormat::surefoot,
              {Lens::ideal, Lens::radtan4, Lens::radtan5, Lens::rational, Lens::fisheye},
@@ -291,7 +291,7 @@ TEST(RigKalibr, BadValuesNameFileAndKey) {
          "0.0",
          "c.yaml:3: cam0.intrinsics: focal lengths 0 and 460.152 must be above 0"},
         {"461.629", "'461,6'", "'461,6' is not a number"},
-        {"radtan", "fov", "'fov' is none of radtan | equidistant | none"},
+        {"radtan", "fov", "'fov' is not one of radtan | equidistant | none"},
         {"-0.27695497, ", "", "cam0.distortion_coeffs: 3 numbers; exactly 4"},
         {"[ 1.0, 0.0, 0.0, -0.11]",
          "[ 1.1, 0.0, 0.0, -0.11]",
@@ -355,7 +355,7 @@ TEST(RigRos, BadValuesNameFileAndKey) {
         {"410.", ".nan", "camera_matrix: nan is outside"},
         {"410., ", "", "camera_matrix: 8 numbers; at least 9"},
         {"410.", "'410,5'", "'410,5' is not a number"},
-        {"plumb_bob", "thin_prism", "'thin_prism' is none of plumb_bob"},
+        {"plumb_bob", "thin_prism", "'thin_prism' is not one of plumb_bob"},
         {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 5"},
         {"distortion_model: plumb_bob\n", "distortion_model: ''\n", "name their model"},
         {"plumb_bob", "rational_polynomial", "5 numbers; rational_polynomial has 8"},

@@ -34,7 +34,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const YamlNode& node, const std:
     if (kind != "radtan" && kind != "equidistant") {
         yaml.fail(*distortion,
                   name + ".distortion_model",
-                  quoted(kind) + " is none of radtan | equidistant | none");
+                  quoted(kind) + " is not one of radtan | equidistant | none");
         return {};
     }
     const std::string key = name + ".distortion_coeffs";

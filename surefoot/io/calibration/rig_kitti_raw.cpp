@@ -21,7 +21,7 @@ struct Values {
     int line = 0;
 };
 
-/// "NAME: numbers" lines by name; lines whose values are no numbers (calib_time) are left out.
+/// "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
 class RawLines {
   public:
     RawLines(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -41,7 +41,7 @@ class RawLines {
     }
 
     [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
-    /// Exactly `count` numbers; the first failure is kept.
+    /// Reads exactly `count` numbers; keeps the first failure.
     std::vector<double> numbers(const std::string& name, std::size_t count) {
         const auto found = values_.find(name);
         if (found == values_.end()) {
@@ -74,7 +74,7 @@ ImageSize read_sides(RawLines& raw, const std::string& name) {
     const std::vector<double> sides = raw.numbers(name, 2);
     for (const double side_px : sides) {
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px)) continue;
-        raw.fail(fmt::format("{}: {}: {} is no image side of 1 .. {} px",
+        raw.fail(fmt::format("{}: {}: {} is not an image side of 1 .. {} px",
                              raw.file(),
                              name,
                              side_px,
@@ -100,7 +100,8 @@ Pose read_raw_pose(RawLines& raw, const std::string& number) {
     const YamlNode no_document;
     YamlReader reader(raw.file(), no_document);
     Pose pose = pose_from_parts(reader, no_document, "R_" + number, R, T);
-    if (reader.error()) raw.fail(fmt::format("{}: R_{} is no rotation", raw.file(), number));
+    if (reader.error())
+        raw.fail(fmt::format("{}: R_{} is not a rotation matrix", raw.file(), number));
     return pose;
 }
 

@@ -15,7 +15,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Their files print doffs with three decimals.
+/// Middlebury files print doffs with three decimals.
 constexpr double kDoffsTolerance_px = 2e-3;
 
 /// "key=value" lines; the first failure is kept.
@@ -66,7 +66,7 @@ class MiddleburyReader {
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px))
             return static_cast<int>(side_px);  // in range, as checked
         fail(fmt::format(
-            "{}: {}: {} is no image side of 1 .. {} px", file_, key, side_px, kMaxRigSide_px));
+            "{}: {}: {} is not an image side of 1 .. {} px", file_, key, side_px, kMaxRigSide_px));
         return 1;
     }
     void fail(const std::string& what) {

@@ -31,7 +31,7 @@ bool is_fisheye(const YamlNode& root) {
     return false;
 }
 
-/// A matrix that must be there; `other` is what the same thing is called for the other camera.
+/// Requires a matrix; `other` is the same matrix of the other camera, for the message.
 bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
     if (found.node != nullptr) return true;
     yaml.fail(
@@ -59,8 +59,8 @@ camera::CameraModel read_lens(YamlReader& yaml,
                         is_fisheye(yaml.root()) ? fisheye_lens(k, D) : pinhole_lens(k, D));
 }
 
-/// cv::fisheye writes four coefficients and no name of its model, like cv::calibrateCamera without
-/// k3: the numbers do not tell one from the other.
+/// Adds a note about an ambiguous lens: cv::fisheye and cv::calibrateCamera without k3 both write
+/// four coefficients, and cv::fisheye does not write the name of its model.
 void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& out) {
     const YamlNode& root = yaml.root();
     for (const char* key : {"fisheye", "model", "distortion_model", "camera_model"}) {
@@ -75,7 +75,7 @@ void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& 
         distortion.key));
 }
 
-/// A rotation matrix, or a rotation vector as cv::Rodrigues takes it: 9 numbers.
+/// Reads a rotation matrix or a rotation vector (cv::Rodrigues) and returns 9 numbers.
 std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigFile& out) {
     std::vector<double> R = read_matrix(yaml, *named.node, named.key, 3, 9);
     if (R.size() == 3) {

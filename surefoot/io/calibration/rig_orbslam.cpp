@@ -39,7 +39,7 @@ ImageSize read_image_size(YamlReader& yaml) {
     return {};
 }
 
-/// Camera.type; ORB-SLAM2 does not write it and means a pinhole.
+/// Reads Camera.type; a missing type means pinhole, as in ORB-SLAM2.
 std::string read_type(YamlReader& yaml) {
     const YamlNode* node = yaml.root().find("Camera.type");
     if (node == nullptr) return "PinHole";
@@ -47,12 +47,12 @@ std::string read_type(YamlReader& yaml) {
     if (type != "PinHole" && type != "KannalaBrandt8" && type != "Rectified") {
         yaml.fail(*node,
                   "Camera.type",
-                  quoted(type) + " is none of PinHole | KannalaBrandt8 | Rectified");
+                  quoted(type) + " is not one of PinHole | KannalaBrandt8 | Rectified");
     }
     return type;
 }
 
-/// "Camera1.fx" .. : the camera whose keys begin with `prefix`.
+/// Reads the camera whose keys begin with `prefix`, for example "Camera1.fx".
 camera::CameraModel read_lens(YamlReader& yaml,
                               const std::string& prefix,
                               const std::string& type) {
@@ -92,13 +92,13 @@ std::string left_prefix(const YamlNode& root) {
     return root.find("Camera1.fx") != nullptr ? "Camera1" : "Camera";
 }
 
-/// ORB-SLAM3 with two cameras of their own.
+/// Reads ORB-SLAM3 settings with two separate cameras.
 void read_two_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     const YamlNode& root = yaml.root();
     const std::string type = read_type(yaml);
     const std::string left = left_prefix(root);
     out.rig.left = {read_lens(yaml, left, type), size.width, size.height};
-    // A rectified pair is one camera twice.
+    // In a rectified pair both cameras share one lens.
     const bool one_lens = type == "Rectified" && root.find("Camera2.fx") == nullptr;
     out.rig.right =
         camera::Camera{read_lens(yaml, one_lens ? left : "Camera2", type), size.width, size.height};
@@ -163,11 +163,11 @@ void read_rgbd_camera(YamlReader& yaml, RigFile& out, ImageSize size) {
     out.rig.left = {
         read_lens(yaml, left_prefix(yaml.root()), read_type(yaml)), size.width, size.height};
     out.notes.emplace_back("the file holds a depth factor: a rig of one camera with depth");
-    out.rig.rectified = true;  // its own check says whether that is true
+    out.rig.rectified = true;  // StereoRig::problem() checks this claim
     out.rig.rectified = !out.rig.problem().has_value();
 }
 
-/// Camera.* with Camera.bf alone: images that are rectified already.
+/// Reads Camera.* with Camera.bf alone: the images are already rectified.
 void read_rectified_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
     const std::string prefix = left_prefix(yaml.root());
     out.rig.left = {read_lens(yaml, prefix, read_type(yaml)), size.width, size.height};

@@ -54,7 +54,7 @@ const YamlNode& required_matrix(YamlReader& yaml, const char* key) {
 
 std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, bool zero) {
     const YamlNode* node = yaml.root().find("distortion_model");
-    if (node == nullptr) return "plumb_bob";  // what files without the key mean
+    if (node == nullptr) return "plumb_bob";  // the meaning of a missing key
     std::string model = yaml.text(*node, "distortion_model");
     if (!model.empty() && model != "none") return model;
     if (zero) return "none";
@@ -94,7 +94,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     if (model != "plumb_bob") {
         yaml.fail(*yaml.root().find("distortion_model"),  // the default is plumb_bob
                   "distortion_model",
-                  quoted(model) + " is none of plumb_bob | rational_polynomial | equidistant");
+                  quoted(model) + " is not one of plumb_bob | rational_polynomial | equidistant");
         return {};
     }
     const std::size_t given = D.size();
@@ -143,7 +143,7 @@ void read_rectification(YamlReader& yaml, const RosKeys& keys, RosCamera& out) {
     out.x_m = -P[3] / P[0];
 }
 
-/// A number of a message that may be left out, 0 otherwise.
+/// Reads an optional number of a message; 0 if it is missing.
 int count_or_zero(YamlReader& yaml,
                   const YamlNode& group,
                   const char* key,
@@ -154,7 +154,7 @@ int count_or_zero(YamlReader& yaml,
 
 void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, double bin_y) {
     std::visit(
-        [&](auto& m) {  // a pixel is an area with its centre at whole coordinates
+        [&](auto& m) {  // pixel centres lie at whole coordinates
             m.fx_px /= bin_x;
             m.fy_px /= bin_y;
             m.cx_px = (m.cx_px - x_px + 0.5) / bin_x - 0.5;
@@ -163,8 +163,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// binning_x, binning_y and roi say what the driver delivers of the image that K belongs to: the
-/// part `roi` (in its pixels; all 0 = the whole), then `binning` pixels made one.
+/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to: first
+/// the part `roi` (in pixels of that image; all 0 = the whole image), then binning.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;
@@ -186,7 +186,7 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
     if (width < 1 || height < 1 || x + width > camera.width || y + height > camera.height) {
         return yaml.fail(*roi,
                          "roi",
-                         fmt::format("{} x {} px at ({}, {}) is no part of the image of {} x {} px",
+                         fmt::format("{} x {} px at ({}, {}) is not inside the image of {} x {} px",
                                      width,
                                      height,
                                      x,
@@ -247,7 +247,8 @@ Result<RosCamera> parse_camera(const NamedText& in) {
     return out;
 }
 
-/// An all-zero R is what a driver writes that did not rectify: the cameras count as parallel.
+/// Checks the rotations. A driver that does not rectify writes an all-zero R; the cameras then
+/// count as parallel.
 Status check_rotations(const RosCamera& l, const RosCamera& r, RigFile& out) {
     if (l.has_rotation != r.has_rotation) {
         return input_error(
@@ -300,7 +301,7 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
         return input_error(fmt::format(
             "{}: projection_matrix: element (0, 3) says that this camera lies {} m to the right of "
             "the left one; it must be -fx * baseline, below 0, in the right camera's file (0 is a "
-            "calibration of single cameras; above 0 they are exchanged)",
+            "calibration of single cameras; above 0 the cameras are swapped)",
             right.file,
             baseline_m));
     }

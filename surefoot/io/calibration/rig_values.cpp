@@ -14,7 +14,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Rotations printed with four digits are off by less than this.
+/// Rotations that are printed with four digits have smaller errors than this.
 constexpr double kRotationTolerance = 1e-3;
 
 }  // namespace
@@ -23,8 +23,9 @@ ImageSize read_size(YamlReader& yaml, const YamlNode& node, std::string_view key
     const std::vector<double> values = yaml.numbers(node, key, 2);
     for (const double side_px : values) {
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px)) continue;
-        yaml.fail(
-            node, key, fmt::format("{} is no image side of 1 .. {} px", side_px, kMaxRigSide_px));
+        yaml.fail(node,
+                  key,
+                  fmt::format("{} is not an image side of 1 .. {} px", side_px, kMaxRigSide_px));
         return {1, 1};
     }
     return {static_cast<int>(values[0]), static_cast<int>(values[1])};
@@ -159,7 +160,8 @@ RectifiedMatrices rectified_matrices(const camera::StereoRig& rig) {
         return std::vector<double>{
             r.fx_px, 0.0, r.cx_px, shift, 0.0, r.fy_px, r.cy_px, 0.0, 0.0, 0.0, 1.0, 0.0};
     };
-    const double y_scale = r.fx_px / r.fy_px;  // 1 but for rectified images with oblong pixels
+    const double y_scale =
+        r.fx_px / r.fy_px;  // differs from 1 only for rectified images with non-square pixels
     return {rows(plan.left.R_rectified_raw),
             rows(plan.right->R_rectified_raw),
             projection(0.0),
@@ -271,7 +273,7 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
 }
 
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
-    // A common rate, only used to judge gaps.
+    // A common rate; it is used only to detect gaps.
     constexpr double kAssumedImuRate_hz = 200.0;
     out.rig.T_body_left = T_body_optical();
     const bool known = rate_hz > 0.0;
@@ -286,7 +288,7 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
 
 void mark_if_rectified(camera::StereoRig& rig) {
     if (!rig.right) return;
-    rig.rectified = true;  // its own check says whether that is true
+    rig.rectified = true;  // StereoRig::problem() checks this claim
     rig.rectified = !rig.problem().has_value();
 }
 

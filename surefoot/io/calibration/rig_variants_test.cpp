@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration files as people have them, after public reports of users of similar programs: what is
-// read, and what the sentence says where a file cannot be one.
+// Calibration files as users have them, after public reports of users of similar programs. The
+// tests check the values that are read, and the message if a file cannot be a rig.
 #include <gtest/gtest.h>
 
 #include "surefoot/io/calibration/rig_formats.hpp"
@@ -177,7 +177,7 @@ TEST(RigVariants, RosBinningAndRegionAreApplied) {
     EXPECT_TRUE(
         contains(message(ros_pair_with("roi:\n  x_offset: 500\n  y_offset: 0\n  height: 240\n"
                                        "  width: 400\n")),
-                 "roi: 400 x 240 px at (500, 0) is no part of the image of 752 x 480 px"));
+                 "roi: 400 x 240 px at (500, 0) is not inside the image of 752 x 480 px"));
     EXPECT_TRUE(
         contains(message(ros_pair_with("binning_x: 5\nbinning_y: 1\n")), "cannot be binned"));
     EXPECT_TRUE(contains(message(ros_pair_with("binning_x: -2\n")), "binning_x: -2 is outside"));
@@ -682,7 +682,7 @@ TEST(RigVariants, ZedFilesOfAnyAge) {
                          "or add the line 'RX_HD = 0'"));
 }
 
-// ---- What is no calibration ----------------------------------------------------------------
+// ---- Files that are not calibrations --------------------------------------------------------
 
 TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
     struct Case {
@@ -700,9 +700,9 @@ TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
         {"odometry:\n  x: 1\nelevation:\n  y: 2\n",
          "a settings file of Surefoot; give it with --config"},
         {"alpha: 1\nbeta: 2\n",
-         "no calibration that is known here (its keys: 'alpha', 'beta' ..). Read are"},
-        {"", "no calibration that is known here. Read are"},
-        {"- 1\n- 2\n", "no calibration that is known here"},
+         "not a known calibration format (its keys: 'alpha', 'beta' ..). Known formats:"},
+        {"", "not a known calibration format. Known formats:"},
+        {"- 1\n- 2\n", "not a known calibration format"},
     };
     for (const Case& c : cases) {
         const std::string said = message(parse_rig_file(c.text, "x.yaml"));
@@ -714,7 +714,7 @@ TEST(RigVariants, AFileIsNeverJudgedByTheKeysOfAnotherFormat) {
     }
     EXPECT_TRUE(contains(message(parse_rig_file(std::string("PK\0\3", 4), "rig.npz")),
                          "looks like a binary file; write the matrices into a YAML file"));
-    // A rig.yaml with a mistake is judged by its own keys.
+    // A rig.yaml with an error is checked against its own keys.
     EXPECT_TRUE(contains(
         message(parse_rig_file("resolution: [672, 376]\nfocal: 350\nrate_hz: 15\n", "rig.yaml")),
         "unknown key 'focal'; did you mean 'focal_px'?"));

@@ -11,11 +11,11 @@
 namespace surefoot::io {
 namespace {
 
-/// Said where the keys of a second camera are missing: the file may be for one that measures depth.
+/// Hint for missing keys of the second camera: the file may describe an RGB-D camera.
 constexpr const char* kRgbdHint =
     "; a camera that measures depth itself (RGB-D) needs 'layout: rgbd' and no second camera";
 
-/// A key of the second camera.
+/// Reads a required key of the second camera.
 const YamlNode* required_of_pair(YamlReader& yaml, const char* key) {
     const YamlNode* node = yaml.root().find(key);
     if (node == nullptr)
@@ -66,9 +66,10 @@ camera::Camera read_camera(YamlReader& yaml,
     const bool fisheye = model_name == "kannala_brandt";
     const bool rational = model_name == "pinhole_rational";
     if (!fisheye && !rational && model_name != "pinhole") {
-        yaml.fail(*model,
-                  name + ".model",
-                  quoted(model_name) + " is none of pinhole | pinhole_rational | kannala_brandt");
+        yaml.fail(
+            *model,
+            name + ".model",
+            quoted(model_name) + " is not one of pinhole | pinhole_rational | kannala_brandt");
     }
     std::vector<double> coefficients;
     if (const YamlNode* list = node.find("coefficients"); list != nullptr) {
@@ -113,7 +114,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     rig.right = rig.left;
     const YamlNode* baseline = required_of_pair(yaml, "baseline_m");
     if (baseline == nullptr) return;
-    constexpr double kLargest = 1e12;  // of any unit: the next line judges
+    constexpr double kLargest = 1e12;  // for any unit; the next line applies the real limit
     const double baseline_m = yaml.number(*baseline, "baseline_m", -kLargest, kLargest);
     if (const auto problem = camera::baseline_problem(baseline_m))
         yaml.fail(*baseline, "baseline_m", *problem);
@@ -153,7 +154,7 @@ void read_imu(YamlReader& yaml, const YamlNode& node, camera::StereoRig& rig) {
     rig.imu = imu;
 }
 
-/// What both forms share.
+/// Reads the keys that both forms share.
 void read_common(YamlReader& yaml, camera::StereoRig& rig) {
     const YamlNode& root = yaml.root();
     if (const YamlNode* name = root.find("name"); name != nullptr)
@@ -209,7 +210,7 @@ Result<camera::StereoRig> parse_rig_yaml(std::string_view text, const std::strin
         layout = yaml.text(*node, "layout");
         if (layout != "side_by_side" && layout != "separate" && layout != "rgbd") {
             yaml.fail(
-                *node, "layout", quoted(layout) + " is none of side_by_side | separate | rgbd");
+                *node, "layout", quoted(layout) + " is not one of side_by_side | separate | rgbd");
         }
     }
     ImageSize size;

@@ -18,7 +18,7 @@ namespace {
 
 struct Mode {
     const char* name;
-    ImageSize size;  ///< one eye
+    ImageSize size;  ///< of one camera
 };
 /// Stereolabs' names of the resolutions of their stereo cameras.
 constexpr std::array<Mode, 8> kModes{{{"2K", {2208, 1242}},
@@ -31,14 +31,14 @@ constexpr std::array<Mode, 8> kModes{{{"2K", {2208, 1242}},
                                       {"QHDPLUS", {3200, 1800}}}};
 
 constexpr std::array<const char*, 8> kRationalKeys{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
-/// Thin-prism terms, which some of the newer files add.
+/// Thin-prism terms; some newer files contain them.
 constexpr std::array<const char*, 4> kPrismKeys{"s1", "s2", "s3", "s4"};
 
 std::string size_text(ImageSize size) {
     return fmt::format("{}x{}", size.width, size.height);
 }
 
-/// The first number that is missing or wrong ends the reading; later calls return 0.
+/// Reads numbers of a ZED file. Keeps the first missing or wrong number; later calls return 0.
 class ZedReader {
   public:
     explicit ZedReader(const IniFile& ini) : ini_(ini) {}
@@ -52,17 +52,16 @@ class ZedReader {
     double number_or(std::string_view section, std::string_view key, double otherwise) {
         return ini_.find(section, key) == nullptr ? otherwise : number(section, key);
     }
-    /// First of several spellings; the first is reported where none is there.
+    /// Reads a number under the first existing spelling; reports the first spelling if none exists.
     double any_number(std::string_view section, std::initializer_list<std::string> keys) {
         for (const std::string& key : keys) {
             if (ini_.find(section, key) != nullptr) return number(section, key);
         }
-        fail(
-            fmt::format("[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
-                        "take 0: download "
-                        "the file of this serial number anew, or add the line '{1} = 0'",
-                        section,
-                        *keys.begin()));
+        fail(fmt::format(
+            "[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
+            "take 0: download the file of this serial number again, or add the line '{1} = 0'",
+            section,
+            *keys.begin()));
         return 0.0;
     }
     void fail(const std::string& what) {
@@ -83,7 +82,7 @@ bool has_all(const IniFile& ini, const std::string& section, std::span<const cha
     return true;
 }
 
-/// Which section fits: that of `size`, or the only one.
+/// Selects the section: that of `size`, or the only one.
 Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     std::vector<std::string> found;
     const Mode* chosen = nullptr;
@@ -98,12 +97,12 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     }
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
-        return input_error(fmt::format(
-            "{}: nothing for {} px; it holds {}, and a ZED cuts each of them out of its "
-            "sensor in another way, so that none can be scaled",
-            ini.name,
-            size_text(*size),
-            fmt::join(found, ", ")));
+        return input_error(
+            fmt::format("{}: has no section for {} px; it holds {}. A ZED crops its sensor "
+                        "differently for each resolution, so that no section can be scaled",
+                        ini.name,
+                        size_text(*size),
+                        fmt::join(found, ", ")));
     }
     return input_error(
         fmt::format("{}: holds {}; use it with its images, or take one out with 'surefoot rig "
@@ -174,7 +173,7 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
                              baseline_mm,
                              *problem));
     }
-    const double y_mm = value("TY");  // one after the other: the first that is missing is named
+    const double y_mm = value("TY");  // read in order, so that the first missing key is reported
     const double z_mm = value("TZ");
     const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(
@@ -185,7 +184,7 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
     return T_right_left.inverse();
 }
 
-/// Sections that nobody asked for, said once.
+/// Adds one note for sections that were not used.
 void note_unknown(const IniFile& ini, RigFile& out) {
     std::vector<std::string> unknown;
     for (const auto& [name, values] : ini.sections) {

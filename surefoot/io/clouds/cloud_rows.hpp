@@ -9,17 +9,17 @@
 
 namespace surefoot::io {
 
-/// A cloud file whose points are rows of one size: any run of them, behind a head that says how
-/// many they are, is a file of the same format.
+/// A cloud file whose points are rows of one size. Any sequence of these rows, after a header with
+/// their number, is a file of the same format.
 struct CloudRows {
     std::uint64_t first_byte = 0;
     std::uint64_t rows = 0;
     std::uint64_t row_bytes = 0;
-    std::function<std::string(std::uint64_t)> head;  ///< for a number of rows
+    std::function<std::string(std::uint64_t)> head;  ///< header for a number of rows
 };
 
-/// From the first bytes of a file of `size` bytes. Nothing where it is damaged, or its points are
-/// no such rows (text, compressed, lists).
+/// Detects the rows from the first bytes of a file of `size` bytes. No value if the file is damaged
+/// or its points are not such rows (text, compressed, lists).
 [[nodiscard]] std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> las_rows(std::string_view head, std::uint64_t size);

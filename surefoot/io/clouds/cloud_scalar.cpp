@@ -15,8 +15,8 @@ namespace {
 template <typename Values>
 using ValueOf = typename std::decay_t<Values>::value_type;
 
-/// The number in another type; nothing where that type does not hold it. A double becomes the
-/// nearest float, an infinite one beyond the largest.
+/// Converts the number to another type; no value if that type cannot hold it. A double becomes the
+/// nearest float, or an infinite one beyond the largest float.
 template <typename T>
 std::optional<T> held_as(double value) {
     if constexpr (std::is_same_v<T, double>) {

@@ -11,8 +11,8 @@
 
 namespace surefoot::io {
 
-/// Values of one of the types that cloud files have. Float is the first: it is what an empty list
-/// of values holds.
+/// Values of one of the number types of cloud files. Float is the first alternative, so that an
+/// empty list holds floats.
 using ScalarValues = std::variant<std::vector<float>,
                                   std::vector<double>,
                                   std::vector<std::int8_t>,
@@ -24,37 +24,37 @@ using ScalarValues = std::variant<std::vector<float>,
                                   std::vector<std::int64_t>,
                                   std::vector<std::uint64_t>>;
 
-/// A further value per point: intensity, time, an identifier, variance, a normal's component. It
-/// has the type that it has in the file, so that a time in seconds since 1970 and an identifier
-/// above 2^24 stay what they are.
+/// An additional value per point: intensity, time, identifier, variance, component of a normal. It
+/// keeps the type of the file, so that a time in seconds since 1970 and an identifier above 2^24
+/// keep all their digits.
 struct CloudScalar {
     std::string name;
     ScalarValues values;
 
     [[nodiscard]] std::size_t size() const;
     void reserve(std::size_t count);
-    /// One value as a double: exact but for 64-bit whole numbers beyond 2^53.
+    /// One value as a double: exact except for 64-bit whole numbers beyond 2^53.
     [[nodiscard]] double at(std::size_t i) const;
-    /// The values of a scalar that holds floats, to add to or to look at.
+    /// The float values, for reading and appending. Precondition: the type is float.
     [[nodiscard]] std::vector<float>& floats();
     [[nodiscard]] const std::vector<float>& floats() const;
 
-    /// Adds a number; false, and nothing is added, where the type does not hold it: a whole-number
-    /// type neither a fraction, nor NaN, nor what is beyond its range.
+    /// Appends a number. Returns false and appends nothing if the type cannot hold it: whole-number
+    /// types hold no fraction, no NaN and no value beyond their range.
     [[nodiscard]] bool add(double value);
-    /// Adds a number written as text, exactly where it is a whole number; false as above, or where
-    /// it is no number. Missing values (parse_value) are NaN.
+    /// Appends a number written as text; whole numbers are exact. Returns false as above, or if the
+    /// text is not a number. Missing values (parse_value) become NaN.
     [[nodiscard]] bool add(std::string_view word);
 
-    /// The same name and type without values.
+    /// A scalar with the same name and type, without values.
     [[nodiscard]] CloudScalar without_values() const;
-    /// Adds the values of `other`, which is of the same type, from `first` on.
+    /// Appends `count` values of `other` from `first` on. Both must have the same type.
     void append(const CloudScalar& other, std::size_t first, std::size_t count);
-    /// Adds the values of `other`, which is of the same type, for which `keep` holds no 0.
+    /// Appends the values of `other` for which `keep` is not 0. Both must have the same type.
     void append_kept(const CloudScalar& other, std::span<const char> keep);
 };
 
-/// No values of the type 'F', 'I' or 'U' of so many bytes (PCD's TYPE and SIZE); nothing where
+/// An empty list for type 'F', 'I' or 'U' with `bytes` bytes (PCD's TYPE and SIZE); no value if
 /// there is no such type.
 [[nodiscard]] std::optional<ScalarValues> no_values_of(char type, std::size_t bytes);
 

@@ -19,7 +19,7 @@ namespace {
 using testing::contains;
 using testing::TemporaryFolder;
 
-/// One scalar of each type, with the values that another type does not hold.
+/// One scalar of each type, with values that no other type can hold.
 PointCloud cloud_of_all_types() {
     PointCloud cloud;
     cloud.points_m = {{1, 2, 3}, {4, 5, 6}};
@@ -89,7 +89,7 @@ TEST(CloudScalar, OnlyWhatATypeHoldsIsAdded) {
 TEST(CloudScalar, BlocksKeepTypesViewpointAndDoubles) {
     const TemporaryFolder folder;
     PointCloud cloud = cloud_of_all_types();
-    cloud.points_m[0].x() = 0.1;  // which a float does not hold
+    cloud.points_m[0].x() = 0.1;  // which a float cannot hold
     cloud.T_cloud_sensor = Pose{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {0.0, -1.0, 0.0}};
     ASSERT_TRUE(write_pcd(folder / "in.pcd", cloud, {true, true}).ok());
     auto stream = CloudStream::open(folder / "in.pcd");
@@ -115,7 +115,8 @@ TEST(CloudScalar, BlocksKeepTypesViewpointAndDoubles) {
     EXPECT_TRUE(contains(ply->notes()[1], "'i64' has 64-bit whole numbers"));
     PointCloud other = *back;
     other.scalars[0].values = std::vector<double>{1.0, 2.0};
-    EXPECT_TRUE(contains(ply->add(other).error().message, "other values than the first"));
+    EXPECT_TRUE(
+        contains(ply->add(other).error().message, "other colours or scalars than the first"));
 }
 
 TEST(CloudScalar, WhatAFileHoldsMoreIsSaid) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kBlockRows = 1U << 16U;
 constexpr std::size_t kBlockBytes = 4U << 20U;
-/// Where the head of a file must end for its rows to be found.
+/// The header of a file must end within these bytes, or its rows are not found.
 constexpr std::size_t kHeadBytes = 1U << 16U;
 
 }  // namespace
@@ -76,7 +76,7 @@ class CloudStream::Lines final : public Part {
                 const std::size_t end = feed != bytes->npos ? feed : bytes->rfind('\r');
                 if (end == bytes->npos) {
                     return input_error(fmt::format(
-                        "{}: a line of more than {} bytes is no point", path_, kBlockBytes));
+                        "{}: a line of more than {} bytes is not a point", path_, kBlockBytes));
                 }
                 bytes->resize(end + 1);
             }
@@ -100,7 +100,7 @@ class CloudStream::Lines final : public Part {
     std::uint64_t at_ = 0;
 };
 
-/// What cannot be cut.
+/// A cloud that must be read whole.
 class CloudStream::Whole final : public Part {
   public:
     explicit Whole(PointCloud cloud) : cloud_(std::move(cloud)) {}
@@ -156,7 +156,7 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
         return CloudStream(
             std::make_unique<Rows>(path, std::move(file).value(), std::move(rows).value()));
     }
-    auto cloud = read_cloud(path);  // or the reason why not
+    auto cloud = read_cloud(path);  // or the error
     if (!cloud) return cloud.error();
     return CloudStream(std::make_unique<Whole>(std::move(cloud).value()));
 }

@@ -13,9 +13,9 @@
 
 namespace surefoot::io {
 
-/// Points of a cloud file block by block, for clouds larger than the memory: binary PLY and PCD,
-/// LAS and text with a point a line come piece by piece; what cannot be cut (compressed PCD, lists,
-/// PLY, PCD and VTK as text) is read whole and handed out in pieces. Formats as `read_cloud`.
+/// Reads the points of a cloud file block by block, for clouds larger than the memory. Binary PLY
+/// and PCD, LAS and text (a point a line) are read in pieces. Compressed PCD, lists, and text PLY,
+/// PCD and VTK are read whole and returned in pieces. Formats as `read_cloud`.
 class CloudStream {
   public:
     [[nodiscard]] static Result<CloudStream> open(const std::string& path);
@@ -23,12 +23,12 @@ class CloudStream {
     CloudStream(CloudStream&&) noexcept;
     CloudStream& operator=(CloudStream&&) noexcept;
 
-    /// The next points with all that is known of them; none at the end.
+    /// The next points with all their values; no points at the end.
     [[nodiscard]] Result<PointCloud> next();
-    /// From the first point again.
+    /// Restarts at the first point.
     void rewind();
-    /// Hands all blocks, from the first point on, to `use`, which takes a PointCloud& and returns a
-    /// Status; one that is none of success ends it.
+    /// Calls `use` for all blocks, from the first point on. `use` takes a PointCloud& and returns a
+    /// Status; a status that is not success ends the loop.
     template <typename Use>
     [[nodiscard]] Status each_block(const Use& use) {
         rewind();
@@ -39,10 +39,10 @@ class CloudStream {
             if (Status status = use(*block); !status) return status;
         }
     }
-    /// How many points there are, where the file says so.
+    /// Number of points, if the file states it.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
-    /// What the blocks so far do not hold of the file, a sentence each; blocks have none
-    /// themselves.
+    /// Contents of the file that the blocks so far do not hold, one sentence each; the notes of the
+    /// blocks themselves are empty.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
@@ -55,20 +55,20 @@ class CloudStream {
     class Whole;
 };
 
-/// Where floats count from. They have 24 bits: 0.06 mm at 1 km, half a metre in a national grid.
-/// So from 1 km on an axis counts from the multiple of 100 m nearest to the first point; which
-/// changes no digit of a coordinate that was a float.
+/// Origin for float coordinates. A float has 24 bits: 0.06 mm at 1 km, half a metre in a national
+/// grid. From 1 km on, an axis therefore starts at the multiple of 100 m nearest to the first
+/// point. This shift changes no digit of a coordinate that was a float.
 [[nodiscard]] Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m);
 
-/// Points as floats from a shift.
+/// Points as floats relative to a shift.
 struct ShiftedCloud {
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<Eigen::Vector3f> points_m;  ///< less the shift
+    std::vector<Eigen::Vector3f> points_m;  ///< minus the shift
     std::int64_t skipped = 0;               ///< points that were not finite
 };
 
-/// Reads points into floats block by block. The shift is that of the first finite point, unless one
-/// is given. Errors: those of the stream; a point more than 100 km from the shift.
+/// Reads points into floats block by block. The shift comes from the first finite point, unless the
+/// caller gives one. Errors: those of the stream; a point more than 100 km from the shift.
 class ShiftedReader {
   public:
     ShiftedReader(std::string path, std::optional<Eigen::Vector3d> shift_m)
@@ -82,7 +82,7 @@ class ShiftedReader {
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
 
   private:
-    /// One point, where it is finite.
+    /// One shifted point; no value if it is not finite.
     [[nodiscard]] Result<std::optional<Eigen::Vector3f>> shifted(const Eigen::Vector3d& p_m);
 
     std::string path_;
@@ -90,7 +90,7 @@ class ShiftedReader {
     std::int64_t skipped_ = 0;
 };
 
-/// The whole of a file; memory is 12 bytes a point.
+/// Reads a whole file; memory is 12 bytes a point.
 [[nodiscard]] Result<ShiftedCloud> read_shifted(
     const std::string& path, const std::optional<Eigen::Vector3d>& shift_m = std::nullopt);
 

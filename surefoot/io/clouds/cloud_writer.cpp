@@ -16,14 +16,14 @@
 namespace surefoot::io {
 namespace {
 
-/// A comment that takes the place that a number of fewer digits leaves.
+/// A comment that fills the space left by a point count with fewer digits.
 std::string filler(const char* comment, std::int64_t points, int times) {
     constexpr int kDigits = 20;
     const int digits = static_cast<int>(std::to_string(points).size());
     return fmt::format("{} {:->{}}\n", comment, "", times * (kDigits - digits));
 }
 
-/// The number behind a key at the beginning of a line becomes another.
+/// Replaces the number after a key at the beginning of a line.
 void put_count(std::string& head, const std::string& key, std::int64_t points) {
     const std::size_t number = head.find("\n" + key + " ") + key.size() + 2;
     head.replace(number, head.find('\n', number) - number, std::to_string(points));
@@ -44,7 +44,8 @@ bool holds_the_same(const PointCloud& a, const PointCloud& b) {
 
 Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
     const std::string extension = extension_of(path);
-    const bool text = is_text_cloud(extension) && extension != ".pts";  // which has another head
+    const bool text =
+        is_text_cloud(extension) && extension != ".pts";  // .pts has a different header
     if (!text && extension != ".ply" && extension != ".pcd") {
         return usage_error(fmt::format(
             "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));
@@ -91,7 +92,7 @@ void CloudWriter::note_losses(const PointCloud& block) {
     }
 }
 
-/// Of the same length for every number of points.
+/// The header; its length does not depend on the number of points.
 std::string CloudWriter::head(std::int64_t points) const {
     std::string head = head_;
     if (kind_ == Kind::ply) {
@@ -118,7 +119,9 @@ Status CloudWriter::add(const PointCloud& block) {
         note_losses(block);
     } else if (!holds_the_same(first_, block)) {
         return output_error(
-            fmt::format("{}: points with other values than the first ones have", path_));
+            fmt::format("{}: these points have other colours or scalars than the first points; "
+                        "write them to another file",
+                        path_));
     }
     const CloudFormat format{true, format_.double_precision};
     std::string bytes = kind_ == Kind::ply   ? format_ply(block, format)

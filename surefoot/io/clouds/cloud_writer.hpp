@@ -9,24 +9,24 @@
 
 namespace surefoot::io {
 
-/// A cloud file that is written block by block: .ply, .pcd (both binary), or .xyz .asc .txt .csv as
-/// text. It grows beside its place ("F.ply.part") and comes there whole when it is finished; one
-/// that is not finished leaves nothing.
+/// Writes a cloud file block by block: .ply, .pcd (both binary), or .xyz .asc .txt .csv as text.
+/// The file grows beside its target ("F.ply.part") and is renamed when it is finished. An
+/// unfinished file is removed.
 class CloudWriter {
   public:
-    /// Errors: an extension that is none of these; what the system says.
+    /// Errors: an unknown extension; errors of the operating system.
     [[nodiscard]] static Result<CloudWriter> create(const std::string& path,
                                                     const CloudFormat& format = {});
     ~CloudWriter();
     CloudWriter(CloudWriter&& other) noexcept;
     CloudWriter& operator=(CloudWriter&&) = delete;
 
-    /// All blocks have the colours and scalars of the first, with their types; another is an error.
-    /// Coordinates are doubles where the format or the first block says so.
+    /// Appends points. All blocks must have the colours and scalars of the first block, with equal
+    /// types, else error. Coordinates are doubles if the format or the first block needs them.
     [[nodiscard]] Status add(const PointCloud& block);
     [[nodiscard]] Status finish();
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
-    /// What the format of the file does not hold of the blocks, a sentence each.
+    /// Contents of the blocks that the file format cannot hold, one sentence each.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   private:
@@ -41,8 +41,8 @@ class CloudWriter {
     Kind kind_;
     CloudFormat format_;
     int descriptor_ = -1;
-    std::string head_;  ///< of the first block
-    PointCloud first_;  ///< the first block without its points: what all blocks hold
+    std::string head_;  ///< header of the first block
+    PointCloud first_;  ///< the first block without points: the layout of all blocks
     std::vector<std::string> notes_;
     std::int64_t points_ = 0;
     std::int64_t size_ = 0;

@@ -48,7 +48,7 @@ constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
                                                     {67, 22, 30, 36, 38}}};
 constexpr std::size_t kIntensity = 12;
 constexpr std::size_t kReturns = 14;
-constexpr std::size_t kFirstWideFormat = 6;  ///< from here on records are laid out anew
+constexpr std::size_t kFirstWideFormat = 6;  ///< records of these formats have a different layout
 constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format
 
 struct Header {
@@ -65,7 +65,7 @@ Error damaged(const std::string& file, const std::string& what) {
     return input_error(fmt::format("{}: {}", file, what));
 }
 
-/// `size`: of the whole file, of which `bytes` is the beginning.
+/// `size`: size of the whole file; `bytes` is its beginning.
 Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const std::string& file) {
     if (!bytes.starts_with("LASF")) return damaged(file, "not a LAS file ('LASF' is missing)");
     if (bytes.size() < kSmallestHeader) return damaged(file, "truncated LAS header");
@@ -79,7 +79,7 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if ((format & kCompressed) != 0) {
         return damaged(file,
-                       "compressed (LAZ) points, which nothing here reads: convert the file with "
+                       "compressed (LAZ) points are not supported: convert the file with "
                        "'pdal translate IN.laz OUT.las' or 'laszip'");
     }
     if (format >= kFormats.size())
@@ -183,7 +183,7 @@ void add_scalars(const Header& header, std::string_view records, PointCloud& clo
     }
 }
 
-/// What a cloud does not hold of a file.
+/// Names the contents of the file that the cloud does not hold.
 std::vector<std::string> notes_of(const Header& header,
                                   std::string_view records,
                                   bool wide_colours) {
@@ -205,7 +205,8 @@ std::vector<std::string> notes_of(const Header& header,
     return notes;
 }
 
-/// Colours have 16 bits, of which many writers use the lower eight alone. Whether more are used.
+/// Reads colours. They have 16 bits, but many writers use only the lower eight. Returns whether a
+/// colour uses more than eight bits.
 bool add_colours(const Header& header, std::string_view records, PointCloud& cloud) {
     const std::size_t at = kFormats[header.format].colour;
     if (at == 0) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cloud files of other programs, old versions and other systems: what they hold is read.
+// Cloud files of other programs, old versions and other systems: their contents must be read.
 #include <gtest/gtest.h>
 
 #include <cmath>

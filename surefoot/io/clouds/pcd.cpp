@@ -60,7 +60,7 @@ std::optional<std::uint64_t> parse_count(std::string_view word, std::uint64_t ma
     return static_cast<std::uint64_t>(*value);
 }
 
-/// COLUMNS is what FIELDS was called before version 0.6.
+/// Whether the key names the fields; before version 0.6 FIELDS was called COLUMNS.
 bool names_fields(std::string_view key) {
     return key == "FIELDS" || key == "COLUMNS";
 }
@@ -101,7 +101,7 @@ Status parse_viewpoint(const std::vector<std::string_view>& words, Header& heade
         v[i] = *value;
     }
     const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
-    // Some writers leave the quaternion at zero; such a viewpoint says nothing.
+    // Some writers leave the quaternion at zero; then the viewpoint is ignored.
     if (std::abs(rotation.norm() - 1.0) > 0.01) return {};
     header.T_cloud_sensor = Pose{rotation.normalized(), {v[0], v[1], v[2]}};
     if (!header.T_cloud_sensor->all_finite()) header.T_cloud_sensor.reset();
@@ -173,7 +173,7 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
 /// Calls `use` with a zero of the field's type.
 template <typename Use>
 void with_type_of(const Field& field, const Use& use) {
-    // check_fields has found a type that exists.
+    // check_fields has verified the type.
     const auto values = no_values_of(field.type, field.bytes).value_or(ScalarValues());
     std::visit([&](const auto& v) { use(typename std::decay_t<decltype(v)>::value_type{}); },
                values);
@@ -200,7 +200,7 @@ std::optional<int> axis_of(const Field& field) {
     return name[0] - 'x';
 }
 
-/// Where the values of a field go.
+/// Target of the values of a field.
 struct Role {
     enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
     std::size_t index = 0;  ///< of the axis, or of the scalar
@@ -284,7 +284,7 @@ std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
     return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));  // in range
 }
 
-/// Puts a word of point `i` where it belongs; false where it is no number of the field's type.
+/// Stores a word of point `i`; returns false if it is not a number of the field's type.
 bool collect_word(
     std::string_view word, const Field& field, const Role& role, std::size_t i, PointCloud& cloud) {
     switch (role.kind) {
@@ -344,7 +344,7 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
     return {};
 }
 
-/// What a cloud does not hold of a file.
+/// Names the contents of the file that the cloud does not hold.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Field& field : header.fields) {
@@ -359,7 +359,7 @@ std::vector<std::string> notes_of(const Header& header) {
     return notes;
 }
 
-/// The records of a binary body; the sizes have to be right before anything is allocated.
+/// Returns the records of a binary body. Checks the sizes before it allocates memory.
 Result<std::string> unpacked_body(const Header& header, const std::string& file) {
     const std::uint64_t needed = *header.points * header.stride();
     if (header.body.size() < 8) return input_error(file + ": truncated PCD: no compressed sizes");

@@ -94,7 +94,7 @@ Result<Property> parse_property(const std::vector<std::string_view>& words) {
     return Property{std::string(words.back()), *type, count_type};
 }
 
-/// One header line; an error without its place.
+/// Parses one header line; the caller adds the position to an error.
 Status parse_header_line(const std::vector<std::string_view>& words, Header& header) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return {};
     if (words[0] == "format" && words.size() == 3) {
@@ -112,7 +112,7 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
     if (words[0] == "element" && words.size() == 3) {
         const auto count = parse_int64(words[2]);
         if (!count || *count < 0) {
-            return input_error(fmt::format("element count {} is no count", quoted(words[2])));
+            return input_error(fmt::format("element count {} is not a count", quoted(words[2])));
         }
         header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(*count), {}});
         return {};
@@ -170,7 +170,7 @@ class ValueReader {
         }
         return std::nullopt;
     }
-    /// Steps over a list property; false where the data end or the count is no count.
+    /// Skips a list property; returns false if the data end or the count is invalid.
     [[nodiscard]] bool skip_list(const Property& property) {
         const auto count = next(*property.count_type);
         if (!count || !(*count >= 0.0)) return false;
@@ -187,7 +187,7 @@ class ValueReader {
     WordReader words_;
 };
 
-/// Where the values of one vertex property go.
+/// Target of the values of one vertex property.
 struct Target {
     enum class Kind { x, y, z, red, green, blue, scalar, none } kind = Kind::none;
     std::size_t scalar = 0;
@@ -207,8 +207,8 @@ ScalarValues no_values(Type type) {
     return std::vector<float>();
 }
 
-/// Three numeric properties that are called so, each once, or nothing. `type`: which they must
-/// have.
+/// Finds three numeric properties with these names, each once; else no value. `type`: required
+/// type.
 std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
                                                       const std::array<std::string_view, 3>& names,
                                                       std::optional<Type> type) {
@@ -253,7 +253,8 @@ std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud&
     return targets;
 }
 
-/// Reads one vertex; false where the data end, a word is no number or does not fit its type.
+/// Reads one vertex; returns false if the data end, or a word is not a number or does not fit its
+/// type.
 bool read_vertex(ValueReader& values,
                  const Element& vertex,
                  const std::vector<Target>& targets,
@@ -341,7 +342,7 @@ Result<PointCloud> read_vertices(const Element& vertex,
     return cloud;
 }
 
-/// What a cloud does not hold of a file.
+/// Names the contents of the file that the cloud does not hold.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Element& element : header.elements) {
@@ -400,7 +401,8 @@ Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file) {
     const bool binary = header->encoding != Header::Encoding::ascii;
     constexpr std::uint64_t kMaxPoints = 1ULL << 30;
     for (const Element& element : header->elements) {
-        // A count is believed only if the data can hold it: no allocation for a damaged number.
+        // A count is accepted only if the data can hold it, so that a damaged count allocates no
+        // memory.
         const std::uint64_t room = (header->body.size() + (binary ? 0 : 1)) /
                                    std::max<std::uint64_t>(element.smallest_row(binary), 1);
         if (!element.properties.empty() && (element.count > room || element.count > kMaxPoints)) {

@@ -10,23 +10,23 @@
 
 namespace surefoot::io {
 
-/// A binary PLY file of points that grows, for clouds larger than the memory. All properties are
-/// floats: x, y, z [m], then the scalars. The header tells after every `add` how many points there
-/// are, so that a file whose writer was stopped can be read.
+/// A growing binary PLY file, for clouds larger than the memory. All properties are floats: x, y, z
+/// [m], then the scalars. After every `add` the header holds the number of points, so that a file
+/// stays readable if its writer is stopped.
 class PlyStream {
   public:
-    /// Starts a file without points; what is there is replaced. `scalars`: their names, one word
-    /// each.
+    /// Creates an empty file; an existing file is replaced. `scalars`: their names, one word each.
+    /// Errors: those of the operating system.
     [[nodiscard]] static Result<PlyStream> create(const std::string& path,
                                                   const std::vector<std::string>& scalars);
     ~PlyStream();
     PlyStream(PlyStream&& other) noexcept;
     PlyStream& operator=(PlyStream&& other) noexcept;
 
-    /// Appends whole points, their properties one behind the other. Points that do not fit on the
-    /// disk are taken back.
+    /// Appends whole points, property after property. If the disk is full, the points that do not
+    /// fit are removed again.
     [[nodiscard]] Status add(std::span<const float> values);
-    /// Closes the file and reports what the system found only then.
+    /// Closes the file and reports late errors of the operating system.
     [[nodiscard]] Status close();
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
 

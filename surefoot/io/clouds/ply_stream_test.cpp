@@ -19,7 +19,7 @@ TEST(PlyStream, CanBeReadAfterEveryPiece) {
     auto stream = PlyStream::create(path, {"station", "mixed"});
     ASSERT_TRUE(stream.ok()) << stream.error().message;
     EXPECT_EQ(read_cloud(path)->points_m.size(), 0U);
-    // Across the numbers of points at which the count gains a digit.
+    // Cover the numbers of points at which the count gains a digit.
     for (int i = 0; i < 12; ++i) {
         const auto x = static_cast<float>(i);
         const float values[] = {x, 2.0F, 3.0F, 1.0F, 0.0F};

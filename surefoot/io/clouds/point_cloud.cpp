@@ -48,8 +48,8 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 
 namespace {
 
-/// A file of gigabytes that is no cloud is refused by its first bytes: each format of clouds begins
-/// with text, or LAS with four letters.
+/// Refuses a file that is not a cloud by its first bytes, before gigabytes are read. Every cloud
+/// format begins with text; LAS begins with four letters.
 Status check_beginning(const std::string& path) {
     auto file = files::InputFile::open(path, limits::kCloudBytes);
     if (!file) return file.error();
@@ -68,7 +68,7 @@ Result<PointCloud> read_cloud(const std::string& path) {
     if (!named && !is_text_cloud(extension)) {
         const char* hint =
             extension == ".laz"
-                ? "nothing packaged reads LAZ: convert it with 'pdal translate "
+                ? "LAZ is not supported: convert it with 'pdal translate "
                   "IN.laz OUT.las' or 'laszip'"
                 : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv .pts";
         return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));

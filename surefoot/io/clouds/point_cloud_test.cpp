@@ -105,7 +105,7 @@ TEST(Ply, RefusesWhatIsDamagedWithFileAndReason) {
         contains(message(parse_ply(good.substr(0, good.size() - 1), "a.ply")), "a.ply: trunc"));
     EXPECT_TRUE(contains(message(parse_ply("plx\n", "a.ply")), "a.ply:1: not a PLY file"));
     EXPECT_TRUE(contains(message(parse_ply("ply\nformat ascii 1.0\n", "a.ply")), "'end_header'"));
-    // A thousand billion points in a small file must not be believed.
+    // A count of a thousand billion points in a small file must be refused.
     EXPECT_TRUE(contains(message(parse_ply("ply\nformat ascii 1.0\nelement vertex 1000000000000\n"
                                            "property float x\nproperty float y\nproperty float z\n"
                                            "end_header\n1 2 3\n",

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxColumns = 256;
 constexpr double kExact = 9007199254740992.0;  // 2^53
 
-/// Is the word a whole number that a double may not hold?
+/// Whether the word is a whole number that a double may not hold exactly.
 bool is_long_number(std::string_view word) {
     constexpr std::size_t kDigits = 16;
     if (word.size() < kDigits || word.find_first_of(".eE") != word.npos) return false;
@@ -24,7 +24,7 @@ bool is_long_number(std::string_view word) {
     return value && std::abs(*value) >= kExact;
 }
 
-/// Names of the columns behind x, y and z in a Leica or potree .pts file, which has no head.
+/// Names of the columns after x, y and z in a Leica or potree .pts file, which has no header.
 std::vector<std::string> pts_names(std::size_t further) {
     if (further == 1) return {"intensity"};
     if (further == 3) return {"r", "g", "b"};
@@ -99,8 +99,8 @@ Status TextCloudParser::take_line(std::string_view content, PointCloud& cloud) {
     return take_point(cloud);
 }
 
-/// A line that may name the columns. Behind points it must name the same ones: files are put one
-/// behind the other. A comment without x, y and z is only a comment.
+/// Handles a line that may name the columns. After points it must name the same columns, because
+/// files can be concatenated. A comment without x, y and z is only a comment.
 Status TextCloudParser::take_head(std::string_view content, bool comment) {
     const std::vector<Column> columns = columns_of(content, separator_of(content));
     const auto axes = axes_of(columns);
@@ -141,7 +141,7 @@ Status TextCloudParser::take_count() {
 
 Status TextCloudParser::choose_columns(std::string_view content) {
     separator_ = separator_of(content);
-    // With tabs a field may be empty, if the head says how many there are.
+    // With tabs a field may be empty, if the header gives the number of columns.
     if (separator_ == ' ' && head_ && content.find('\t') != content.npos &&
         head_->line.find('\t') != std::string::npos) {
         std::vector<std::string_view> names;
@@ -176,7 +176,8 @@ Status TextCloudParser::name_columns() {
         const bool fits = head_->columns.size() == columns_;
         const bool in_order = axes[0] < axes[1] && axes[1] < axes[2];
         const bool first = axes == std::array<std::size_t, 3>{0, 1, 2};
-        // Names of two words count twice; where x y z come first, or are all, that does no harm.
+        // A name of two words counts as two columns. This does no harm if x y z come first or are
+        // the only columns.
         if (!fits && !first && !(in_order && columns_ == 3)) {
             return input_error(
                 fmt::format("{} numbers, but line {} names {} columns: name each column with one "

@@ -14,20 +14,20 @@
 
 namespace surefoot::io {
 
-/// Reads a text cloud in pieces of whole lines, for files larger than the memory: what the head and
-/// the first point have told holds for the rest. `parse_text_cloud` says how lines are read.
+/// Reads a text cloud in pieces of whole lines, for files larger than the memory. The header and
+/// the first point define the layout of all lines. `parse_text_cloud` describes the lines.
 ///
 /// Scalars are doubles. A column whose first value is a whole number beyond 2^53 (nanoseconds since
-/// 1970) holds 64-bit whole numbers instead; a later value that is none is an error.
+/// 1970) holds 64-bit whole numbers instead; a later value of another kind is an error.
 class TextCloudParser {
   public:
     explicit TextCloudParser(std::string file) : file_(std::move(file)) {}
 
-    /// The points of further lines; there may be none. Errors name file and line.
+    /// The points of further lines, possibly empty. Errors name file and line.
     [[nodiscard]] Result<PointCloud> parse(std::string_view lines);
-    /// Error where no point came, or fewer than the file announces.
+    /// Error if there were no points, or fewer than the file announces.
     [[nodiscard]] Status finish() const;
-    /// What was not read as it is written, a sentence each.
+    /// Values that were not read exactly as written, a sentence each.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
@@ -47,13 +47,13 @@ class TextCloudParser {
     [[nodiscard]] Status take_scalar(std::string_view word, CloudScalar& scalar);
 
     std::string file_;
-    int line_ = 0;  ///< number of the present line
+    int line_ = 0;  ///< number of the current line
     std::optional<Head> head_;
     std::optional<std::int64_t> announced_;
     std::int64_t points_ = 0;
     std::int64_t rounded_ = 0;  ///< whole numbers beyond 2^53 in columns of doubles
 
-    // Known from the first point on.
+    // Known after the first point.
     char separator_ = ' ';
     std::size_t columns_ = 0;
     std::array<std::size_t, 3> axes_ = {0, 1, 2};

@@ -20,7 +20,7 @@ std::string why(const std::string& text, const std::string& file = "a.txt") {
     return cloud.ok() ? "accepted" : cloud.error().message;
 }
 
-/// What strangers' programs write, and the points in it.
+/// Files of other programs, with their points.
 struct Sample {
     const char* file;
     std::string text;
@@ -125,7 +125,7 @@ TEST(TextCloud, LongWholeNumbersKeepEveryDigit) {
     EXPECT_EQ(cloud->scalar("time_s")->at(0), 1688000000.03);
     EXPECT_TRUE(
         contains(format_text_cloud(*cloud), "1403636579049999872 4000000399 1688000000.03"));
-    // A column that begins with small numbers holds doubles; what they round is said.
+    // A column that begins with small numbers holds doubles; a note reports rounded values.
     const auto rounded = parse_text_cloud("0 0 1 5\n0 0 1 9007199254740993\n", "a.txt");
     ASSERT_TRUE(rounded.ok());
     EXPECT_TRUE(contains(rounded->notes.at(0), "1 whole numbers beyond 2^53 are rounded"));
@@ -151,7 +151,7 @@ TEST(TextCloud, PiecesAreTheFile) {
         EXPECT_TRUE(parser.finish().ok()) << sample.file;
         EXPECT_EQ(all.points_m, whole->points_m) << sample.file;
     }
-    // Lines count through the whole file, and the head holds for every piece.
+    // Line numbers continue through the whole file, and the header is valid for every piece.
     const TemporaryFolder folder;
     std::string text = "# id x y z\n";
     constexpr int kRows = 500000;  // more than a block of the stream

@@ -19,7 +19,7 @@ Error damaged(const std::string& file, std::string_view what) {
     return input_error(fmt::format("{}: {}; copy or record this image again", file, what));
 }
 
-/// CRC-32 of PNG (ISO 3309), four bits at a time would do; a byte table is fast enough for images.
+/// CRC-32 of PNG (ISO 3309) with a byte table, which is fast enough for images.
 std::uint32_t crc32(std::string_view bytes) noexcept {
     static const std::array<std::uint32_t, 256> table = [] {
         std::array<std::uint32_t, 256> values{};

@@ -15,7 +15,7 @@ namespace {
 /// Decodes a checked image; grey or BGR, 8 or 16 bits as stored. Stored rotation hints are ignored:
 /// a calibration belongs to the pixels as they are.
 Result<cv::Mat> decode(std::string_view bytes, const std::string& file) {
-    // imdecode only reads, but its interface wants a mutable Mat.
+    // imdecode only reads, but its interface needs a mutable Mat.
     const cv::Mat encoded(
         1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     constexpr int kFlags =
@@ -70,7 +70,7 @@ Result<std::string> encode(const cv::Mat& image, const Image<Pixel>& original) {
         if (cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
             return std::string(bytes.begin(), bytes.end());
         }
-    } catch (const cv::Exception&) {  // reported below, in our words
+    } catch (const cv::Exception&) {  // reported below
     }
     return output_error(fmt::format("an image of {} x {} pixels cannot be encoded as PNG",
                                     original.width(),
@@ -149,7 +149,8 @@ Result<DepthCodes> read_depth_codes(const std::string& path) {
 }
 
 Result<std::string> format_png(const GreyImage& image) {
-    // imencode only reads, but a Mat wants a mutable pointer; so do the two below.
+    // imencode only reads, but a Mat needs a mutable pointer; the same holds for the two functions
+    // below.
     return encode(
         cv::Mat(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data())),
         image);

@@ -8,8 +8,8 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/core/views.hpp"
 
-/// Image files: PNG, JPEG and PGM/PPM in, PNG out. A file is checked to be whole before it is
-/// decoded, because decoders fill the missing part of a truncated image with grey and say nothing.
+/// Image files: reads PNG, JPEG and PGM/PPM, writes PNG. A file is checked for completeness before
+/// it is decoded, because decoders silently fill the missing part of a truncated image with grey.
 namespace surefoot::io {
 
 struct Rgb {
@@ -28,7 +28,7 @@ using DepthCodes = Image<std::uint16_t>;
     return static_cast<std::uint8_t>((9798 * r + 19235 * g + 3735 * b + 16384) >> 15);
 }
 
-/// What the header of an image file says.
+/// Contents of the header of an image file.
 struct ImageHeader {
     int width = 0;
     int height = 0;
@@ -36,21 +36,21 @@ struct ImageHeader {
     int channels = 1;  ///< as stored, alpha included; a palette counts as 3
 };
 
-/// Largest image that is decoded; protects the memory from a damaged header.
+/// Largest image that is decoded; a damaged header cannot exhaust the memory.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
-/// Reads the header and checks the rest: PNG chunk by chunk with its checksums up to IEND, JPEG up
-/// to its end marker, PGM/PPM by its size. `file` only names the image in errors.
+/// Reads the header and checks the rest: PNG chunks with their checksums up to IEND, JPEG up to its
+/// end marker, PGM/PPM by its size. `file` is only the name in errors.
 [[nodiscard]] Result<ImageHeader> check_image(std::string_view bytes, const std::string& file);
 
-/// 8-bit image as grey; colour is weighted 0.299 R + 0.587 G + 0.114 B (BT.601), alpha ignored.
-/// 16-bit images are refused: their scale is not known.
+/// Decodes an 8-bit image as grey. Colour is weighted 0.299 R + 0.587 G + 0.114 B (BT.601); alpha
+/// is ignored. 16-bit images are an error: their scale is unknown.
 [[nodiscard]] Result<GreyImage> parse_grey_image(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<GreyImage> read_grey_image(const std::string& path);
-/// 8-bit image in colour; grey is repeated in all channels.
+/// Decodes an 8-bit image in colour; a grey image gets three equal channels.
 [[nodiscard]] Result<RgbImage> parse_rgb_image(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<RgbImage> read_rgb_image(const std::string& path);
-/// 16-bit grey image, as depth cameras and disparity data sets store it. 8-bit is refused.
+/// Decodes a 16-bit grey image (depth camera, disparity data set). 8-bit images are an error.
 [[nodiscard]] Result<DepthCodes> parse_depth_codes(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<DepthCodes> read_depth_codes(const std::string& path);
 

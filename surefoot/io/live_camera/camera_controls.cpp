@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a live camera is asked for: settings, address, mode and controls.
+// Requests to a live camera: settings, address, mode and controls.
 #include <fmt/format.h>
 #include <linux/videodev2.h>
 
@@ -35,7 +35,7 @@ std::string list_of(const std::vector<VideoMode>& modes) {
 
 Status set_automatic(V4l2Device& device, bool on) {
     if (device.control(V4L2_CID_EXPOSURE_AUTO)) {
-        // A menu of which UVC cameras have two entries: manual, and one of the two automatic ones.
+        // A menu; UVC cameras offer two of its entries: manual and one of the two automatic modes.
         constexpr int kOff = V4L2_EXPOSURE_MANUAL;
         Status status = device.set_control(
             V4L2_CID_EXPOSURE_AUTO, "live.auto", on ? V4L2_EXPOSURE_APERTURE_PRIORITY : kOff);
@@ -51,7 +51,7 @@ Status set_automatic(V4l2Device& device, bool on) {
     return {};
 }
 
-/// A manual value needs its automatic off first, else drivers refuse or ignore it.
+/// Switches the automatic mode off first: otherwise drivers refuse or ignore a manual value.
 Status set_manual(V4l2Device& device,
                   std::uint32_t automatic_id,
                   int automatic_off,
@@ -107,7 +107,7 @@ Result<LiveAddress> parse_live_address(std::string_view text) {
     const auto wrong = [&] {
         return usage_error(
             fmt::format("v4l2:{}: expected v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]], for example "
-                        "v4l2:/dev/video0@1344x376@30 (WIDTH holds both eyes)",
+                        "v4l2:/dev/video0@1344x376@30 (WIDTH is that of both cameras side by side)",
                         text));
     };
     if (parts.empty() || parts.size() > 3 || !parts[0].starts_with("/") || text.ends_with("@"))

@@ -15,11 +15,11 @@
 
 #include "surefoot/io/live_camera/video_device.hpp"
 
-/// A camera that exists only in tests: it answers the V4L2 requests as the kernel documents them
-/// and plays a script of frames and accidents.
+/// A scripted camera for tests: it answers the V4L2 requests as the kernel documents them, and
+/// plays a script of frames and failures.
 namespace surefoot::io::testing {
 
-/// What the driver does next.
+/// The next action of the driver.
 struct FakeEvent {
     enum class Kind { frame, silence, unplug, unplug_while_dequeuing } kind = Kind::frame;
     std::string bytes = {};
@@ -44,15 +44,15 @@ class FakeCamera {
     std::vector<std::uint32_t> rates_hz = {30};
     std::map<std::uint32_t, FakeControl> controls;
     std::uint32_t buffer_length = 1 << 16;
-    bool keeps_its_own_size = false;  ///< S_FMT gives half the width, as drivers may
-    int open_error = 0;               ///< of every attempt
-    int absent_for = 0;               ///< attempts to open that fail after an unplugging
+    bool keeps_its_own_size = false;  ///< S_FMT returns half the width, as drivers may do
+    int open_error = 0;               ///< of every attempt to open
+    int absent_for = 0;               ///< number of failing attempts to open after an unplugging
     std::deque<FakeEvent> script;
-    /// What happened, for the tests to look at.
+    /// Counters that tests check.
     int opened = 0;
     int paused_ms = 0;
     int waited_ms = 0;
-    int mapped = 0;  ///< buffers now
+    int mapped = 0;  ///< buffers that are mapped now
 };
 
 class FakeVideoDevice final : public VideoDevice {

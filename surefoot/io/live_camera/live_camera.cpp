@@ -12,7 +12,7 @@
 namespace surefoot::io {
 namespace {
 
-/// A gap in the frame counter larger than this is a counter that started again, not lost frames.
+/// A larger gap in the frame counter means that the counter restarted, not that frames were lost.
 constexpr std::uint32_t kMaxDropped = 100'000;
 
 Result<GreyImage> grey_of_yuyv(const VideoBuffer& buffer, const VideoMode& mode) {
@@ -58,12 +58,12 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(std::unique_ptr<VideoDevice
     const int height = address.height.value_or(rig.left.height);
     if (!rig.right || width != 2 * rig.left.width || height != rig.left.height) {
         return usage_error(fmt::format(
-            "v4l2:{}: {} x {} px with both eyes, but the rig has {} of {} x {} px; give "
+            "v4l2:{}: {} x {} px with both cameras, but the rig has {} of {} x {} px; give "
             "the rig of this resolution with --rig",
             address.device,
             width,
             height,
-            rig.right ? "two eyes" : "one eye",
+            rig.right ? "two cameras" : "one camera",
             rig.left.width,
             rig.left.height));
     }
@@ -195,7 +195,7 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
     Status status;
     if (last_time_ns_ && frame.time_ns <= *last_time_ns_)
         status = input_error("its stamp does not grow");
-    if (buffer.damaged) status = input_error("the driver calls it damaged");
+    if (buffer.damaged) status = input_error("the driver reports it as damaged");
     if (status) {
         const Result<GreyImage> image = decode(buffer);
         status =

@@ -16,28 +16,28 @@ namespace surefoot::io {
 enum class AutoControl : std::uint8_t { keep, on, off };
 enum class FormatChoice : std::uint8_t { any, yuyv, mjpeg };
 
-/// How a live camera is used.
+/// Settings of a live camera.
 struct CameraConfig {
-    double exposure_ms = 0.0;  ///< 0 = as the camera has it
-    int gain = -1;             ///< in the driver's numbers; -1 = as the camera has it
-    int white_balance_k = 0;   ///< 0 = as the camera has it
+    double exposure_ms = 0.0;  ///< 0 = leave as it is
+    int gain = -1;             ///< in the driver's units; -1 = leave as it is
+    int white_balance_k = 0;   ///< 0 = leave as it is
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
-    double readout_ms = 0.0;    ///< of the rolling shutter, first to last row; 0 = global shutter
-    double timeout_s = 1.0;     ///< without a frame, after which the device counts as gone
-    double reconnect_s = 10.0;  ///< without a frame, after which the run ends
-    int max_damaged = 30;       ///< frames in a row that cannot be used, after which the run ends
+    double readout_ms = 0.0;    ///< rolling shutter, first to last row; 0 = global shutter
+    double timeout_s = 1.0;     ///< without a frame for this long the device counts as gone
+    double reconnect_s = 10.0;  ///< without a frame for this long the run ends
+    int max_damaged = 30;       ///< the run ends after this many unusable frames in a row
 
     void describe(ConfigVisitor& visitor);
     /// Manual values and `auto = on` contradict each other.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30"; sizes are those of the
-/// whole image with both eyes, as the driver lists them.
+/// "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height are those
+/// of the whole image with both cameras side by side, as the driver lists them.
 struct LiveAddress {
     std::string device;
-    std::optional<int> width;  ///< both or none
+    std::optional<int> width;  ///< set together with height
     std::optional<int> height;
     std::optional<double> rate_hz;
 };
@@ -45,22 +45,22 @@ struct LiveAddress {
 
 /// Frames of a side-by-side stereo camera on V4L2, YUYV or MJPEG.
 ///
-/// * `next` waits for an image and gives the newest that is there; how many were passed over,
-///   lost by the device or damaged since the previous frame is in `StereoFrame::arrival`. When
-///   all buffers were full, the driver had stopped to write, and a fresh image is waited for.
+/// * `next` waits for an image and returns the newest one. `StereoFrame::frame_status` counts the
+///   images skipped, lost by the device or damaged since the previous frame. If all buffers were
+///   full, the driver had stopped writing, and `next` waits for a fresh image.
 /// * Stamps are `CLOCK_MONOTONIC`, in the middle of the exposure of the middle row:
 ///       start-of-exposure stamps:  t + exposure / 2 + readout / 2
 ///       end-of-frame stamps:       t - exposure / 2 - readout / 2
-///   with the exposure that was set; one that the camera chooses itself is not known and counts
-///   as 0, so that such stamps are up to half an exposure off.
-/// * A device that disappears or is silent for `timeout_s` is closed and opened again until frames
-///   come or `reconnect_s` are over. These times are the sum of the waits: the library reads no
+///   `exposure` is the configured value. An automatic exposure is unknown and counts as 0, so that
+///   stamps can be off by up to half an exposure.
+/// * A device that disappears or is silent for `timeout_s` is closed and reopened until frames come
+///   or `reconnect_s` has passed. These times are sums of the waits: the library reads no
 ///   clock.
 ///
-/// Everything happens inside `next`, in the caller's thread.
+/// All work happens inside `next`, in the caller's thread.
 class LiveCamera final : public camera::FrameSource {
   public:
-    /// `stop`: asked while waiting; true ends the source. May be empty.
+    /// `stop` is polled while waiting; true ends the source. May be empty.
     [[nodiscard]] static Result<std::unique_ptr<LiveCamera>> open(
         std::unique_ptr<VideoDevice> system,
         const LiveAddress& address,
@@ -73,7 +73,7 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
     static constexpr int kRetry_ms = 200;  ///< between two attempts to open
-    static constexpr int kSlice_ms = 100;  ///< of waiting, between two looks at `stop`
+    static constexpr int kSlice_ms = 100;  ///< longest wait between two polls of `stop`
 
   private:
     LiveCamera(std::unique_ptr<VideoDevice> system,
@@ -89,10 +89,10 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] Status set_controls(V4l2Device& device) const;
     [[nodiscard]] Result<std::optional<VideoBuffer>> newest();
     void count_silence();
-    /// The exposure as far as it is known; 0 where the camera chooses it.
+    /// The exposure in ns; 0 if it is unknown because the camera controls it.
     [[nodiscard]] std::int64_t known_exposure_ns(V4l2Device& device) const;
     void count_sequence(const VideoBuffer& buffer);
-    /// The image as a frame, or nothing after counting it as damaged.
+    /// Converts the image to a frame; no value if the image is damaged (counts it).
     [[nodiscard]] Result<std::optional<StereoFrame>> frame_of(const VideoBuffer& buffer);
     [[nodiscard]] Result<GreyImage> decode(const VideoBuffer& buffer) const;
     [[nodiscard]] std::int64_t middle_of_exposure_ns(const VideoBuffer& buffer) const;
@@ -107,8 +107,8 @@ class LiveCamera final : public camera::FrameSource {
     VideoMode mode_;
     std::int64_t exposure_ns_ = 0;  ///< 0 = not known
     std::string lost_because_;
-    int silent_ms_ = 0;  ///< waited since the last usable frame
-    int waited_ms_ = 0;  ///< of these, since the device was opened
+    int silent_ms_ = 0;  ///< wait since the last usable frame
+    int waited_ms_ = 0;  ///< part of it since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;
     FrameStatus frame_status_;  ///< since the previous frame

@@ -19,7 +19,7 @@ using testing::FakeCamera;
 using testing::FakeEvent;
 using testing::FakeVideoDevice;
 
-constexpr int kWidth = 32;  // of one eye
+constexpr int kWidth = 32;  // of one camera
 constexpr int kHeight = 24;
 constexpr std::int64_t kStart_us = 5'000'000;
 constexpr std::int64_t kPeriod_us = 33'333;
@@ -39,7 +39,7 @@ FakeCamera small_camera() {
     return camera;
 }
 
-/// Brightness of one pixel of frame `index`, both eyes side by side.
+/// Brightness of one pixel of frame `index`, both cameras side by side.
 std::uint8_t pixel(int index, int u, int v) {
     Rng rng(static_cast<std::uint64_t>((index * kHeight + v) * 2 * kWidth + u));
     return static_cast<std::uint8_t>(rng.below(256));
@@ -337,7 +337,7 @@ TEST_P(Unplugging, IsFollowedByReconnection) {
     unplug.kind = GetParam();
     camera.script.push_back(unplug);
     FakeEvent again = frame_event(90);
-    again.sequence = 5;  // drivers count anew, and the first images may be lost on the way
+    again.sequence = 5;  // drivers restart their counter, and the first images may be lost
     play(camera, again);
     play(camera, frame_event(91));
     camera.script[camera.script.size() - 2].sequence = 6;
@@ -441,8 +441,9 @@ TEST(LiveCamera, RefusesAnotherFormatThanAskedFor) {
     camera = small_camera();
     EXPECT_TRUE(contains(open_error(camera, {}, {"/dev/fake", 64, 24, 60.0}),
                          "no YUYV or MJPEG mode of 64 x 24 px at 60 Hz; it has YUYV 64x24@30"));
-    EXPECT_TRUE(contains(open_error(camera, {}, {"/dev/fake", 1344, 376, {}}),
-                         "1344 x 376 px with both eyes, but the rig has two eyes of 32 x 24 px"));
+    EXPECT_TRUE(
+        contains(open_error(camera, {}, {"/dev/fake", 1344, 376, {}}),
+                 "1344 x 376 px with both cameras, but the rig has two cameras of 32 x 24 px"));
     CameraConfig config;
     config.format = FormatChoice::mjpeg;
     EXPECT_TRUE(contains(open_error(camera, config), "in the format of live.format"));

@@ -17,7 +17,7 @@
 namespace surefoot::io {
 namespace {
 
-/// No list of a driver is followed further: a faulty one never ends.
+/// Limit for lists of the driver: the list of a faulty driver may never end.
 constexpr std::uint32_t kMaxListed = 256;
 /// Drivers round the frame interval to what the sensor can do.
 constexpr double kRateTolerance = 0.02;
@@ -78,7 +78,7 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
         return input_error(fmt::format(
-            "{}: delivers no streamed video (a camera has several nodes; the first is the one)",
+            "{}: delivers no streamed video (a camera has several nodes; use the first one)",
             path));
     }
     device.card_ = text_of(capability.card);
@@ -125,7 +125,7 @@ void V4l2Device::add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes) 
         mode.width = static_cast<int>(discrete ? size.discrete.width : size.stepwise.max_width);
         mode.height = static_cast<int>(discrete ? size.discrete.height : size.stepwise.max_height);
         add_rates(fourcc, mode, modes);
-        if (!discrete) break;  // a range is one entry, here with its largest size
+        if (!discrete) break;  // a range gives one mode, with its largest size
     }
 }
 
@@ -262,7 +262,7 @@ Status V4l2Device::map_buffer(std::uint32_t slot) {
     buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     buffer.memory = V4L2_MEMORY_MMAP;
     if (const int error = system_->request(VIDIOC_QUERYBUF, &buffer); error != 0)
-        return failed("its buffers cannot be asked for", error);
+        return failed("its buffers cannot be requested", error);
     const std::uint8_t* address = system_->map(buffer.m.offset, buffer.length);
     if (address == nullptr) return failed("its buffers cannot be mapped", ENOMEM);
     mappings_.push_back({address, buffer.length});

@@ -14,40 +14,40 @@ namespace surefoot::io {
 
 enum class PixelFormat : std::uint8_t { yuyv, mjpeg, other };
 
-/// One way in which the camera can deliver images.
+/// One capture mode of the camera.
 struct VideoMode {
     PixelFormat format = PixelFormat::other;
     std::string fourcc;  ///< "YUYV", "MJPG", ...
-    int width = 0;       ///< of the whole image: both eyes of a side-by-side camera
+    int width = 0;       ///< of the whole image: both cameras side by side
     int height = 0;
-    double rate_hz = 0.0;  ///< 0 = not known, or the driver's choice
+    double rate_hz = 0.0;  ///< 0 = unknown, or the driver's choice
 };
 
-/// A number of the camera that can be set.
+/// An integer control of the camera.
 struct VideoControl {
     std::uint32_t id = 0;  ///< V4L2_CID_*
     std::string name;      ///< as the driver calls it
     int min = 0;
     int max = 0;
     int step = 1;
-    std::optional<int> value;  ///< nothing when it cannot be read now
+    std::optional<int> value;  ///< no value if it cannot be read now
     bool writable = false;     ///< false also while an automatic mode owns it
 };
 
-/// An image in the driver's memory; valid until it is given back.
+/// An image in the driver's memory; valid until it is returned to the driver.
 struct VideoBuffer {
     std::span<const std::uint8_t> bytes;
     int bytes_per_line = 0;
     std::int64_t time_ns = 0;  ///< the driver's stamp, in `CLOCK_MONOTONIC` if `monotonic`
     bool monotonic = false;
-    bool at_exposure_start = false;  ///< the stamp's instant; false = end of the frame's transfer
+    bool at_exposure_start = false;  ///< else the stamp is at the end of the transfer
     std::uint32_t sequence = 0;      ///< the driver's frame counter
-    bool damaged = false;            ///< the driver itself says so
+    bool damaged = false;            ///< the driver reports a damaged image
     std::uint32_t slot = 0;
 };
 
-/// A V4L2 capture device (single-planar, memory-mapped streaming): query, set, stream.
-/// Kernel documentation "Video for Linux API", Part I, chapters 1 and 3. Closed by the destructor.
+/// A V4L2 capture device (single-planar, memory-mapped streaming): query, set, stream. Source:
+/// kernel documentation "Video for Linux API", Part I, chapters 1 and 3. The destructor closes it.
 class V4l2Device {
   public:
     /// `system` must outlive the device.
@@ -61,21 +61,21 @@ class V4l2Device {
     [[nodiscard]] std::vector<VideoMode> modes();
     [[nodiscard]] std::vector<VideoControl> controls();
     [[nodiscard]] std::optional<VideoControl> control(std::uint32_t id);
-    /// Sets and reads back; a value out of range is an error that names the range.
+    /// Sets a control and reads it back; a value out of range is an error that names the range.
     [[nodiscard]] Status set_control(std::uint32_t id, const std::string& name, int value);
 
-    /// Asks for the mode and reads back what the driver made of it; another one is an error.
+    /// Requests the mode and reads back the driver's choice; a different mode is an error.
     [[nodiscard]] Status set_mode(const VideoMode& mode);
     [[nodiscard]] Status start();
-    /// The oldest waiting image, or nothing within the time. An error means that the device is
-    /// gone or stopped.
+    /// The oldest waiting image; no value after the timeout. An error means that the device is gone
+    /// or has stopped.
     [[nodiscard]] Result<std::optional<VideoBuffer>> dequeue(int timeout_ms);
     [[nodiscard]] Status give_back(const VideoBuffer& buffer);
 
-    /// How many buffers the driver granted.
+    /// Number of buffers that the driver granted.
     [[nodiscard]] std::size_t buffers() const noexcept { return mappings_.size(); }
 
-    /// Asked for: enough for a consumer that is late by two frames.
+    /// Requested number of buffers: enough for a consumer that is two frames late.
     static constexpr std::uint32_t kBuffers = 4;
 
   private:

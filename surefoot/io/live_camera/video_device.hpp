@@ -8,13 +8,13 @@
 
 namespace surefoot::io {
 
-/// The system calls that a V4L2 camera needs, and nothing else: tests replace them by a scripted
-/// device. Failures are errno values, 0 is success. One thread at a time.
+/// The system calls that a V4L2 camera needs; tests replace them by a scripted device. Failures are
+/// errno values, 0 is success. Not thread-safe.
 class VideoDevice {
   public:
     virtual ~VideoDevice() = default;
     [[nodiscard]] virtual int open(const std::string& path) = 0;
-    /// Closing also ends streaming and gives back the driver's buffers.
+    /// Closes the device; also ends streaming and releases the driver's buffers.
     virtual void close() = 0;
     /// ioctl: `code` is VIDIOC_*, `argument` its structure.
     [[nodiscard]] virtual int request(unsigned long code, void* argument) = 0;
@@ -23,11 +23,11 @@ class VideoDevice {
     virtual void unmap(const std::uint8_t* address, std::size_t length) = 0;
     /// 0 when a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV when the device is gone.
     [[nodiscard]] virtual int wait(int timeout_ms) = 0;
-    /// Lets time pass before the next attempt to open; ends early on a signal.
+    /// Waits before the next attempt to open; a signal ends the wait early.
     virtual void pause(int time_ms) = 0;
 };
 
-/// The kernel's own; not open yet.
+/// The kernel's video device, not open yet.
 [[nodiscard]] std::unique_ptr<VideoDevice> kernel_video_device();
 
 }  // namespace surefoot::io

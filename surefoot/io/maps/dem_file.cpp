@@ -23,16 +23,17 @@ constexpr double kFinest_m = 1e-4;  ///< cells as `surefoot dem` makes them
 constexpr double kCoarsest_m = 1000.0;
 constexpr double kFarthest_m = 1e9;  ///< of a corner; a micrometre still differs there
 constexpr std::int64_t kMaxSide = 1 << 20;
-/// No layer has such values; -3.4028235e38, the smallest float, is the usual mark for "no data".
+/// Larger values mean "no data": the usual mark is the smallest float, -3.4028235e38, and no layer
+/// has such values.
 constexpr double kMaxValue = 1e30;
 
 bool is_cell_size(double side_m) {
     return side_m >= kFinest_m && side_m <= kCoarsest_m;  // false for NaN
 }
-/// The precision of a float: marks are printed from floats, with 7 to 17 digits.
+/// Relative precision of a float: writers print marks from floats, with 7 to 17 digits.
 constexpr double kFloatStep = 1.1920928955078125e-07;
 
-/// Does a value stand for "no data"?
+/// Whether a value stands for "no data".
 bool is_no_data(double value, double no_data) {
     return std::abs(value) >= kMaxValue ||
            std::abs(value - no_data) <= kFloatStep * std::abs(no_data);
@@ -45,7 +46,7 @@ struct Header {
     bool y_is_center = false;
 };
 
-/// Takes one "key value" pair; false where the word is no key (the data begin).
+/// Reads one "key value" pair; returns false if the word is not a key (the data begin).
 bool take_pair(const std::string& key, double value, Header& header) {
     if (key == "ncols") {
         header.columns = value;
@@ -111,7 +112,7 @@ Result<Header> parse_header(std::string_view text,
     return header;
 }
 
-/// Cells that are given by dx and dy must be square.
+/// Checks that cells given by dx and dy are square.
 Status take_cell_size(Header& header, const std::string& file) {
     constexpr double kSame = 1e-9;
     if (header.cell || (!header.dx && !header.dy)) return {};
@@ -182,7 +183,7 @@ Status check_layer(const std::string& path,
                                     geometry.ny));
 }
 
-/// Nine digits, or NODATA for what is unknown.
+/// Formats nine digits, or NODATA for unknown.
 std::string format_cell(float cell) {
     const auto value = static_cast<double>(cell);
     if (!(std::abs(value) < kMaxValue)) return fmt::format("{}", kNoData);
@@ -220,7 +221,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
     const Result<grid::GridGeometry> geometry = geometry_of(*header, file);
     if (!geometry) return geometry.error();
     const std::int64_t cells = std::int64_t{geometry->nx} * geometry->ny;
-    // Each value takes a digit and a blank: no allocation for a damaged header.
+    // Each value needs at least a digit and a blank: a damaged header must not allocate memory.
     if (cells > static_cast<std::int64_t>(body.size() + 1) / 2) {
         return input_error(
             fmt::format("{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes",

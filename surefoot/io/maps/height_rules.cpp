@@ -16,10 +16,10 @@
 namespace surefoot::io {
 namespace {
 
-/// No map for a walking machine has a hole or a tower of this height without anything in between.
+/// A map for a walking machine has no hole or tower of this height without intermediate heights.
 constexpr double kFar_m = 50.0;
 constexpr double kFarOfRange = 10.0;
-/// A file has one mark for "no data", seldom two.
+/// Largest number of "no data" marks in a file; files have one, seldom two.
 constexpr int kMostMarks = 4;
 
 std::int64_t replace(std::span<float> heights_m, double low_m, double high_m) {
@@ -47,7 +47,7 @@ bool is_usual_mark(double value) {
                                  32767.0,
                                  65535.0};
     return std::any_of(std::begin(kMarks), std::end(kMarks), [&](double mark) {
-        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // as a float holds it
+        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // within float precision
     });
 }
 
@@ -112,12 +112,12 @@ std::vector<std::string> drop_impossible_heights(grid::Layer& heights_m) {
         const auto mark = find_mark(all_m);
         if (!mark) break;
         const std::int64_t cells = replace(all_m, *mark, *mark);
-        notes.push_back(fmt::format(
-            "{} cells hold {:g} m, more than {:g} m from all other heights: taken for a "
-            "mark for 'no data' that no header declares; they count as unknown",
-            cells,
-            *mark,
-            kFar_m));
+        notes.push_back(
+            fmt::format("{} cells hold {:g} m, more than {:g} m from all other heights: this value "
+                        "counts as an undeclared 'no data' mark, and these cells as unknown",
+                        cells,
+                        *mark,
+                        kFar_m));
     }
     return notes;
 }

@@ -41,13 +41,13 @@ constexpr std::uint32_t type_code() {
     return 3;
 }
 
-/// A name in a field of fixed size, filled up with zeros.
+/// Writes a name into a field of fixed size, padded with zeros.
 void store_name(std::string& out, std::string_view name, std::size_t bytes) {
     out += name;
     out.append(bytes - name.size(), '\0');
 }
 
-/// The name in a field, if a zero ends it and zeros alone follow.
+/// Reads the name in a field; no value unless it ends with a zero and only zeros follow.
 std::optional<std::string> load_name(std::string_view field) {
     const std::size_t end = field.find('\0');
     if (end == field.npos) return std::nullopt;
@@ -65,7 +65,7 @@ T canonical(T value) {
     }
 }
 
-/// Visits the numbers of the header in file order; the one list that reading and writing share.
+/// Visits the numbers of the header in file order; reading and writing share this list.
 template <typename Region, typename Visit>
 void for_each_number(Region& r, const Visit& visit) {
     visit(r.stamp_ns);
@@ -108,7 +108,7 @@ struct Cursor {
     }
 };
 
-/// What the preamble and the sizes of the whole file say.
+/// Contents of the preamble and sizes of the parts of the file.
 struct Outline {
     std::uint16_t minor = 0;
     std::size_t header_bytes = 0;
@@ -126,7 +126,7 @@ Result<Outline> check_outline(std::string_view bytes, const std::string& file) {
     Cursor cursor{bytes.data() + kMagic.size()};
     const auto major = cursor.number<std::uint16_t>();
     Outline outline{cursor.number<std::uint16_t>(), cursor.number<std::uint32_t>()};
-    // The version comes first: of another one not even the checksum is known.
+    // Check the version first: for another version even the position of the checksum is unknown.
     if (major != kMapFileMajor) {
         return input_error(fmt::format(
             "{}: map region of version {}.{}; this program reads version {}: {}",
@@ -223,7 +223,7 @@ Status load_layer(const grid::RegionLayer& layer,
     return {};
 }
 
-/// Everything after the preamble; the sentences lack the file's name.
+/// Reads everything after the preamble; the caller adds the file name to errors.
 Status read_region(std::string_view bytes, const Outline& outline, MapFile& out) {
     MapRegion& region = out.region;
     Cursor cursor{bytes.data() + kPreambleBytes};
@@ -239,7 +239,8 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
     auto entries = read_layer_table(cursor, layers);
     if (!entries) return entries.error();
     for (LayerEntry& entry : *entries) {
-        // Where the file is too short this is not used; the sum tells.
+        // If the file is too short this pointer is not used: the check of the total size fails
+        // later.
         entry.cells = bytes.data() + std::min<std::uint64_t>(needed - kChecksumBytes, bytes.size());
         needed += cells * entry.cell_bytes;
     }

@@ -9,32 +9,32 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_region.hpp"
 
-/// Regions of an elevation map as files: docs/reference/map_format.md has every byte.
+/// Regions of an elevation map as files. docs/reference/map_format.md defines every byte.
 namespace surefoot::io {
 
-/// Files of a newer major version are not read; a newer minor one may add header fields and layers,
-/// which are stepped over.
+/// A newer major version is an error. A newer minor version may add header fields and layers, which
+/// the reader skips.
 inline constexpr std::uint16_t kMapFileMajor = 1;
 inline constexpr std::uint16_t kMapFileMinor = 0;
 
-/// A region and what its file told besides.
+/// A region and the additional contents of its file.
 struct MapFile {
     grid::MapRegion region;
     std::uint16_t minor = kMapFileMinor;
     std::vector<std::string> skipped_layers;  ///< of a newer minor version, in file order
 };
 
-/// Fails where `region.problem()` is not empty: what is written can be read. The same region gives
-/// the same bytes.
+/// Fails if `region.problem()` is not empty: every written file can be read. Deterministic: the
+/// same region gives the same bytes.
 [[nodiscard]] Result<std::string> format_map(const grid::MapRegion& region);
 [[nodiscard]] Status write_map(const std::string& path, const grid::MapRegion& region);
 
-/// The region of the result has no problem.
+/// The returned region has no problem.
 [[nodiscard]] Result<MapFile> parse_map(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<MapFile> read_map(const std::string& path);
 
-/// FNV-1a, 64 bit, over bytes: the last 8 bytes of a map file are that of all before. Every step is
-/// a bijection, so that no change of a single byte goes unnoticed.
+/// FNV-1a, 64 bit. The last 8 bytes of a map file are this checksum of all bytes before them. Every
+/// step is a bijection, so that it detects every change of a single byte.
 [[nodiscard]] std::uint64_t map_checksum(std::string_view bytes) noexcept;
 
 }  // namespace surefoot::io

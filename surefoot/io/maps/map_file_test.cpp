@@ -17,7 +17,7 @@ namespace {
 using grid::MapRegion;
 using testing::contains;
 
-// Where things lie in a file of version 1.0: docs/reference/map_format.md.
+// Offsets in a file of version 1.0: docs/reference/map_format.md.
 constexpr std::size_t kMajorAt = 8;
 constexpr std::size_t kMinorAt = 10;
 constexpr std::size_t kHeaderBytesAt = 12;
@@ -73,7 +73,7 @@ std::string with(std::string bytes, std::size_t at, T value) {
     return bytes.replace(at, number.size(), number);
 }
 
-/// Bytes before a checksum, given the right one: what is behind the checksum has to be safe too.
+/// Appends the correct checksum, so that tests reach the checks behind it.
 std::string sealed(std::string body) {
     store_le(body, map_checksum(body));
     return body;

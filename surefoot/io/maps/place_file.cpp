@@ -24,7 +24,7 @@ constexpr std::size_t kFeatureBytes = 44;
 constexpr std::size_t kChecksumBytes = 8;
 constexpr std::uint32_t kMostRecordBytes = 4096;  ///< of a keyframe or feature of a newer minor
 
-/// What a header says.
+/// Contents of a header.
 struct Outline {
     std::uint16_t minor = kPlaceFileMinor;
     std::uint32_t header_bytes = kHeaderBytes;
@@ -42,7 +42,7 @@ void for_each_of_pose(P& pose, const Visit& visit) {
     visit(pose.rotation.w());
 }
 
-/// Visits the numbers of a keyframe in file order; the one list that reading and writing share.
+/// Visits the numbers of a keyframe in file order; reading and writing share this list.
 template <typename K, typename Visit>
 void for_each_of_keyframe(K& keyframe, const Visit& visit) {
     visit(keyframe.view.time_ns);
@@ -64,7 +64,7 @@ void for_each_of_feature(F& feature, const Visit& visit) {
     for (auto& bits : feature.descriptor.bits) visit(bits);
 }
 
-/// Takes the next number from `at` on.
+/// Reads the next number from `at` on.
 struct Taker {
     const char*& at;
     template <typename T>
@@ -76,12 +76,12 @@ struct Taker {
 
 Error damaged(const std::string& file, const std::string& what) {
     return input_error(fmt::format(
-        "{}: {}; copy the place again, or remove the file and let a run remember it anew",
+        "{}: {}; copy the place again, or remove the file and run again to remember the place",
         file,
         what));
 }
 
-/// The sizes in a header whose checksum is right.
+/// Checks the sizes in a header whose checksum is correct.
 Status check_sizes(const Outline& outline, std::size_t content_bytes) {
     const auto size =
         [](const char* of, std::uint64_t is, std::uint64_t least, std::uint64_t most) {
@@ -116,7 +116,7 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
     std::uint32_t reserved = 0;
     take(major);
     take(outline.minor);
-    // The version comes first: of another one not even the checksum is known.
+    // Check the version first: for another version even the position of the checksum is unknown.
     if (major != kPlaceFileMajor) {
         return input_error(fmt::format(
             "{}: place of version {}.{}; this program reads version {}: {}",
@@ -124,7 +124,7 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
             major,
             outline.minor,
             kPlaceFileMajor,
-            major > kPlaceFileMajor ? "use a newer program" : "let a run remember the place anew"));
+            major > kPlaceFileMajor ? "use a newer program" : "run again to remember the place"));
     }
     const std::size_t content = bytes.size() - kChecksumBytes;
     if (map_checksum(bytes.substr(0, content)) != load_le<std::uint64_t>(bytes.data() + content))
@@ -141,7 +141,7 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
     return outline;
 }
 
-/// One keyframe with its features; `left` shrinks by what was read.
+/// Reads one keyframe with its features; removes the bytes it has read from `left`.
 Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& keyframe) {
     const auto too_short = [&] {
         return input_error(fmt::format("it ends {} bytes into a keyframe", left.size()));

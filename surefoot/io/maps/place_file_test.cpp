@@ -16,7 +16,7 @@ namespace {
 
 using testing::contains;
 
-// Where things lie in a file of version 1.0: docs/reference/place_format.md.
+// Offsets in a file of version 1.0: docs/reference/place_format.md.
 constexpr std::size_t kMajorAt = 8;
 constexpr std::size_t kMinorAt = 10;
 constexpr std::size_t kHeaderBytesAt = 12;

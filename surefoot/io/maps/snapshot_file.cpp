@@ -78,12 +78,12 @@ std::size_t cells_of(const MapSnapshot& s) {
     return static_cast<std::size_t>(s.nx) * static_cast<std::size_t>(s.ny);
 }
 
-/// Bytes of what a snapshot has for each cell and each edge, in the file.
+/// File bytes of one cell and of one edge.
 constexpr std::size_t kCellBytes = sizeof(std::int32_t) + 4 * sizeof(std::uint16_t) + 2;
 constexpr std::size_t kEdgeBytes = 8 * sizeof(std::int32_t);
 
-/// What stands of the header before nx, ny and the number of edges: of these alone a file of wrong
-/// length is known, before a megabyte is taken for it.
+/// Header bytes before nx, ny and the number of edges. With these sizes a wrong file length is
+/// detected before a megabyte is allocated.
 constexpr std::size_t kBeforeSizes =
     sizeof(MapSnapshot::magic) + sizeof(MapSnapshot::layout) + sizeof(MapSnapshot::version) +
     sizeof(MapSnapshot::config_hash) + sizeof(MapSnapshot::frame_time_ns) +
@@ -98,7 +98,7 @@ struct Sizes {
         return nx >= 1 && ny >= 1 && nx <= MapSnapshot::kMaxSide && ny <= MapSnapshot::kMaxSide &&
                edge_count >= 0 && edge_count <= MapSnapshot::kMaxEdges;
     }
-    /// Of cells, edges and checksum; there is a header before them.
+    /// Bytes of cells, edges and checksum, without the header.
     [[nodiscard]] std::size_t bytes() const {
         return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * kCellBytes +
                static_cast<std::size_t>(edge_count) * kEdgeBytes + sizeof(MapSnapshot::checksum);
@@ -116,7 +116,7 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
         return output_error(
             "the map snapshot is not intact (checksum or header); it is not written");
     }
-    // Cells beyond nx * ny mean nothing and are not stored; the stored checksum is of zeros there.
+    // Cells beyond nx * ny are unused and not stored; the stored checksum assumes zeros there.
     const auto clean = std::make_unique<MapSnapshot>(snapshot);
     clean->padding = {};
     std::fill(clean->edges.begin() + clean->edge_count, clean->edges.end(), grid::SnapshotEdge{});

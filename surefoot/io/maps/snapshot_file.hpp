@@ -8,16 +8,16 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 
-/// map.snapshot: what the step gate knows about the ground, as a file. Little-endian: the header
-/// fields of MapSnapshot in their order, then each layer with its nx * ny used cells, then the
-/// checksum of the snapshot with all unused cells zero.
+/// map.snapshot: the step gate's knowledge of the ground as a file. Little-endian: the header
+/// fields of MapSnapshot in their order, each layer with its nx * ny used cells, then the checksum
+/// of the snapshot with all unused cells set to zero.
 namespace surefoot::io {
 
-/// Fails where the snapshot is not intact: a damaged map must not get a fresh checksum.
+/// Fails if the snapshot is not intact: a damaged map must not get a fresh checksum.
 [[nodiscard]] Result<std::string> format_snapshot(const grid::MapSnapshot& snapshot);
 [[nodiscard]] Status write_snapshot(const std::string& path, const grid::MapSnapshot& snapshot);
 
-/// On the heap, because a snapshot is close to a megabyte. The result is intact.
+/// Allocated dynamically, because a snapshot is close to a megabyte. The result is intact.
 [[nodiscard]] Result<std::unique_ptr<grid::MapSnapshot>> parse_snapshot(std::string_view bytes,
                                                                         const std::string& file);
 [[nodiscard]] Result<std::unique_ptr<grid::MapSnapshot>> read_snapshot(const std::string& path);

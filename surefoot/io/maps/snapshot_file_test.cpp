@@ -77,9 +77,9 @@ TEST(SnapshotFile, RoundTripsEveryFieldAndIsSmall) {
     EXPECT_EQ((*copy)->edges, original->edges);
 }
 
-/// A search that begins with a refused file stays in front of the checks of the header. After a
-/// change of the layout SUREFOOT_WRITE_SEEDS=1 io_test --gtest_filter='SnapshotFile.*' writes the
-/// seed again.
+/// Seed for the fuzzer. A search that begins with a refused file would not get past the checks of
+/// the header. After a change of the layout, SUREFOOT_WRITE_SEEDS=1 io_test
+/// --gtest_filter='SnapshotFile.*' writes the seed again.
 TEST(SnapshotFile, TheFuzzerBeginsWithAFileOfThisLayout) {
     const std::string folder = SUREFOOT_SOURCE_DIR "/fuzz/seeds/fuzz_snapshot";
     if (std::getenv("SUREFOOT_WRITE_SEEDS") != nullptr) {

@@ -74,7 +74,7 @@ class EurocWriter final : public RecordingWriter {
         bytes_ += written_bytes(left) + written_bytes(right);
         if (Status s = add_imu(frame.imu); !s) return s;
         const std::string line = fmt::format("{},{}\n", frame.time_ns, name);
-        // The left list decides what a reader looks for, so it comes last.
+        // Readers start with the left list, so it is written last.
         if (Status s = right_list_->append(line); !s) return s;
         return left_list_->append(line);
     }
@@ -107,7 +107,7 @@ class EurocWriter final : public RecordingWriter {
         std::string lines;
         for (const ImuSample& sample : samples) {
             if (last_imu_ns_ && sample.time_ns <= *last_imu_ns_)
-                continue;  // seen with another frame
+                continue;  // already written with another frame
             lines += imu_line(sample);
             last_imu_ns_ = sample.time_ns;
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings as other people have them.
+// Recordings in the layouts of other projects.
 #include <gtest/gtest.h>
 
 #include "surefoot/io/calibration/rig_file.hpp"
@@ -30,7 +30,7 @@ GreyImage image(std::uint64_t seed) {
     return out;
 }
 
-/// The same image in 16 bits, moved up by so many.
+/// The same image in 16 bits, shifted left by this many bits.
 DepthCodes deep(const GreyImage& grey, int shift) {
     DepthCodes out(grey.width(), grey.height());
     for (std::size_t i = 0; i < out.size(); ++i)

@@ -11,7 +11,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Seven numbers of 24 digits: a longer line is no IMU row.
+/// An IMU row has seven numbers of at most 24 digits; a longer line is not an IMU row.
 constexpr std::size_t kMaxLine = 4096;
 
 class SourceWithImu final : public camera::FrameSource {
@@ -99,7 +99,7 @@ Result<std::unique_ptr<camera::FrameSource>> with_imu(std::unique_ptr<camera::Fr
     const std::string& path = source->info().path;
     if (source->info().has_imu) {
         return usage_error(
-            fmt::format("--imu {}: {} has an IMU of its own; leave it away", imu_path, path));
+            fmt::format("--imu {}: {} has its own IMU; remove the option --imu", imu_path, path));
     }
     if (!source->rig().imu) {
         return usage_error(

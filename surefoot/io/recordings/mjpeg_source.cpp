@@ -14,7 +14,7 @@ namespace surefoot::io {
 namespace {
 
 constexpr std::string_view kStart("\xff\xd8\xff", 3);
-/// Larger than any camera's JPEG: beyond it the file is no MJPEG stream.
+/// Larger than the JPEG of any camera; a file with a larger image is not an MJPEG stream.
 constexpr std::size_t kMaxImageBytes = std::size_t{64} << 20;
 
 class MjpegSource final : public camera::FrameSource {
@@ -53,7 +53,7 @@ class MjpegSource final : public camera::FrameSource {
     }
 
   private:
-    /// Said once; afterwards the source has ended.
+    /// Reports the error once; afterwards the source has ended.
     Error end_with(Error error) {
         rest_.clear();
         at_end_ = true;

@@ -26,7 +26,7 @@ camera::StereoRig small_rig() {
     return rig;
 }
 
-/// Both eyes in one brightness, so that a decoded frame tells its number.
+/// Both camera images in one brightness, so that a decoded frame identifies its number.
 std::string jpeg(int index) {
     const cv::Mat image(kHeight, 2 * kWidth, CV_8UC1, cv::Scalar(20.0 * index));
     std::vector<uchar> bytes;

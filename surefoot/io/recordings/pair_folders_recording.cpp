@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Left and right images side by side on the disk: KITTI after Geiger et al. 2012 (odometry and
-// raw), and the folders that other people make. Calibration and stamps come from what lies beside
-// them.
+// Left and right images in two folders: KITTI after Geiger et al. 2012 (odometry and raw), and
+// common folder names of other recordings. Calibration and stamps are read from files beside the
+// images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -107,7 +107,7 @@ std::optional<std::string> raw_calibration(const std::string& folder) {
     return std::nullopt;
 }
 
-/// The line of a key of KITTI raw, without the key: "S_rect_00: 1242 375".
+/// Words of the line of a KITTI raw key, without the key: "S_rect_00: 1242 375".
 std::vector<std::string_view> words_of(std::string_view text, const std::string& key) {
     LineReader lines(text);
     while (const auto line = lines.next()) {
@@ -154,7 +154,7 @@ Result<camera::StereoRig> calib_txt_rig(const std::string& path,
     return kitti_rig(*calibration, layout.left_camera, layout.right_camera, size, path);
 }
 
-/// calib.txt has no image size: the first image knows it.
+/// Chooses the rig. calib.txt has no image size, so it is read from the first image.
 Result<camera::StereoRig> choose_rig(const std::string& folder,
                                      const OpenOptions& options,
                                      const PairOfFolders& pair) {
@@ -172,7 +172,7 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
     if (is_file(join_path(folder, "cam0/sensor.yaml"))) return read_euroc_rig(folder);
     if (const auto raw = raw_calibration(folder)) return raw_kitti_rig(*raw, pair.layout, size);
     if (std::string_view(pair.layout.kind) == "kitti")
-        return calib_txt_rig(kitti, pair.layout, size);  // for its error
+        return calib_txt_rig(kitti, pair.layout, size);  // returns its error
     return input_error(
         fmt::format("{}: {} left and {} right images but no calibration; put a rig.yaml beside "
                     "their folders or give one with --rig",
@@ -181,7 +181,7 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
                     pair.right.size()));
 }
 
-/// A name of the right camera for each of the left one: the same one, or with right for left.
+/// File name of the right image for a left image: the same name, or with "right" instead of "left".
 std::string partner_name(const std::string& name) {
     std::string partner = name;
     const std::string lower = lowercase(name);
@@ -303,10 +303,9 @@ Status set_stamps(const std::string& folder,
     }
     constant_rate(*rate_hz, recording);
     if (!of_kitti) {
-        recording.info.notes.push_back(
-            fmt::format("the images have no stamps: {:g} frames a second are assumed; --rate says "
-                        "otherwise",
-                        *rate_hz));
+        recording.info.notes.push_back(fmt::format(
+            "the images have no stamps: {:g} frames a second are assumed; --rate sets another rate",
+            *rate_hz));
     }
     return {};
 }
@@ -315,7 +314,7 @@ Status set_stamps(const std::string& folder,
 
 bool has_pair_folders(const std::string& folder) {
     for (const Layout& layout : kLayouts) {
-        const bool by_cameras = std::string_view(layout.left) == "cam0";  // EuRoC may mean it
+        const bool by_cameras = std::string_view(layout.left) == "cam0";  // may also be EuRoC
         if (!is_folder(join_path(folder, layout.left))) continue;
         if (!by_cameras) return true;
         const auto images = images_in(image_folder(folder, layout.left));

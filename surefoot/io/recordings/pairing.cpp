@@ -34,7 +34,7 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
             order.end(),
             time_ns - tolerance_ns,
             [&](std::size_t i, std::int64_t earliest_ns) { return right_ns[i] < earliest_ns; });
-        // A neighbourhood holds few frames; the limit keeps damaged lists from growing.
+        // Few frames lie within the tolerance; the limit bounds the work for damaged lists.
         for (int n = 0; n < 16 && r != order.end() && right_ns[*r] <= time_ns + tolerance_ns; ++n) {
             matches.push_back({std::abs(right_ns[*r] - time_ns), l, *r});
             ++r;
@@ -46,7 +46,7 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
     return matches;
 }
 
-/// Nanoseconds of one tick of a stamp of so many digits since 1970; 0 = no such stamp.
+/// Nanoseconds per unit of a stamp since 1970 with this number of digits; 0 = not such a stamp.
 std::int64_t tick_ns(std::size_t digits) {
     switch (digits) {
         case 13: return 1'000'000;

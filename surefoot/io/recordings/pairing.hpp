@@ -6,22 +6,22 @@
 #include <string>
 #include <vector>
 
-/// Which image of one camera belongs to which of the other.
+/// Pairs the images of the left and the right camera.
 namespace surefoot::io {
 
-/// Index of the partner of each left image, or nothing.
+/// Index of the right image for each left image; no value without a partner.
 using Partners = std::vector<std::optional<std::size_t>>;
 
-/// Pairs by stamps at most `tolerance_ns` apart, the closest first; each image is used once.
+/// Pairs stamps that differ by at most `tolerance_ns`, closest first; uses each image once.
 [[nodiscard]] Partners pair_by_time(const std::vector<std::int64_t>& left_ns,
                                     const std::vector<std::int64_t>& right_ns,
                                     std::int64_t tolerance_ns);
 
-/// A fifth of the median time between frames; 0 with fewer than two stamps.
+/// A fifth of the median time between frames; 0 for fewer than two stamps.
 [[nodiscard]] std::int64_t fifth_of_frame_time_ns(std::vector<std::int64_t> times_ns);
 
-/// The stamps that file names without extension hold, if all of them do: seconds with a point
-/// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970 and up to
+/// Stamps in file names without extension, if all names hold one: seconds with a point
+/// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970, at most
 /// kMaxStamp_ns.
 struct NameStamps {
     std::vector<std::int64_t> times_ns;

@@ -120,7 +120,7 @@ Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {
         if (!file) return file.error();
         impl_->truth = std::move(file).value();
     } else {
-        text.erase(0, text.find('\n') + 1);  // the head is there already
+        text.erase(0, text.find('\n') + 1);  // the header already exists
     }
     impl_->last_truth_ns = time_ns;
     return impl_->truth->append(text);

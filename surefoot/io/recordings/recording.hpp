@@ -14,30 +14,30 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/recordings/pairing.hpp"
 
-/// Recordings on disk: what is in them, before any image is opened. One indexer per layout; all of
-/// them give the same list, from which RecordingSource makes frames.
+/// Recordings on disk, indexed before any image is opened. One indexer per layout; all of them
+/// return the same list, from which RecordingSource makes frames.
 namespace surefoot::io {
 
 struct OpenOptions {
-    std::optional<std::string> rig_file;  ///< instead of the recording's own calibration
-    std::optional<double> rate_hz;        ///< where the recording has no stamps of its own
-    int first_frame = 0;                  ///< frames before it are passed over
-    /// Largest difference between the stamps of both images of a frame; by default a fifth of the
-    /// frame time, and the 20 ms of the benchmark for TUM RGB-D.
+    std::optional<std::string> rig_file;  ///< replaces the recording's own calibration
+    std::optional<double> rate_hz;        ///< for recordings without stamps
+    int first_frame = 0;                  ///< earlier frames are skipped
+    /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
+    /// frame time; for TUM RGB-D the 20 ms of the benchmark.
     std::optional<double> pair_tolerance_s = {};
-    std::optional<double> depth_codes_per_m = {};  ///< of RGB-D; by default kDepthCodesPerMetre
-    /// Bits of the largest value in 16-bit images (9..16), of which the upper 8 are used; by
-    /// default as many as the first, the middle and the last image need.
+    std::optional<double> depth_codes_per_m = {};  ///< RGB-D only; default kDepthCodesPerMetre
+    /// Bits of the largest value in 16-bit images (9..16); the upper 8 of them are used. Default:
+    /// as many bits as the first, the middle and the last image need.
     std::optional<int> image_bits = {};
-    bool skip_broken = false;  ///< go on past frames that cannot be had, see skip_broken_frames
+    bool skip_broken = false;  ///< continue after unusable frames, see skip_broken_frames
 };
 
-/// TUM RGB-D: a depth code of 5000 is one metre, 0 is no measurement.
+/// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
 inline constexpr float kDepthCodesPerMetre = 5000.0F;
-/// Depth cameras that store millimetres.
+/// For depth cameras that store millimetres.
 inline constexpr float kMillimetresPerMetre = 1000.0F;
 
-/// One frame: where its images are.
+/// One frame with the paths of its images.
 struct FrameEntry {
     std::int64_t time_ns = 0;
     std::string left;   ///< or the side-by-side image, or the colour image of RGB-D
@@ -50,40 +50,40 @@ struct Recording {
     camera::SourceInfo info;
     camera::StereoRig rig;
     std::vector<FrameEntry> frames;
-    std::vector<ImuSample> imu;     ///< strictly growing stamps
+    std::vector<ImuSample> imu;     ///< strictly increasing stamps
     int unpaired = 0;               ///< frames of one camera without a partner in the other's list
-    double pair_tolerance_s = 0.0;  ///< by which both images were paired; 0 = not by stamps
+    double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;  ///< between the stamps of both images of a frame
-    float depth_codes_per_m = kDepthCodesPerMetre;  ///< of RGB-D
+    float depth_codes_per_m = kDepthCodesPerMetre;  ///< RGB-D only
     int image_bits = 8;                             ///< above 8: 16-bit images, see OpenOptions
 };
 
-/// EuRoC ASL: `folder` is the one with cam0 and cam1 ("mav0").
+/// Indexes EuRoC ASL: `folder` contains cam0 and cam1 ("mav0").
 [[nodiscard]] Result<Recording> index_euroc(const std::string& folder, const OpenOptions& options);
-/// The samples of imu0/data.csv, where the rig has an IMU and the file is there.
+/// Reads imu0/data.csv, if the rig has an IMU and the file exists.
 [[nodiscard]] Status read_euroc_imu(const std::string& folder, Recording& recording);
-/// Left and right images in a folder each: KITTI odometry (image_0 and image_1, image_l and
+/// Indexes left and right images in a folder each: KITTI odometry (image_0 and image_1, image_l and
 /// image_r, image_2 and image_3; calib.txt, times.txt), KITTI raw (image_00 and image_01, image_02
 /// and image_03, with data/ and timestamps.txt), cam0 and cam1 without lists, left and right; or
 /// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
-/// Whether a folder holds such a pair.
+/// Whether a folder contains such a pair.
 [[nodiscard]] bool has_pair_folders(const std::string& folder);
-/// Images with the left eye in the left half and the right one beside it, in natural order, 15 Hz
-/// or the rig's rate; rig.yaml in the folder.
+/// Indexes images with the left camera in the left half and the right camera in the right half, in
+/// natural order, at the rig's rate or 15 Hz; rig.yaml in the folder.
 [[nodiscard]] Result<Recording> index_side_by_side(const std::string& folder,
                                                    const OpenOptions& options);
-/// TUM RGB-D: associations.txt, or rgb.txt and depth.txt associated within 20 ms; depth codes are
-/// 1/5000 m. Kinect intrinsics (525, 525, 319.5, 239.5) unless a rig says otherwise.
+/// Indexes TUM RGB-D: associations.txt, or rgb.txt and depth.txt associated within 20 ms; depth
+/// codes are 1/5000 m. Kinect intrinsics (525, 525, 319.5, 239.5) unless a rig replaces them.
 [[nodiscard]] Result<Recording> index_tum_rgbd(const std::string& folder,
                                                const OpenOptions& options);
 
-/// Whichever of the above fits the folder; says what it looked for where none does.
+/// Tries all layouts above; the error lists them if no layout fits the folder.
 [[nodiscard]] Result<Recording> index_recording(const std::string& folder,
                                                 const OpenOptions& options);
 
-/// "stamp_ns,..." rows of an EuRoC data.csv: stamp, the next field, and the line.
+/// Row "stamp_ns,..." of an EuRoC data.csv: stamp, the next field, and the line.
 struct CsvRow {
     std::int64_t time_ns = 0;
     std::string value;
@@ -91,57 +91,57 @@ struct CsvRow {
 };
 [[nodiscard]] Result<std::vector<CsvRow>> parse_euroc_frames(std::string_view text,
                                                              const std::string& file);
-/// IMU rows: stamp_ns, angular velocity [rad/s], specific force [m/s^2]; stamps must grow.
+/// Parses IMU rows: stamp_ns, angular velocity [rad/s], specific force [m/s^2]; stamps increase.
 [[nodiscard]] Result<std::vector<ImuSample>> parse_euroc_imu_samples(std::string_view text,
                                                                      const std::string& file);
-/// "stamp_s file" rows of TUM's rgb.txt and depth.txt.
+/// Parses "stamp_s file" rows of TUM's rgb.txt and depth.txt.
 [[nodiscard]] Result<std::vector<CsvRow>> parse_tum_list(std::string_view text,
                                                          const std::string& file);
 
-/// Rows "stamp_s file stamp_s file" of associations.txt; the file with "depth" in its name is the
-/// depth image, else the second one.
+/// Row "stamp_s file stamp_s file" of associations.txt. The file with "depth" in its name is the
+/// depth image, otherwise the second file.
 struct AssociatedRow {
     CsvRow colour;
     CsvRow depth;
 };
 [[nodiscard]] Result<std::vector<AssociatedRow>> parse_associations(std::string_view text,
                                                                     const std::string& file);
-/// "2011-09-26 13:02:25.964389445" rows of KITTI raw, as nanoseconds since 1970.
+/// Parses "2011-09-26 13:02:25.964389445" rows of KITTI raw to nanoseconds since 1970.
 [[nodiscard]] Result<std::vector<std::int64_t>> parse_timestamps(std::string_view text,
                                                                  const std::string& file);
 
-/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else nothing. `size` is that of the
-/// images of one eye, where it is known (see read_rig).
+/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else no value. `size`: image size
+/// of one camera, if known (see read_rig).
 [[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(
     const std::string& folder, const OpenOptions& options, std::optional<ImageSize> size = {});
-/// Size that the header of an image file says; nothing where it cannot be read.
+/// Size in the header of an image file; no value if it cannot be read.
 [[nodiscard]] std::optional<ImageSize> image_size_of(const std::string& path);
-/// Half of it, for one eye of a side-by-side image; nothing for odd widths.
+/// Image size of one camera in a side-by-side image (half the width); no value for odd widths.
 [[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
 /// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
-/// says so in `notes`. Any other size leaves the rig, and the frames are refused: a ratio like 2/3
-/// may as well be another cut-out of the sensor, with other angles.
+/// adds a note. For any other size the rig stays, and the frames are refused: a ratio like 2/3 may
+/// also be a different crop of the sensor, with other angles.
 void fit_rig(camera::StereoRig& rig,
              std::optional<ImageSize> images,
              std::vector<std::string>& notes);
-/// The tolerance of the options, else this one.
+/// Uses the tolerance of the options, else `otherwise_ns`.
 void set_pair_tolerance(const OpenOptions& options,
                         std::int64_t otherwise_ns,
                         Recording& recording);
-/// Pairs by stamps within the recording's tolerance. Counts what is unpaired and the largest
-/// difference, and says both in the notes.
+/// Pairs stamps within the tolerance of the recording. Counts the unpaired images and the largest
+/// difference; the notes report both.
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
-/// The rate to give to frames without stamps: from the options, else `otherwise_hz`.
+/// Frame rate for frames without stamps: from the options, else `otherwise_hz`.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
-/// Error when a rate is asked for although the recording has stamps.
+/// Error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
-/// Stamp of frame `index` at a constant rate, from 0.
+/// Stamp of frame `index` at a constant rate, starting at 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
 
-/// Opens the frames of an index one after the other. A frame that cannot be had (missing or damaged
-/// image, wrong size, stamp that does not grow) is an error that names it; the next call goes on
+/// Opens the frames of an index one after another. An unusable frame (missing or damaged image,
+/// wrong size, stamp that does not increase) is an error that names it; the next call continues
 /// with the next frame.
 class RecordingSource final : public camera::FrameSource {
   public:
@@ -161,24 +161,24 @@ class RecordingSource final : public camera::FrameSource {
     std::optional<std::int64_t> last_time_ns_;
 };
 
-/// Passes over frames that cannot be had, and counts them in `info().broken` and in the arrival of
-/// the next frame.
+/// Skips unusable frames and counts them in `info().broken` and in the frame status of the next
+/// frame.
 [[nodiscard]] std::unique_ptr<camera::FrameSource> skip_broken_frames(
     std::unique_ptr<camera::FrameSource> source);
 
-/// A side-by-side frame cut into both eyes; `what` names it in errors.
+/// Splits a side-by-side frame into both camera images; `what` names the frame in errors.
 [[nodiscard]] Status split_side_by_side(const GreyImage& both,
                                         const camera::StereoRig& rig,
                                         const std::string& what,
                                         StereoFrame& frame);
 
-/// Any recording: a folder of the layouts above, or a side-by-side video file.
+/// Opens any recording: a folder of the layouts above, or a side-by-side video file.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(
     const std::string& path, const OpenOptions& options = {});
-/// Is this the name of a video file (by its extension)?
+/// Whether the extension of the name is that of a video file.
 [[nodiscard]] bool is_video_name(const std::string& path);
-/// A side-by-side video with rig.yaml in the same folder. Stamps by one rule: `options.rate_hz`,
-/// else the times of the container, else the rate of the rig, else 15 Hz.
+/// Opens a side-by-side video with rig.yaml in the same folder. Stamps come from the first
+/// available source: `options.rate_hz`, the times of the container, the rate of the rig, 15 Hz.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
                                                                       const OpenOptions& options);
 

@@ -27,7 +27,7 @@ std::optional<std::int64_t> in_range(std::optional<std::int64_t> time_ns) {
     return time_ns && *time_ns >= 0 && *time_ns <= kMaxStamp_ns ? time_ns : std::nullopt;
 }
 
-/// Whichever layout the folder has.
+/// Indexes the folder with the first layout that fits.
 Result<Recording> index_any(const std::string& folder, const OpenOptions& options) {
     const std::string inner = join_path(folder, "mav0");
     for (const std::string& euroc : {inner, folder}) {
@@ -43,14 +43,15 @@ Result<Recording> index_any(const std::string& folder, const OpenOptions& option
     return index_side_by_side(folder, options);
 }
 
-/// 16-bit camera images: how many bits their values fill. Mixed depths are left to the frames.
+/// Finds the number of bits that the values of 16-bit camera images use. Frames with mixed bit
+/// depths fail later, one by one.
 Status choose_image_bits(const OpenOptions& options, Recording& recording) {
     if (recording.storage == Recording::Storage::rgbd) return {};
     const auto& frames = recording.frames;
     unsigned largest = 0;
     for (const std::size_t i : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
         const Result<std::string> bytes = read_file(frames[i].left, limits::kImageBytes);
-        if (!bytes) return {};  // said when the frame is read
+        if (!bytes) return {};  // reported when the frame is read
         const Result<ImageHeader> header = check_image(*bytes, frames[i].left);
         if (!header || header->bits != 16) return {};
         const Result<DepthCodes> codes = parse_depth_codes(*bytes, frames[i].left);
@@ -58,7 +59,7 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
         for (std::size_t k = 0; k < codes->size(); ++k)
             largest = std::max<unsigned>(largest, codes->data()[k]);
     }
-    // Sensors have 10, 12, 14 or 16 bits; the values of shorter ones are often moved up to 16.
+    // Sensors have 10, 12, 14 or 16 bits; cameras often shift shorter values up to 16 bits.
     int guess = 16;
     for (const int bits : {14, 12, 10})
         if (largest > 0 && static_cast<int>(std::bit_width(largest)) <= bits) guess = bits;
@@ -203,7 +204,7 @@ Result<std::vector<std::int64_t>> parse_timestamps(std::string_view text, const 
                 const std::chrono::sys_days days = named;
                 const std::int64_t minutes =
                     (days.time_since_epoch().count() * 24LL + *hour) * 60 + *minute;
-                // 30 February would silently become a day of March.
+                // Without this check 30 February would silently become a day of March.
                 if (named.ok()) time_ns = in_range(minutes * 60'000'000'000 + *second_ns);
             }
         }
@@ -312,7 +313,7 @@ Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz) {
 Status refuse_rate(const OpenOptions& options, const std::string& file) {
     if (!options.rate_hz) return {};
     return usage_error(fmt::format(
-        "--rate {}: {} has stamps of its own; leave the rate away", *options.rate_hz, file));
+        "--rate {}: {} has its own stamps; remove the option --rate", *options.rate_hz, file));
 }
 
 std::int64_t stamp_at(int index, double rate_hz) noexcept {

@@ -60,7 +60,7 @@ void describe_imu(const std::vector<ImuSample>& samples, RecordingInfo& info) {
         info.imu_rate_hz = 1e9 / static_cast<double>(upper_median(intervals_ns));
 }
 
-/// Decodes a video to its end: its container may announce frames that are not there.
+/// Decodes a video to its end, because its container may announce missing frames.
 Result<RecordingInfo> inspect_video(const std::string& path, const OpenOptions& options) {
     const auto source = open_video(path, options);
     if (!source) return source.error();

@@ -34,7 +34,7 @@ Status check_size(const GreyImage& image, const camera::StereoRig& rig, const st
                     rig.left.height));
 }
 
-/// A camera image; of one with 16 bits the upper 8 of `bits`.
+/// Reads a camera image; from 16-bit images it takes the upper 8 of `bits`.
 Result<GreyImage> read_camera_image(const std::string& path, int bits) {
     if (bits == 8) return read_grey_image(path);
     const Result<DepthCodes> codes = read_depth_codes(path);
@@ -151,7 +151,8 @@ Result<std::optional<StereoFrame>> RecordingSource::next() {
 
 namespace {
 
-/// A video has no index: what comes before is read and dropped, damaged frames too.
+/// Opens a video at a frame. A video has no index, so earlier frames are read and dropped, damaged
+/// frames included.
 Result<std::unique_ptr<camera::FrameSource>> open_video_at(const std::string& path,
                                                            const OpenOptions& options) {
     auto source = open_video(path, options);
@@ -163,7 +164,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_video_at(const std::string& pa
     return source;
 }
 
-/// Passes over what is broken; see skip_broken_frames.
+/// Skips unusable frames; see skip_broken_frames.
 class SkippingSource final : public camera::FrameSource {
   public:
     explicit SkippingSource(std::unique_ptr<camera::FrameSource> source)

@@ -76,7 +76,7 @@ void record(const std::string& folder, int frames = 5) {
     ASSERT_TRUE(recorder->finish().ok());
 }
 
-/// Everything that a source says: one line per frame or error.
+/// All outputs of a source: one line per frame or error.
 struct Played {
     std::vector<StereoFrame> frames;
     std::string errors;
@@ -354,7 +354,7 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
     OpenOptions rate;
     rate.rate_hz = 10.0;
     record(folder / "h", 2);
-    EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has stamps of its own"));
+    EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has its own stamps"));
 }
 
 TEST(EurocSource, BeginsAtAnyFrame) {
@@ -380,7 +380,7 @@ TEST(EurocSource, BeginsAtAnyFrame) {
     EXPECT_TRUE(play(folder / "r", options).frames.empty());
 }
 
-/// Images that were binned two by two: the calibration follows, and the source says so.
+/// Images binned two by two: the calibration is scaled, and a note reports it.
 TEST(EurocSource, ACalibrationOfTwiceTheSizeIsHalved) {
     const TemporaryFolder folder;
     record(folder / "r", 2);
@@ -603,7 +603,7 @@ TEST(TumSource, AssociatesColourAndDepthByTime) {
     ASSERT_TRUE(write_png(folder / "depth/a.png", GreyImage(640, 480)).ok());
     EXPECT_TRUE(contains(play(folder.path()).errors, "must be 16-bit grey"));
     ASSERT_TRUE(write_file(folder / "depth.txt", "11 depth/a.png\n").ok());
-    EXPECT_TRUE(contains(play(folder.path()).errors, "none are within 20 ms"));
+    EXPECT_TRUE(contains(play(folder.path()).errors, "are within 20 ms of each other"));
     ASSERT_TRUE(write_file(folder / "depth.txt", "11 a b\n").ok());
     EXPECT_TRUE(contains(play(folder.path()).errors, "depth.txt:1: expected 'stamp_s file'"));
 }

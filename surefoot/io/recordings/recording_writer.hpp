@@ -11,22 +11,22 @@
 
 namespace surefoot::io {
 
-/// One layout of recordings on disk; the Recorder checks frames before they come here. Images are
-/// written before the lines that name them, and the line that a reader looks for first comes last.
+/// One disk layout of recordings; the Recorder checks frames before it calls the writer. Images are
+/// written before the lines that name them; the line that readers search first is written last.
 class RecordingWriter {
   public:
     virtual ~RecordingWriter() = default;
-    /// Makes the folders, calibration files and empty lists.
+    /// Creates the folders, calibration files and empty lists.
     [[nodiscard]] virtual Status start() = 0;
     [[nodiscard]] virtual Status add(const StereoFrame& frame) = 0;
     [[nodiscard]] virtual Status close() = 0;
-    /// Reads the images that were written for the stamp of `frame`; false unless all are whole.
+    /// Reads the images written for the stamp of `frame`; false unless all are complete.
     [[nodiscard]] virtual bool read_back(StereoFrame& frame) const = 0;
-    /// Of the images that were written.
+    /// Size of all written images.
     [[nodiscard]] virtual std::int64_t bytes() const noexcept = 0;
 };
 
-/// Size of a file that was written; 0 where there is none.
+/// Size of a written file; 0 if it does not exist.
 [[nodiscard]] std::int64_t written_bytes(const std::string& path) noexcept;
 
 [[nodiscard]] std::unique_ptr<RecordingWriter> make_euroc_writer(const std::string& folder,

@@ -11,22 +11,22 @@ namespace surefoot::io {
 /// Stamps of a recording lie between 1970 and 2261, so that sums and differences stay in range.
 inline constexpr std::int64_t kMaxStamp_ns = 9'200'000'000'000'000'000;
 
-/// A unit that files give stamps in.
+/// Unit of stamps in files.
 struct StampUnit {
     std::string_view name;  ///< "s", "ms", "us" or "ns"
     int decimals = 9;       ///< its stamps times 10^decimals are nanoseconds
 };
 
-/// The unit named so ("s", "sec", "ns", ...), or nothing.
+/// The unit with this name ("s", "sec", "ns", ...); no value for other names.
 [[nodiscard]] std::optional<StampUnit> stamp_unit_named(std::string_view name) noexcept;
 
-/// The unit of stamps, as words of a file. Stamps since 1970 are told by their size: from 1e17 on
-/// they are ns, from 1e14 on us, from 1e11 on ms. Whole numbers from another origin are ns where
-/// they are a million or more apart (in s that would be eleven days). All else is seconds. Words
-/// that are no numbers are passed over.
+/// Guesses the unit of stamps from their text. Stamps since 1970 are recognised by size: ns from
+/// 1e17, us from 1e14, ms from 1e11. Whole numbers with another origin are ns if they are a million
+/// or more apart (in s this would be eleven days). All others are seconds. Words that are not
+/// numbers are ignored.
 [[nodiscard]] StampUnit stamp_unit_of(std::span<const std::string_view> words);
 
-/// A stamp in nanoseconds, exact for plain digits; nothing for anything that is no such number.
+/// Parses a stamp to nanoseconds, exact for plain digits; no value if it is not such a number.
 [[nodiscard]] std::optional<std::int64_t> parse_stamp_ns(std::string_view word,
                                                          const StampUnit& unit) noexcept;
 

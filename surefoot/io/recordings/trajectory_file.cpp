@@ -43,7 +43,7 @@ Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
     const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
         return input_error(
-            fmt::format("its left 3x3 is no rotation (R^T R differs from 1 by {:.3g})", error));
+            fmt::format("its left 3x3 is not a rotation (R^T R differs from 1 by {:.3g})", error));
     }
     return Pose::from_matrix(T);
 }

@@ -63,7 +63,8 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
     EXPECT_TRUE(contains(why(std::string("\xff\xfe") + "1"), "a.tum:1: is text in UTF-16"));
     EXPECT_TRUE(
         contains(why("1403636579000000000,0,0,0,1,0,0,0\n"), "is the quaternion qw,qx,qy,qz"));
-    EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 2 0\n"), "a.tum:1: its left 3x3 is no rotation"));
+    EXPECT_TRUE(
+        contains(why("1 0 0 0 0 1 0 0 0 0 2 0\n"), "a.tum:1: its left 3x3 is not a rotation"));
     EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 -1 0\n"), "no rotation"));
     EXPECT_TRUE(
         contains(write_tum_trajectory("/dev/full", {{1, Pose{}}}).error().message, "No space"));
@@ -155,7 +156,7 @@ TEST(TrajectoryFile, ColumnsAndUnitsAreThoseOfTheHead) {
         EXPECT_NEAR(pose.rotation.x(), 0.6, 1e-12) << file.what;
         EXPECT_NEAR(pose.rotation.w(), 0.8, 1e-12) << file.what;
     }
-    // Nanoseconds from another origin are told by their steps.
+    // Nanoseconds from another origin are recognised by their steps.
     const auto relative = parse_trajectory("0 0 0 0 0 0 0 1\n50000000 1 0 0 0 0 0 1\n", "a.tum");
     ASSERT_TRUE(relative.ok());
     EXPECT_EQ(relative->stamps, "ns");

@@ -14,29 +14,29 @@
 
 namespace surefoot::io {
 
-/// Where a stamped pose stands in a line: stamp, x, y, z, qx, qy, qz, qw.
+/// Column numbers of a stamped pose: stamp, x, y, z, qx, qy, qz, qw.
 using PosePlaces = std::array<std::size_t, 8>;
 
-/// How the lines of a trajectory file are read.
+/// Layout of the lines of a trajectory file.
 struct TrajectoryLayout {
     std::string format;  ///< as TrajectoryFile
     bool stamped = true;
     std::size_t columns = 0;
     char separator = ' ';
     PosePlaces places = {0, 1, 2, 3, 4, 5, 6, 7};
-    std::optional<StampUnit> unit;  ///< where the head names it
+    std::optional<StampUnit> unit;  ///< if the header names it
 };
 
 /// A line of numbers: the seven of a stamped pose, or the twelve of a 3x4 matrix.
 struct TrajectoryRow {
     int line = 0;
-    std::string_view stamp;  ///< of the text that was read; empty without stamps
+    std::string_view stamp;  ///< view into the text; empty without stamps
     std::array<double, 12> numbers{};
     bool finite = true;
 };
 
-/// Lines of a trajectory file: the layout is that of the head line, or told by the first line of
-/// numbers. Rows refer to the text.
+/// Lines of a trajectory file. The header line defines the layout, or the first line of numbers if
+/// there is no header. Rows are views into the text.
 class TrajectoryTable {
   public:
     /// Errors name `file` and the line.
@@ -56,7 +56,7 @@ class TrajectoryTable {
     std::string_view head_line_;
     TrajectoryLayout layout_;
     std::vector<TrajectoryRow> rows_;
-    std::vector<std::string_view> words_;  ///< of the present line
+    std::vector<std::string_view> words_;  ///< of the current line
 };
 
 }  // namespace surefoot::io

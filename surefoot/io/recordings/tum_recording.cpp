@@ -34,7 +34,7 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
     return parse_tum_list(*text, path);
 }
 
-/// Which images belong together: what associations.txt says, else by time.
+/// Pairs of images: from associations.txt, else by time.
 struct Association {
     std::string list;  ///< of the colour images
     std::vector<CsvRow> colour;
@@ -88,8 +88,8 @@ Result<Association> associate(const std::string& folder,
     return out;
 }
 
-/// Depths of the first image, which tell millimetres from the codes of the benchmark: no depth
-/// camera measures nearer than a quarter of a metre.
+/// Guesses the depth unit from the first image. The nearest depth decides between millimetres and
+/// the codes of the benchmark, because no depth camera measures nearer than a quarter of a metre.
 Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (options.depth_codes_per_m) {
         const double codes = *options.depth_codes_per_m;
@@ -102,7 +102,7 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     }
     const Result<DepthCodes> codes = read_depth_codes(recording.frames.front().right);
-    if (!codes) return {};  // said when the frame is read
+    if (!codes) return {};  // reported when the frame is read
     std::vector<std::uint16_t> known;
     for (std::size_t i = 0; i < codes->size(); ++i)
         if (codes->data()[i] != 0) known.push_back(codes->data()[i]);
@@ -145,12 +145,13 @@ Result<Recording> index_tum_rgbd(const std::string& folder, const OpenOptions& o
                                     fmt::format("{}:{}", found->list, row.line)});
     }
     if (recording.frames.empty()) {
-        return input_error(fmt::format(
-            "{}: no frames: of {} colour and {} depth images none are within {:g} ms of each other",
-            folder,
-            found->colour.size(),
-            found->depth.size(),
-            1e3 * recording.pair_tolerance_s));
+        return input_error(
+            fmt::format("{}: no frames: no two of the {} colour and {} depth images are within "
+                        "{:g} ms of each other",
+                        folder,
+                        found->colour.size(),
+                        found->depth.size(),
+                        1e3 * recording.pair_tolerance_s));
     }
     if (Status status = choose_depth_factor(options, recording); !status) return status.error();
     recording.info.frames = static_cast<int>(recording.frames.size());

@@ -29,7 +29,7 @@ DepthCodes codes_of(const Image<float>& depth_m) {
     return codes;
 }
 
-/// The depths that `codes_of` makes these codes of.
+/// Inverse of `codes_of`.
 Image<float> depths_of(const DepthCodes& codes) {
     Image<float> depth_m(codes.width(), codes.height());
     for (std::size_t i = 0; i < codes.size(); ++i)
@@ -41,7 +41,7 @@ class TumWriter final : public RecordingWriter {
   public:
     TumWriter(std::string folder, camera::StereoRig rig)
         : folder_(std::move(folder)), rig_(std::move(rig)) {
-        rig_.imu.reset();  // its samples have no place here
+        rig_.imu.reset();  // TUM RGB-D cannot store IMU samples
     }
 
     [[nodiscard]] Status start() override {

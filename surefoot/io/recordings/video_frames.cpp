@@ -16,8 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// Times of frames from the positions that the decoder reports [ms]. OpenCV reports 0 for frames
-/// that the decoder gives out only at the end of the file, and for containers without times.
+/// Frame times from the positions that the decoder reports [ms]. OpenCV reports 0 for frames that
+/// the decoder returns only at the end of the file, and for containers without times.
 class FrameTimes {
   public:
     [[nodiscard]] std::optional<std::int64_t> next(double position_ms, double rate_hz) {
@@ -65,8 +65,8 @@ GreyImage grey_of(const cv::Mat& image) {
     return grey;
 }
 
-/// How much of the announced duration may be missing [s]. AVI counts its frames; MP4 counts those
-/// outside of its edit list too; other containers know a duration, of the sound as well.
+/// Tolerated missing part of the announced duration [s]. AVI counts its frames; MP4 also counts
+/// frames outside its edit list; other containers give a duration that includes the sound.
 double allowed_shortage_s(const std::string& path, double rate_hz) {
     const std::string extension = extension_of(path);
     if (extension == ".avi") return 0.5 / rate_hz;
@@ -82,7 +82,7 @@ struct VideoFrames::Impl {
     FrameTimes times;
     int decoded = 0;
     bool ended = false;
-    std::optional<VideoFrame> held;  ///< the newest, until it is known to be whole
+    std::optional<VideoFrame> held;  ///< the newest frame, until it is known to be complete
 
     [[nodiscard]] double get(int property) const { return capture.get(property); }
     [[nodiscard]] double rate_hz() const {
@@ -98,14 +98,14 @@ struct VideoFrames::Impl {
     [[nodiscard]] bool breaks_off();
 };
 
-/// The next frame, or nothing where the decoder gives no more.
+/// Decodes the next frame; no value if the decoder returns no more frames.
 Result<std::optional<VideoFrame>> VideoFrames::Impl::decode() {
     const std::string what = fmt::format("frame {}: {}", decoded, path);
     cv::Mat image;
     try {
         if (!capture.read(image)) image.release();
     } catch (const cv::Exception&) {
-        ended = true;  // nobody knows whether another call would fail alike for ever
+        ended = true;  // a second call might repeat the same failure for ever
         return input_error(what + ": cannot be decoded");
     }
     if (image.empty()) return std::optional<VideoFrame>();
@@ -116,8 +116,8 @@ Result<std::optional<VideoFrame>> VideoFrames::Impl::decode() {
         VideoFrame{grey_of(image), times.next(get(cv::CAP_PROP_POS_MSEC), rate_hz())});
 }
 
-/// Whether the frames end before the container says so. OpenCV cannot tell a decode failure from
-/// the end; the announced duration can.
+/// Whether the frames end before the announced end. OpenCV reports a decode failure like the end of
+/// the file, so the announced duration decides.
 bool VideoFrames::Impl::breaks_off() {
     if (decoded >= count() || rate_hz() <= 0.0) return false;
     const double announced_s = count() / rate_hz();
@@ -136,10 +136,10 @@ Result<VideoFrames> VideoFrames::open(const std::string& path) {
     impl->path = path;
     bool opened = false;
     try {
-        // Only backends that read files: asked in general, OpenCV also searches for cameras on USB.
+        // Only backends for files: with any backend OpenCV would also search for USB cameras.
         opened = impl->capture.open(path, cv::CAP_FFMPEG) ||
                  impl->capture.open(path, cv::CAP_OPENCV_MJPEG);
-    } catch (const cv::Exception&) {  // reported below, in our words
+    } catch (const cv::Exception&) {  // reported below
     }
     if (!opened)
         return input_error(path + ": cannot be opened as a video (damaged, or unknown codec)");

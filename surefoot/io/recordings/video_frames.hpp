@@ -12,27 +12,27 @@ namespace surefoot::io {
 
 struct VideoFrame {
     GreyImage image;
-    /// As the container says. Where it has no times, index / rate; nothing without a rate either.
+    /// Time from the container. Without times: index / rate; no value without a rate either.
     std::optional<std::int64_t> time_ns;
 };
 
-/// Frames of a video file as grey images with the times of its container, without asking for a rig.
+/// Grey frames of a video file with the times of its container; needs no rig.
 class VideoFrames {
   public:
-    /// Regular files only.
+    /// Opens regular files only.
     [[nodiscard]] static Result<VideoFrames> open(const std::string& path);
     ~VideoFrames();
     VideoFrames(VideoFrames&&) noexcept;
     VideoFrames& operator=(VideoFrames&&) noexcept;
 
-    /// How many frames the container announces, which may be wrong; 0 = it does not say.
+    /// Number of frames that the container announces, which may be wrong; 0 = not announced.
     [[nodiscard]] int count() const;
-    /// Mean rate that the container announces [Hz]; 0 = none between 0.1 and 1000.
+    /// Mean rate that the container announces [Hz]; 0 = no rate between 0.1 and 1000.
     [[nodiscard]] double rate_hz() const;
     [[nodiscard]] int width() const;
     [[nodiscard]] int height() const;
-    /// Nothing at the end. A video that breaks off before the end that its container announces is
-    /// an error, said once; its last frame is then not given, because it may be cut off.
+    /// The next frame; no value at the end. If the video stops before the end that its container
+    /// announces, one error is returned and its possibly truncated last frame is dropped.
     [[nodiscard]] Result<std::optional<VideoFrame>> next();
 
   private:

@@ -133,7 +133,8 @@ TEST(VideoFrames, AVideoThatBreaksOffIsNotAtItsEnd) {
     EXPECT_EQ(play(path, options).info.broken.count, 1);
 }
 
-/// The last frame of a cut file is decoded with the rest filled up: nobody may use it.
+/// The decoder fills up the missing part of the last frame of a cut file: this frame must not be
+/// used.
 TEST(VideoFrames, TheLastFrameOfACutVideoIsNotGiven) {
     const TemporaryFolder folder;
     const std::string path = folder / "cut.avi";

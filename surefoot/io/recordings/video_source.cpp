@@ -51,7 +51,7 @@ class VideoSource final : public camera::FrameSource {
     }
 
   private:
-    /// The rate by one rule: --rate, else the container's, else the rig's, else 15 Hz.
+    /// Adds a note about the rate: --rate, else the container's, else the rig's, else 15 Hz.
     void note_rate() {
         const double of_rig_hz = rig_.rate_hz;
         const double of_video_hz = frames_.rate_hz();
@@ -76,7 +76,7 @@ class VideoSource final : public camera::FrameSource {
     int index_ = 0;
 };
 
-/// The rig of a video of one eye's `size`, if that is known.
+/// The rig of a video; `size` is the image size of one camera, if known.
 Result<camera::StereoRig> rig_of(const std::string& path,
                                  const OpenOptions& options,
                                  std::optional<ImageSize> size) {

@@ -125,7 +125,7 @@ class AssignVisitor final : public PathVisitor {
             if (assign_) value = static_cast<int>(i);
             return;
         }
-        fail(*given, key, "is none of " + joined(names));
+        fail(*given, key, "is not one of " + joined(names));
     }
 
   private:
@@ -215,10 +215,12 @@ Status collect(const YamlNode& node,
                Notes* notes) {
     for (const YamlNode& child : node.items) {
         const std::string where = fmt::format("{}:{}", file, child.line);
-        const std::string key = name_today(prefix + child.key, where, keys, notes);
-        const bool known = is_key(key, keys);
-        if (!known && !is_group(key, keys)) {
-            // Show the reader a whole key: the first inside a misspelt group is as good as any.
+        const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
+        const bool group = std::any_of(keys.begin(), keys.end(), [&](const std::string& other) {
+            return other.starts_with(key + ".");
+        });
+        if (!known && !group) {
+            // Report a complete key: any key inside a misspelled group serves, so take the first.
             const bool inner = child.is_mapping() && !child.items.empty();
             return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);
         }

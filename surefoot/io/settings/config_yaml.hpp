@@ -9,19 +9,15 @@
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/result.hpp"
 
-/// Configuration objects <-> YAML. Works with everything that has `void describe(ConfigVisitor&)`.
-/// Strict: an unknown key, a wrong type or a value out of range is a usage error with file and
-/// line, and the object is then unchanged. Keys may have the names of the version before
-/// (renamed_keys.hpp); `notes`, if given, then receives a sentence with the new name.
+/// Converts configuration objects to YAML and back. Works with every type that has `void
+/// describe(ConfigVisitor&)`. Strict: an unknown key, a wrong type or a value out of range is a
+/// usage error with file and line, and the object stays unchanged.
 namespace surefoot::io {
 
-/// Walks a config object with a visitor.
+/// Describes a config object to a visitor.
 using DescribeConfig = std::function<void(ConfigVisitor&)>;
 
-/// Sentences for the user about a text that was read without an error, such as an old key.
-using Notes = std::vector<std::string>;
-
-/// One key with its present value, flat.
+/// One key with its current value, without nesting.
 struct ConfigEntry {
     std::string key;    ///< with its groups: "elevation.length_m"
     std::string value;  ///< reads back to the same bits
@@ -30,19 +26,17 @@ struct ConfigEntry {
 };
 
 [[nodiscard]] std::vector<ConfigEntry> list_config(const DescribeConfig& describe);
-/// Every key with value, range and comment; reads back bit-exactly.
+/// Formats every key with value, range and comment; reads back bit-exactly.
 [[nodiscard]] std::string format_config(const DescribeConfig& describe);
-/// Takes over the values of a YAML text; keys that are not in it keep theirs. Groups may be nested
-/// or written with dots ("elevation.length_m: 6").
+/// Sets the values of a YAML text; keys that the text does not contain keep their values. Groups
+/// may be nested or written with dots ("elevation.length_m: 6").
 [[nodiscard]] Status parse_config(std::string_view yaml,
                                   const std::string& file,
-                                  const DescribeConfig& describe,
-                                  Notes* notes = nullptr);
-/// One override "key=value" with the same checks.
+                                  const DescribeConfig& describe);
+/// Applies one override "key=value" with the same checks.
 [[nodiscard]] Status override_config(std::string_view key_and_value,
-                                     const DescribeConfig& describe,
-                                     Notes* notes = nullptr);
-/// The same for a key and a value that came from elsewhere; an error begins with the key.
+                                     const DescribeConfig& describe);
+/// As above for a separate key and value; an error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);

@@ -89,7 +89,7 @@ TEST(ConfigYaml, WrongValuesNameTheKeyTheValueAndTheLimit) {
     EXPECT_TRUE(contains(message_of("elevation: 3"), "expected a group of keys"));
     EXPECT_TRUE(contains(message_of("disparities: 64.5"), "'64.5' is not a whole number"));
     EXPECT_TRUE(contains(message_of("disparities: 5000"), "'5000' is outside 16 .. 512"));
-    EXPECT_TRUE(contains(message_of("elevation: {rule: median}"), "is none of mean | worst"));
+    EXPECT_TRUE(contains(message_of("elevation: {rule: median}"), "is not one of mean | worst"));
     EXPECT_TRUE(contains(message_of("deep: {deeper: {chunking: yes}}"), "neither true nor false"));
     EXPECT_TRUE(contains(message_of("disparities: 32\ndisparities: 64"), "appears twice"));
     EXPECT_TRUE(contains(message_of("elevation: {length_m: 3}\nelevation.length_m: 4"), "twice"));

@@ -19,19 +19,19 @@ struct IniFile {
     };
     using Section = std::map<std::string, Value>;
 
-    std::string name;  ///< for messages
+    std::string name;  ///< file name for messages
     std::map<std::string, Section> sections;
 
     /// The section, or nullptr.
     [[nodiscard]] const Section* find(std::string_view section) const;
     /// The value, or nullptr.
     [[nodiscard]] const Value* find(std::string_view section, std::string_view key) const;
-    /// A finite number that must be there. A comma in it is an error that says so: "0,5" of a file
-    /// that was written in another locale would else be read as 0.
+    /// A required finite number. A comma in it is an explicit error: otherwise "0,5" of a file that
+    /// was written in another locale would be read as 0.
     [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
 };
 
-/// A key or section that comes twice, and a line that is neither, are errors; at most 1 MB.
+/// Errors: a repeated key or section, an unreadable line, more than 1 MB of text.
 [[nodiscard]] Result<IniFile> parse_ini(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::io

@@ -58,7 +58,7 @@ void read_body(Group& group, Body& body) {
     body.sway_tenth_mm = group.length("sway_m", 0.0, 0.5);
     group.list("parts", Body::kMaxParts, [&](Group& item) {
         BodyPart part;
-        std::ignore = item.text("name", 40);  // for people
+        std::ignore = item.text("name", 40);  // for human readers only
         part.box = read_box(item);
         part.low_tenth_mm = item.length("low_m", 0.0001, 2.0);
         part.high_tenth_mm = item.length("high_m", 0.0001, 3.0);
@@ -93,7 +93,7 @@ void read_movement(Group& group, Machine& machine) {
         movement.movement_class = MovementClass::stair;
     else if (name_of_class != "walk")
         group.fail("class", quoted(name_of_class) + " is neither walk nor stair");
-    if (code == 0) return;  // missing or refused: reported already, or by finish()
+    if (code == 0) return;  // missing or refused; this is reported elsewhere or by finish()
     Movement& slot = machine.movements[static_cast<std::size_t>(code)];
     if (slot.configured) group.fail("code", fmt::format("{} is there twice", code));
     slot = movement;
@@ -138,7 +138,8 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.attestation_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
 }
 
-/// What no gait of the class can do. A foot that is lifted by `swing_clearance` cannot land higher.
+/// Checks limits that no gait of the class can reach: a foot cannot land higher than
+/// `swing_clearance`, to which it is lifted.
 void check_gait(Group& root, const GateLimits& limits) {
     constexpr double kTenthMmPerMetre = 1e4;
     const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];

@@ -20,25 +20,25 @@ struct JointRange {
     double max_deg = 0.0;
 };
 
-/// What a machine file says. machines/rex.yaml shows every key but `deviations`, which
+/// Contents of a machine file. machines/rex.yaml shows every key except `deviations`, which
 /// docs/reference/machine_file.md explains.
 struct MachineFile {
     std::string name;
-    Machine machine;               ///< what the gate needs
+    Machine machine;               ///< the part that the gate needs
     Pose T_body_left;              ///< the mount: left camera's optical frame in base_link
-    double mount_pitch_deg = 0.0;  ///< of it, downward positive
+    double mount_pitch_deg = 0.0;  ///< pitch of the mount, downward positive
     double speed_m_s = 0.0;        ///< fastest motion of base_link; 0 = unknown
-    double turn_deg_s = 0.0;       ///< fastest turn of it; 0 = unknown
+    double turn_deg_s = 0.0;       ///< fastest turn of base_link; 0 = unknown
     std::vector<JointRange> joints;
-    std::vector<Deviation> deviations;  ///< limits beyond their rated values, each signed for
+    std::vector<Deviation> deviations;  ///< limits laxer than rated, each signed by a person
     std::uint64_t hash = 0;             ///< FNV-1a of the file's bytes, for logs
 };
 
-/// Strict: every key must be there, once, inside its range, and no other key may be; otherwise a
-/// usage error with file, line, key, value and limit. Lengths are rounded to 0.1 mm. A limit that
-/// is laxer than its rated value (surefoot/io/settings/rated_limits.hpp) needs a line in
-/// `deviations`; a step of class walk that is higher than what the swinging foot passes over is
-/// refused whoever signs.
+/// Strict: every key must be present once and inside its range, and no other key is allowed.
+/// Otherwise a usage error names file, line, key, value and limit. Lengths are rounded to 0.1 mm. A
+/// limit that is laxer than its rated value (surefoot/io/settings/rated_limits.hpp) needs an entry
+/// in `deviations`. A step of class walk that is higher than the swing clearance is refused even
+/// with a signature.
 [[nodiscard]] Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file);
 [[nodiscard]] Result<MachineFile> read_machine(const std::string& path);
 

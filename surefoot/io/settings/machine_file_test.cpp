@@ -207,7 +207,7 @@ TEST(MachineFile, every_limit_is_judged_in_its_own_direction) {
                 end - value,
                 whole ? std::to_string(static_cast<int>(changed)) : std::to_string(changed));
             const std::string said = message_of(other);
-            EXPECT_EQ(contains(said, "nobody signed for it"), laxer) << key << ": " << said;
+            EXPECT_EQ(contains(said, "no person has signed for it"), laxer) << key << ": " << said;
         }
     }
 }
@@ -259,11 +259,11 @@ TEST(MachineFile, a_signature_is_for_one_value_of_one_limit) {
     };
     EXPECT_TRUE(contains(line("value: 8", "value: 7"), "7 was signed, but limits.tilt_deg is 8"));
     EXPECT_TRUE(contains(line("tilt_deg", "tiltdeg"),
-                         "is no rated limit; did you mean 'limits.tilt_deg'?"));
+                         "is not a rated limit; did you mean 'limits.tilt_deg'?"));
     EXPECT_TRUE(contains(line("limits.tilt_deg, value: 8", "limits.drop_m, value: 0.05"),
                          "limits.drop_m is not beyond its rated limit 0.05: remove this line"));
-    EXPECT_TRUE(contains(line("2026-11-27", "27.11.2026"), "is no date YYYY-MM-DD"));
-    EXPECT_TRUE(contains(line("2026-11-27", "2026-13-27"), "is no date YYYY-MM-DD"));
+    EXPECT_TRUE(contains(line("2026-11-27", "27.11.2026"), "is not a date YYYY-MM-DD"));
+    EXPECT_TRUE(contains(line("2026-11-27", "2026-13-27"), "is not a date YYYY-MM-DD"));
     EXPECT_TRUE(contains(line("ramp trial with a spotter", "trial"), "10 characters or more why"));
     EXPECT_TRUE(
         contains(line("signed: J. Doe, ", ""), "deviations[0].signed: this key is missing"));

@@ -55,14 +55,16 @@ const ModelJoint* joint_above(const std::vector<ModelJoint>& joints, std::string
     return found == joints.end() ? nullptr : &*found;
 }
 
-/// Names go into a URDF, and from there to programs that take them for identifiers.
+/// Reads a name. Names are written to a URDF, and other programs use them as identifiers.
 std::string read_name(YamlGroup& group, const char* key) {
     std::string name = group.text(key, kMaxName);
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                c == '_';
     });
-    if (!plain) group.fail(key, fmt::format("{}: letters, digits and _ make a name", quoted(name)));
+    if (!plain)
+        group.fail(key,
+                   fmt::format("{}: a name may have only letters, digits and _", quoted(name)));
     return name;
 }
 
@@ -70,7 +72,7 @@ template <typename Part>
 std::string read_new_name(YamlGroup& group, const std::vector<Part>& parts) {
     std::string name = read_name(group, "name");
     if (find(parts, name) != nullptr)
-        group.fail("name", quoted(name) + " is there already: give each a name of its own");
+        group.fail("name", quoted(name) + " is used twice: give each its own name");
     return name;
 }
 
@@ -146,7 +148,7 @@ void read_motion(YamlGroup& group, ModelJoint& joint) {
     else
         group.fail("axis",
                    quoted(axis) +
-                       " is none of x, y and z: turn the joint (roll_deg, pitch_deg, "
+                       " is not x, y or z: turn the joint (roll_deg, pitch_deg, "
                        "yaw_deg) until its axis is one of them");
     const double min_deg = group.number("min_deg", -360.0, 360.0);
     const double max_deg = group.number("max_deg", -360.0, 360.0);
@@ -178,11 +180,11 @@ std::string read_end(YamlGroup& group, const char* key, const MachineModel& mode
     return name;
 }
 
-/// Whether a joint more still leaves a tree; says why not.
+/// Checks that the links still form a tree after this joint is added; reports the reason if not.
 bool fits_into_tree(YamlGroup& group, const MachineModel& model, const ModelJoint& joint) {
     if (const ModelJoint* other = joint_above(model.joints, joint.child)) {
         group.fail("child",
-                   fmt::format("{} hangs on joint {} already: take one of the two away",
+                   fmt::format("{} is already the child of joint {}: remove one of the two joints",
                                quoted(joint.child),
                                quoted(other->name)));
         return false;
@@ -191,7 +193,7 @@ bool fits_into_tree(YamlGroup& group, const MachineModel& model, const ModelJoin
     while (const ModelJoint* above = joint_above(model.joints, link)) link = above->parent;
     if (link != joint.child) return true;
     group.fail("child",
-               fmt::format("{} would hang on itself, a loop: give the joint another parent",
+               fmt::format("{} would be its own parent, a loop: give the joint another parent",
                            quoted(joint.child)));
     return false;
 }
@@ -210,23 +212,25 @@ void read_joint(YamlGroup& group, MachineModel& model) {
     if (fits_into_tree(group, model, joint)) model.joints.push_back(std::move(joint));
 }
 
-/// There is no loop, so that every link hangs on one that hangs on nothing.
+/// Checks that base_link is the only root. There is no loop, so every link has an ancestor that is
+/// a root.
 void check_root(YamlGroup& root, const MachineModel& model) {
     if (find(model.links, kRoot) == nullptr)
-        root.fail("links", fmt::format("there is no {}: name the root like that", kRoot));
+        root.fail("links", fmt::format("there is no {}: give the root this name", kRoot));
     if (const ModelJoint* above = joint_above(model.joints, kRoot))
-        root.fail("joints",
-                  fmt::format("{} is the root and hangs on nothing: turn joint {} round",
-                              kRoot,
-                              quoted(above->name)));
+        root.fail(
+            "joints",
+            fmt::format("{} is the root and cannot be a child: swap parent and child of joint {}",
+                        kRoot,
+                        quoted(above->name)));
     for (std::size_t i = 0; i < model.links.size(); ++i) {
         const std::string& name = model.links[i].name;
         if (name == kRoot || joint_above(model.joints, name) != nullptr) continue;
         root.fail_item("links",
                        i,
                        "name",
-                       fmt::format("{} hangs on no joint, but {} alone is the root: give it a "
-                                   "joint whose child it is",
+                       fmt::format("{} is not the child of a joint, but only {} can be the root: "
+                                   "add a joint whose child it is",
                                    quoted(name),
                                    kRoot));
     }

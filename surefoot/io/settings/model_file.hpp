@@ -13,7 +13,7 @@
 
 namespace surefoot::io {
 
-/// Where something sits in its parent's frame: turns as in Rz(yaw) Ry(pitch) Rx(roll).
+/// Position in the parent's frame; rotation Rz(yaw) Ry(pitch) Rx(roll).
 struct ModelPlace {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();
@@ -28,7 +28,7 @@ struct ModelMaterial {
 
 struct ModelBox {
     Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-    ModelPlace in_link;  ///< of its middle
+    ModelPlace in_link;  ///< position of its centre
     std::string material;
 };
 
@@ -37,7 +37,7 @@ struct ModelLink {
     std::vector<ModelBox> boxes;
 };
 
-/// Hangs a link on another one; a joint that moves turns it about an axis of its own frame.
+/// Attaches a link to another link; a moving joint turns it about an axis of the joint frame.
 struct ModelJoint {
     std::string name;
     std::string parent;
@@ -47,26 +47,26 @@ struct ModelJoint {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit
     double min_rad = 0.0;
     double max_rad = 0.0;
-    double stand_rad = 0.0;  ///< shown where nothing is known
+    double stand_rad = 0.0;  ///< angle to display if the real angle is unknown
 };
 
-/// What a machine looks like. One tree: `base_link` is its root, every other link hangs on one
-/// joint, and all names are there.
+/// Appearance of a machine. The links form one tree: `base_link` is the root, every other link
+/// hangs on exactly one joint, and all referenced names exist.
 struct MachineModel {
     std::string name;
     std::vector<ModelMaterial> materials;
     std::vector<ModelLink> links;
     std::vector<ModelJoint> joints;
 
-    /// In the order of the file.
+    /// In file order.
     [[nodiscard]] std::vector<const ModelJoint*> moving_joints() const;
-    /// Of a link in base_link, the moving joints at these angles (in the order of
-    /// `moving_joints`). The link must be there.
+    /// Pose of a link in base_link for the given angles of the moving joints (in the order of
+    /// `moving_joints`). Precondition: the link exists.
     [[nodiscard]] Pose T_base_link(std::string_view link,
                                    const std::vector<double>& angles_rad) const;
 };
 
-/// Strict, as machine files are (models/rex.yaml shows every key); otherwise a usage error with
+/// Strict, as for machine files (models/rex.yaml shows every key). Otherwise a usage error names
 /// file, line, key, value and what to do.
 [[nodiscard]] Result<MachineModel> parse_model(std::string_view yaml, const std::string& file);
 [[nodiscard]] Result<MachineModel> read_model(const std::string& path);

@@ -75,28 +75,34 @@ TEST(ModelFile, every_mistake_is_named_with_file_line_key_and_value) {
     };
     const Case cases[] = {
         {"name: small", "name: small\ncolour: red", 2, "unknown key 'colour'"},
-        {"name: small", "name: my robot", 1, "name: 'my robot': letters, digits and _"},
+        {"name: small",
+         "name: my robot",
+         1,
+         "name: 'my robot': a name may have only letters, digits and _"},
         {"color: \"#0072b2\"", "color: blue", 3, "materials[0].color: 'blue' is no color"},
         {"#0072b2", "#0072bg", 3, "'#0072bg' is no color: write it as"},
         {"#0072b2", "x0072b2", 3, "'x0072b2' is no color: write it as"},
-        {"- {name: shank}", "- {name: thigh}", 7, "links[2].name: 'thigh' is there already"},
+        {"- {name: shank}", "- {name: thigh}", 7, "links[2].name: 'thigh' is used twice"},
         {"- {name: shank}", "- {name: shank, mass: 1}", 7, "unknown key 'links[2].mass'"},
         {"size_y_m: 0.2", "size_y_m: -0.2", 6, "links[1].boxes[0].size_y_m: -0.2 is outside"},
         {"size_y_m: 0.2, ", "", 6, "links[1].boxes[0].size_y_m: this key is missing"},
         {"material: blue", "material: bleu", 6, "no material 'bleu' in `materials`; did you mean"},
         {"parent: thigh", "parent: thing", 10, "joints[1].parent: there is no link 'thing'"},
         {"child: shank", "child: foot", 10, "joints[1].child: there is no link 'foot'"},
-        {"child: shank", "child: thigh", 10, "child: 'thigh' hangs on joint 'hip' already"},
+        {"child: shank", "child: thigh", 10, "child: 'thigh' is already the child of joint 'hip'"},
         {"parent: base_link", "parent: shank", 10, "joints[1].child: 'shank' would hang on itself"},
-        {"child: thigh", "child: base_link", 9, "'base_link' would hang on itself, a loop: give"},
+        {"child: thigh",
+         "child: base_link",
+         9,
+         "'base_link' would be its own parent, a loop: give"},
         {"kind: fixed", "kind: screw", 9, "'screw' is neither fixed nor revolute"},
         {"kind: revolute", "kind: fixed", 10, "unknown key 'joints[1].axis'"},
-        {"axis: y", "axis: w", 10, "joints[1].axis: 'w' is none of x, y and z: turn the joint"},
+        {"axis: y", "axis: w", 10, "joints[1].axis: 'w' is not x, y or z: turn the joint"},
         {"max_deg: 90", "max_deg: 0", 10, "max_deg: the range from min_deg 0 to 0 is empty: give"},
         {"max_deg: 90", "max_deg: -9", 10, "from min_deg 0 to -9 is empty"},
         {"max_deg: 90", "max_deg: .nan", 10, "joints[1].max_deg: nan is outside"},
         {"stand_deg: 5", "stand_deg: 95", 10, "stand_deg: 95 is outside 0 .. 90"},
-        {"name: knee", "name: hip", 10, "joints[1].name: 'hip' is there already"},
+        {"name: knee", "name: hip", 10, "joints[1].name: 'hip' is used twice"},
         {"name: base_link", "name: hips", 9, "joints[0].parent: there is no link 'base_link'"},
         {"joints:", "joints: []\nrest:", 9, "unknown key 'rest'"},
     };
@@ -117,14 +123,17 @@ TEST(ModelFile, there_is_one_root_and_it_is_base_link) {
         EXPECT_FALSE(model.ok());
         return model.ok() ? std::string() : model.error().message;
     };
-    EXPECT_TRUE(contains(said(small_with("- {name: shank}", "- {name: shank}\n  - {name: hat}")),
-                         "m.yaml:8: links[3].name: 'hat' hangs on no joint, but base_link alone"));
+    EXPECT_TRUE(
+        contains(said(small_with("- {name: shank}", "- {name: shank}\n  - {name: hat}")),
+                 "m.yaml:8: links[3].name: 'hat' is not the child of a joint, but only base_link"));
     EXPECT_TRUE(contains(said("name: a\nmaterials: []\nlinks: [{name: hips}]\njoints: []\n"),
-                         "m.yaml:3: links: there is no base_link: name the root like that"));
+                         "m.yaml:3: links: there is no base_link: give the root this name"));
     const std::string other =
         "name: a\nmaterials: []\nlinks: [{name: hips}, {name: base_link}]\njoints:\n"
         "  - {name: j, kind: fixed, parent: hips, child: base_link}\n";
-    EXPECT_TRUE(contains(said(other), "base_link is the root and hangs on nothing: turn joint"));
+    EXPECT_TRUE(
+        contains(said(other),
+                 "base_link is the root and cannot be a child: swap parent and child of joint"));
 }
 
 TEST(ModelFile, an_empty_or_missing_file_is_refused) {

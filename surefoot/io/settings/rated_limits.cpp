@@ -14,8 +14,8 @@
 namespace surefoot::io {
 namespace {
 
-/// The limits of machines/rex.yaml: with these the hazards, the faults and the false stops of
-/// docs/evidence/safety.md were counted.
+/// The limits of machines/rex.yaml. The counts of hazards, faults and false stops in
+/// docs/evidence/safety.md were measured with these limits.
 constexpr std::array kRatedLimits{
     RatedLimit{"limits.walk.up_m", 0.02, true, "the flat gait was not tried on higher steps"},
     RatedLimit{"limits.walk.down_m", 0.02, true, "the flat gait was not tried on deeper steps"},
@@ -24,23 +24,24 @@ constexpr std::array kRatedLimits{
     RatedLimit{"limits.tilt_deg", 6.0, true, "steeper ground was not tried"},
     RatedLimit{"limits.patch_side_m", 0.05, true, "a larger patch averages smaller things away"},
     RatedLimit{"limits.patch_residual_m", 0.025, true, "a sole tolerates 25 mm"},
-    RatedLimit{"limits.patch_sigma_m", 0.003, true, "less sure ground counts as ground"},
+    RatedLimit{"limits.patch_sigma_m", 0.003, true, "less certain ground counts as ground"},
     RatedLimit{"limits.sigma_factor", 3.4, false, "more than 3e-4 of the patches err unnoticed"},
     RatedLimit{"limits.patch_independent_cells", 4, true, "cells are taken as more independent"},
-    RatedLimit{"limits.cell_sigma_m", 0.012, true, "less sure ground counts as free"},
+    RatedLimit{"limits.cell_sigma_m", 0.012, true, "less certain ground counts as free"},
     RatedLimit{"limits.swing_clearance_m", 0.04, true, "higher things lie in the way of a foot"},
     RatedLimit{"limits.foot_margin_m", 0.02, false, "the way of a foot is less wide"},
     RatedLimit{"limits.drop_m", 0.05, true, "the lowest kerb is 75 mm"},
     RatedLimit{"limits.drop_band_m", 0.10, false, "an edge may lie closer to a foot"},
-    RatedLimit{"limits.drop_evidence", 0.5, true, "a drop needs more evidence to be one"},
+    RatedLimit{"limits.drop_evidence", 0.5, true, "a drop needs more evidence to be detected"},
     RatedLimit{"limits.drift_m", 0.025, true, "ground may have moved farther since it was seen"},
     RatedLimit{"limits.tread_share", 0.80, false, "a tread carries less of a foot"},
     RatedLimit{"limits.tread_overhang_m", 0.073, true, "a foot reaches farther over a nosing"},
-    RatedLimit{"limits.frame_age_ms", 200, true, "an older map is asked"},
+    RatedLimit{"limits.frame_age_ms", 200, true, "the gate uses an older map"},
     RatedLimit{"limits.pose_age_ms", 200, true, "the machine may be elsewhere"},
     RatedLimit{"limits.future_tolerance_ms", 5, true, "clocks may disagree by more"},
-    RatedLimit{"limits.verdict_ttl_ms", 300, true, "an OK is older when it is used"},
-    RatedLimit{"limits.vouch_radius_m", 1.0, true, "an operator sees no farther"},
+    RatedLimit{"limits.verdict_ttl_ms", 300, true, "an approval is older when it is used"},
+    RatedLimit{
+        "limits.vouch_radius_m", 1.0, true, "an operator cannot inspect ground farther away"},
 };
 
 const YamlNode* node_at(const YamlNode& root, std::string_view key) {
@@ -52,7 +53,8 @@ const YamlNode* node_at(const YamlNode& root, std::string_view key) {
     return node;
 }
 
-/// The number in the file; nothing where its own reader has reported it, or its class is disabled.
+/// The number in the file; no value if its reader has already reported it, or if its class is
+/// disabled.
 std::optional<double> value_at(const YamlNode& root, std::string_view key) {
     for (const std::string_view group : {"limits.walk", "limits.stair"}) {
         if (!key.starts_with(group)) continue;
@@ -97,11 +99,11 @@ Deviation read_line(YamlGroup& line) {
     if (deviation.reason.size() < kShortestReason)
         line.fail("reason", fmt::format("say in {} characters or more why", kShortestReason));
     if (!is_date(deviation.date))
-        line.fail("date", quoted(deviation.date) + " is no date YYYY-MM-DD");
+        line.fail("date", quoted(deviation.date) + " is not a date YYYY-MM-DD");
     return deviation;
 }
 
-/// What is wrong with a line, in words.
+/// Describes the problem of an entry; no value if it is valid.
 std::optional<std::string> problem_of(const Deviation& deviation,
                                       const std::vector<Deviation>& before,
                                       const YamlNode& document) {
@@ -111,7 +113,7 @@ std::optional<std::string> problem_of(const Deviation& deviation,
         keys.reserve(std::size(kRatedLimits));
         for (const RatedLimit& each : kRatedLimits) keys.emplace_back(each.key);
         return fmt::format(
-            "{} is no rated limit{}", quoted(deviation.key), did_you_mean(deviation.key, keys));
+            "{} is not a rated limit{}", quoted(deviation.key), did_you_mean(deviation.key, keys));
     }
     for (const Deviation& other : before) {
         if (other.key == deviation.key) return fmt::format("{} is signed twice", deviation.key);
@@ -152,8 +154,8 @@ void report_unsigned(YamlReader& reader,
         *node_at(document, first.key),
         first.key,
         fmt::format(
-            "{0} is laxer than the rated limit {1} ({2}) and nobody signed for it. Set it "
-            "to {1}, or let the person who answers for it add this line to 'deviations': "
+            "{0} is laxer than the rated limit {1} ({2}) and no person has signed for it. Set it "
+            "to {1}, or have the responsible person add this line to 'deviations': "
             "{{key: {3}, value: {0}, reason: WHY, signed: NAME, date: YYYY-MM-DD}}{4}",
             value,
             first.rated,

@@ -6,7 +6,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Nine digits are a micrometre of a kilometre; a zero has no sign.
+/// Formats nine digits, which resolve a micrometre in a kilometre; writes zero without a sign.
 std::string number(double value) {
     return fmt::format("{:.9g}", value + 0.0);
 }

@@ -7,9 +7,9 @@
 
 namespace surefoot::io {
 
-/// The model as a URDF, the same text every time: materials named at the level of the robot (some
-/// readers lose the colours of others), each box to be seen and to be collided with. It has no
-/// masses: nobody simulates forces with it.
+/// The model as a URDF text; deterministic. Materials are named at robot level, because some
+/// readers lose the colours of others. Each box is a visual and a collision element. The URDF has
+/// no masses: it is not for dynamics simulation.
 [[nodiscard]] std::string urdf_text(const MachineModel& model);
 
 }  // namespace surefoot::io

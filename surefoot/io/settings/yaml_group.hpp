@@ -10,21 +10,21 @@
 
 namespace surefoot::io {
 
-/// A group of keys of a strict file: what is asked for must be there, unless it is asked for with
-/// `has` first, and nothing else may be. The reader keeps the first error; after it everything
-/// returns defaults.
+/// A group of keys of a strict file. Every key that the caller reads must exist, unless the caller
+/// checks `has` first; no other key may exist. The reader keeps the first error; after it all calls
+/// return defaults.
 class YamlGroup {
   public:
-    /// `prefix`: the keys that lead here, for messages; `document`: what to call the outermost
-    /// group, which has none.
+    /// `prefix`: path of the keys to this group, for messages. `document`: name of the outermost
+    /// group, which has no prefix.
     YamlGroup(YamlReader& reader, const YamlNode& node, std::string prefix, const char* document);
 
-    /// Whether a key is there that need not be.
+    /// Whether an optional key exists.
     [[nodiscard]] bool has(const char* key);
     double number(const char* key, double min, double max);
-    /// A length in metres, as 0.1 mm.
+    /// A length in metres, returned in units of 0.1 mm.
     std::int32_t length(const char* key, double min_m, double max_m);
-    /// A duration in milliseconds, as nanoseconds.
+    /// A duration in milliseconds, returned in nanoseconds.
     std::int64_t duration_ns(const char* key, int min_ms, int max_ms);
     int integer(const char* key, int min, int max);
     bool boolean(const char* key);
@@ -50,10 +50,10 @@ class YamlGroup {
         }
     }
     void fail(const char* key, const std::string& what);
-    /// About a key of one group of a list.
+    /// Reports a failure at a key of one group of a list.
     void fail_item(const char* list, std::size_t index, const char* key, const std::string& what);
-    /// To be called last: what was not asked for does not belong here. A misspelt key says more
-    /// than the missing one that it leaves behind, so it comes first.
+    /// Call it last: reports keys that were not read. A misspelled key explains more than the
+    /// missing key that it causes, so it is reported first.
     void finish();
 
   private:

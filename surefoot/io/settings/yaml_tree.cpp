@@ -56,7 +56,7 @@ struct Converter {
             if (!entry.first.IsScalar())
                 return fail(entry.first.Mark(), "a key must be plain text");
             const std::string& key = entry.first.Scalar();
-            if (out.items.size() >= kMaxKeys) {  // the search for doubles below is linear
+            if (out.items.size() >= kMaxKeys) {  // the search for repeated keys below is linear
                 return fail(entry.first.Mark(),
                             fmt::format("more than {} keys in a group", kMaxKeys));
             }
@@ -65,15 +65,16 @@ struct Converter {
             }
             out.items.push_back(convert(entry.second, depth + 1));
             out.items.back().key = key;
-            // The key's own line is what a reader looks for.
+            // Errors must name the line of the key.
             out.items.back().line = std::max(entry.first.Mark().line + 1, 1);
             if (error) return;
         }
     }
 };
 
-/// OpenCV starts its files with "%YAML:1.0", which is no valid YAML directive, and reads "data:[1,
-/// 2]" without the blank that YAML wants (ORB-SLAM2's examples have it). Keeps line numbers.
+/// Removes directives. OpenCV starts its files with "%YAML:1.0", which is not a valid YAML
+/// directive, and accepts "data:[1, 2]" without the blank that YAML needs (as in ORB-SLAM2's
+/// examples). Keeps line numbers.
 std::string without_directives(std::string_view text) {
     std::string copy(text);
     if (copy.starts_with("\xef\xbb\xbf")) copy.erase(0, 3);

@@ -11,31 +11,31 @@
 
 namespace surefoot::io {
 
-/// A YAML document as a plain tree in which every value knows its line, so that errors can name
-/// "file.yaml:12". Keys of a mapping are unique. Reads what we need of YAML 1.2, OpenCV's
-/// "%YAML:1.0" head and its "!!opencv-matrix" tags; scalars stay text.
+/// A YAML document as a plain tree. Every value knows its line, so that errors can name
+/// "file.yaml:12". Keys of a mapping are unique. Supports the needed part of YAML 1.2, OpenCV's
+/// "%YAML:1.0" header and its "!!opencv-matrix" tags; scalars stay text.
 struct YamlNode {
     enum class Kind { null, scalar, sequence, mapping };
 
     Kind kind = Kind::null;
     int line = 0;     ///< from 1
-    std::string key;  ///< of an item of a mapping
+    std::string key;  ///< key of an item of a mapping
     std::string scalar;
-    std::vector<YamlNode> items;  ///< of a sequence or a mapping, in file order
+    std::vector<YamlNode> items;  ///< items of a sequence or a mapping, in file order
 
     /// The value of a key of this mapping, or nullptr.
     [[nodiscard]] const YamlNode* find(std::string_view name) const noexcept;
     [[nodiscard]] bool is_mapping() const noexcept { return kind == Kind::mapping; }
     [[nodiscard]] bool is_scalar() const noexcept { return kind == Kind::scalar; }
-    /// "a number list", "a mapping" ... for messages.
+    /// Name of the kind in messages: "a number list", "a mapping", ...
     [[nodiscard]] const char* kind_name() const noexcept;
 };
 
-/// First document of a text. Limits: 16 MB, 64 levels, 1e6 values (aliases count each time).
+/// Parses the first document. Limits: 16 MB, 64 levels, 1e6 values (aliases count each time).
 [[nodiscard]] Result<YamlNode> parse_yaml(std::string_view text, const std::string& file);
 
-/// Typed access with errors that name file, line and key. The first failure is kept, later calls
-/// then return defaults: read everything, then look at `error` once.
+/// Typed access whose errors name file, line and key. The reader keeps the first failure; later
+/// calls return defaults. Read all values, then check `error` once.
 class YamlReader {
   public:
     YamlReader(std::string file, const YamlNode& root) : file_(std::move(file)), root_(root) {}
@@ -44,9 +44,9 @@ class YamlReader {
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
     [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
 
-    /// Reports `what` about a key, unless there is an error already.
+    /// Reports `what` about a key, unless there already is an error.
     void fail(const YamlNode& node, std::string_view key, const std::string& what);
-    /// A key of `mapping` that must be there.
+    /// A required key of `mapping`.
     const YamlNode* required(const YamlNode& mapping, std::string_view key);
 
     /// A finite number within [min, max].

@@ -31,14 +31,14 @@ LinkBox leg_box(double length_m) {
     const double half = 0.5 * kLegSide_m;
     return {{-half, -half, -length_m}, {half, half, 0.0}};
 }
-/// Upright over base_link; heights count from the soles of the standing machine.
+/// A vertical box above base_link; heights are above the soles of the standing machine.
 LinkBox trunk_box(double length_m, double width_m, double low_m, double high_m) {
     return {{-0.5 * length_m, -0.5 * width_m, low_m - rex::kStand_m},
             {0.5 * length_m, 0.5 * width_m, high_m - rex::kStand_m}};
 }
 
-/// Grows the boxes by points of the parts, each seen from wherever base_link leaves it nearest to
-/// what the box holds already.
+/// Extends the boxes by points of the parts. A point extends the box least if it is expressed in
+/// the base_link pose that brings it nearest to the present box.
 class Boxes {
   public:
     explicit Boxes(const RexMovement& still) : movement_(still) {

@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// What a part of the REX and its user fills during its movements: a box of base_link while that
-/// goes straight from start to target, and heights over the soles.
+/// The space that one part of the REX or of its user fills during a movement: a box in base_link
+/// that moves straight from start to target, and its heights above the soles.
 struct TracedPart {
     std::string name;
     Rect box;
@@ -21,13 +21,13 @@ struct TracedPart {
     double high_m = 0.0;
 };
 
-/// Walks each movement on level ground, `seeds` times from `first_seed` on, and takes the smallest
-/// boxes that hold every link at every moment (20 a second): the hull of the box at the start and
-/// at the target then holds all of the way. Links are the boxes of the collision model (upper and
-/// lower legs 0.15 x 0.15 m); the frame is the machine's 0.66 x 0.645 m from 0.15 m below the hips
-/// to 1.30 m over the soles, the user's trunk and head 0.40 x 0.55 m above it to 2.05 m (both
-/// ASSUMPTIONS: the data sheet has no drawing). Frame and user sway with the body, as the camera
-/// does.
+/// Computes the smallest boxes that contain every link at every moment (20 samples a second). It
+/// simulates each movement on level ground `seeds` times, with seeds from `first_seed` on. The hull
+/// of the box at the start and the box at the target then contains the whole movement. Links are
+/// the boxes of the collision model (upper and lower legs 0.15 x 0.15 m). Frame: the machine's 0.66
+/// x 0.645 m, from 0.15 m below the hips to 1.30 m above the soles. User: trunk and head 0.40 x
+/// 0.55 m above the frame, up to 2.05 m. Both sizes are ASSUMPTIONS: the data sheet has no drawing.
+/// Frame and user sway with the body, as the camera does.
 [[nodiscard]] Result<std::vector<TracedPart>> trace_body(const std::vector<RexMovement>& movements,
                                                          const RexGaitConfig& gait,
                                                          std::uint64_t first_seed,

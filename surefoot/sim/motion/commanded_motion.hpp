@@ -13,29 +13,29 @@
 
 namespace surefoot::sim {
 
-/// A REX that somebody steers: it stands until it is told to make a step, makes it to the end, and
-/// stands again. The past never changes. Any thread may ask and command.
+/// A REX under live command: it stands still, executes one commanded step completely, and stands
+/// again. Commands never change the past. Thread-safe.
 class CommandedMotion final : public Motion {
   public:
-    /// Stands at `start` on `ground_z_m`, which is asked along the walk (see ground_of). A stand
-    /// that the legs cannot take is a usage error.
+    /// Stands at `start` on `ground_z_m`, which is queried along the walk (see ground_of). Returns
+    /// a usage error if the legs cannot take this stand.
     [[nodiscard]] static Result<std::shared_ptr<CommandedMotion>> make(const RexStand& start,
                                                                        GroundHeight ground_z_m,
                                                                        const RexGaitConfig& gait,
                                                                        std::uint64_t seed);
 
     [[nodiscard]] MotionState at(double time_s) const override;
-    /// Until the last step that was commanded has ended.
+    /// Time at which the last commanded step ends.
     [[nodiscard]] double duration_s() const override;
     [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
-    /// The machine begins the movement of a joystick code at `time_s`. An error, and nothing
-    /// changes, where it has no such movement, the step before has not ended by then, or the legs
-    /// cannot make it on this ground.
+    /// Starts the movement of a joystick code at `time_s`. Returns an error and changes nothing if
+    /// the machine has no such movement, if the previous step has not ended by then, or if the legs
+    /// cannot make this step on the ground.
     [[nodiscard]] Result<StepEvent> step(int command, double time_s);
     [[nodiscard]] std::vector<StepEvent> steps() const;
-    /// Steps that ended before `time_s` are not kept: who walks for hours would fill the memory.
-    /// Before what is left, the machine is where that begins.
+    /// Drops steps that ended before `time_s`, so that memory stays bounded on long walks. Earlier
+    /// queries then return the pose at which the kept motion begins.
     void forget_before(double time_s);
 
   private:
@@ -45,7 +45,7 @@ class CommandedMotion final : public Motion {
     };
     CommandedMotion(GroundHeight ground_z_m, const RexGaitConfig& gait, std::uint64_t seed);
     [[nodiscard]] Result<RexMotion> walk(const RexPlan& plan);
-    /// With the mutex held.
+    /// Precondition: the caller holds the mutex.
     [[nodiscard]] const Piece& piece_at(double time_s) const;
 
     GroundHeight ground_z_m_;
@@ -53,10 +53,10 @@ class CommandedMotion final : public Motion {
     std::uint64_t seed_;
     std::vector<RexMovement> movements_;
 
-    mutable std::mutex mutex_;   ///< of what follows
-    std::vector<Piece> pieces_;  ///< by time; the first one stands
+    mutable std::mutex mutex_;   ///< protects the members below
+    std::vector<Piece> pieces_;  ///< in time order; the first one is a stand
     std::vector<StepEvent> steps_;
-    std::size_t walked_ = 0;  ///< pieces that were made
+    std::size_t walked_ = 0;  ///< number of finished pieces
     RexStand stand_;          ///< after the last step
     double free_s_ = 0.0;
 };

@@ -5,8 +5,8 @@
 
 namespace surefoot::sim {
 
-/// Links of a leg in the sagittal plane, turned about the pelvis' y axis (left): angle 0 hangs
-/// straight down, a positive one points backward; of the foot, a positive one points the toes down.
+/// Angles of the leg links in the sagittal plane about the pelvis' y axis (left). 0 = hanging
+/// straight down; positive = backward. For the foot, positive = toes down.
 struct LinkAngles {
     double upper_leg_rad = 0.0;
     double lower_leg_rad = 0.0;
@@ -18,13 +18,13 @@ struct GaitSample {
     LinkAngles right;
 };
 
-/// One step ahead of the REX as simulated in V-REX (after M. Lange, "Viability of Commercial Depth
-/// Sensors for the REX Medical Exoskeleton", 2016): right half a step, left a whole one, right
-/// closes. Angles against the pelvis, which stays upright in that record. 64 samples in equal
-/// intervals; played at 5 Hz they take 12.6 s and, through the kinematics, go 0.51 m.
+/// One forward step of the REX, simulated in V-REX (M. Lange, "Viability of Commercial Depth
+/// Sensors for the REX Medical Exoskeleton", 2016): right foot half a step, left a full one, right
+/// closes. Angles are relative to the pelvis, which stays upright in that record. 64 samples at
+/// equal intervals: 12.6 s at 5 Hz; through the kinematics they advance 0.51 m.
 [[nodiscard]] std::span<const GaitSample> gait_trace() noexcept;
 
-/// Angle of a foot that stands flat: a constant offset between foot link and sole.
+/// Link angle of a foot that stands flat: the constant offset between foot link and sole.
 inline constexpr double kFlatFoot_rad = 0.0640978;
 
 }  // namespace surefoot::sim

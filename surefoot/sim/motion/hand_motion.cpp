@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kFade_s = 0.1;  ///< interval of the envelopes' samples: they change within 0.4 s
+constexpr double kFade_s = 0.1;  ///< sample interval of the envelopes, which change within 0.4 s
 
 TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& config) {
     TrolleyConfig trolley;
@@ -23,7 +23,7 @@ TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& conf
     return TrolleyMotion::trolley(waypoints, trolley);
 }
 
-/// Samples of an envelope over the whole way, zero in the first and last one.
+/// Samples of an envelope over the whole path; the first and the last sample are zero.
 template <typename Value>
 SmoothCurve envelope(const TrolleyMotion& way, Value value) {
     const int count = std::max(1, saturated_integer<int>(way.duration_s() / kFade_s) - 1);
@@ -66,8 +66,8 @@ HandMotion::HandMotion(const std::vector<Waypoint>& waypoints,
         steps_[axis] = {amplitudes[axis] * rng.uniform(0.9, 1.1),
                         per_step[axis] ? omega_rad_s : 0.5 * omega_rad_s,
                         rng.uniform(0.0, 2.0 * std::numbers::pi)};
-        // Two slow waves of unrelated periods, 4-9 and 10-25 s, wander without repeating soon.
-        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRadPerDeg;
+        // Two slow waves with unrelated periods, 4-9 and 10-25 s, do not repeat soon.
+        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRad;
         const double periods_s[2] = {rng.uniform(4.0, 9.0), rng.uniform(10.0, 25.0)};
         for (std::size_t i = 0; i < 2; ++i) {
             drifts_[axis][i] = {0.5 * drift * rng.uniform(0.9, 1.1),
@@ -87,7 +87,7 @@ MotionState HandMotion::at(double time_s) const {
         moves[axis] = walking * steps_[axis].at(t_s) +
                       alive * (drifts_[axis][0].at(t_s) + drifts_[axis][1].at(t_s));
     }
-    // The way is level: its yaw turns about the body's z axis alone.
+    // The path is level: its yaw turns about the body's z axis alone.
     const Jet yaw{yaw_rad(base.T_world_body),
                   base.angular_velocity_body_rad_s.z(),
                   base.angular_acceleration_body_rad_s2.z()};

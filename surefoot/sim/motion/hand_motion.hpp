@@ -11,31 +11,31 @@
 
 namespace surefoot::sim {
 
-/// A camera carried by a walking person. Amounts are an ASSUMPTION: 1.8-2 steps a second and a bob
-/// of 30-40 mm from top to bottom are those of ordinary walking, the lower ends taken because arms
-/// soften them; that is a vertical acceleration of 1.9-2.3 m/s^2 at its peaks and 1.4 in the mean
-/// square. Every amount varies by 10 % with the seed.
+/// A camera that a walking person carries. All amplitudes are an ASSUMPTION: ordinary walking has
+/// 1.8-2 steps a second and 30-40 mm of vertical motion, peak to peak. We take the lower ends
+/// because arms damp them: peaks of the vertical acceleration are 1.9-2.3 m/s^2, its rms is 1.4
+/// m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
-    double height_m = 1.30;   ///< of base_link above the ground, held before the chest
-    double speed_m_s = 1.0;   ///< slower than one walks without looking at a screen
+    double height_m = 1.30;   ///< of base_link above the ground, held in front of the chest
+    double speed_m_s = 1.0;   ///< slower than normal walking, because the person watches a screen
     double ramp_s = 0.8;      ///< to reach that speed
     double cadence_hz = 1.8;  ///< steps of both feet
     double bob_m = 0.016;     ///< amplitude, at the cadence
     double surge_m = 0.006;   ///< fore and aft, at the cadence
-    double sway_m = 0.015;    ///< sideways, at half the cadence: one sway per two steps
+    double sway_m = 0.015;    ///< sideways, at half the cadence: one sway every two steps
     double roll_deg = 1.5;    ///< at half the cadence
     double pitch_deg = 1.0;   ///< at the cadence
     double yaw_deg = 1.5;     ///< at half the cadence
-    double drift_deg = 1.5;   ///< slow wandering of roll, pitch and yaw, also while standing
-    double drift_m = 0.008;   ///< slow wandering of the hands
+    double drift_deg = 1.5;   ///< slow drift of roll, pitch and yaw, also while standing
+    double drift_m = 0.008;   ///< slow drift of the hands
 };
 
-/// Hand-held camera: the way of a trolley, level, with periodic and slow movements over it. What
-/// belongs to walking fades in and out with the walk; everything fades at the very start and end,
-/// where it stands still. Acceleration is continuous.
+/// Hand-held camera: the level path of a trolley plus periodic and slow movements. The gait part
+/// fades in and out with the walk. All movements fade to a stand at the start and at the end. The
+/// acceleration is continuous.
 class HandMotion final : public Motion {
   public:
-    /// At least one waypoint.
+    /// Requires at least one waypoint.
     HandMotion(const std::vector<Waypoint>& waypoints,
                const HandConfig& config,
                std::uint64_t seed);
@@ -52,12 +52,12 @@ class HandMotion final : public Motion {
             return oscillation(amplitude, omega_rad_s, phase_rad, t_s);
         }
     };
-    /// Ahead, left, up, roll, pitch, yaw.
+    /// Order: ahead, left, up, roll, pitch, yaw.
     static constexpr std::size_t kAxes = 6;
 
     TrolleyMotion way_;
     SmoothCurve walking_;  ///< 0 standing, 1 at full speed
-    SmoothCurve alive_;    ///< 0 at the start and the end of all
+    SmoothCurve alive_;    ///< 0 at the start and at the end of the motion
     std::array<Wave, kAxes> steps_;
     std::array<std::array<Wave, 2>, kAxes> drifts_;
 };

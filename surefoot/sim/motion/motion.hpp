@@ -18,15 +18,15 @@ struct MotionState {
     Eigen::Vector3d angular_acceleration_body_rad_s2 = Eigen::Vector3d::Zero();
 };
 
-/// How base_link moves through the world, known at any time: images are exposed and inertial
-/// samples taken between the frames too. Immutable; may be asked from several threads. Before its
-/// start and after its end it stands still.
+/// Pose of base_link over time, available at any time, because images and inertial samples lie
+/// between the frames too. Immutable and safe to query from several threads. The body stands still
+/// before the start and after the end.
 class Motion {
   public:
     virtual ~Motion() = default;
     [[nodiscard]] virtual MotionState at(double time_s) const = 0;
     [[nodiscard]] virtual double duration_s() const = 0;
-    /// Of a walking REX; what only carries a camera has no joints.
+    /// Joint angles of a walking REX; no value for the other motion models, which have no joints.
     [[nodiscard]] virtual std::optional<RexJoints> rex_joints(double /*time_s*/) const {
         return std::nullopt;
     }

@@ -10,8 +10,8 @@
 
 namespace surefoot::sim {
 
-/// Largest differences between the derivatives that a motion tells and central differences of what
-/// they derive, over a stretch of time; for tests.
+/// For tests: largest differences between the derivatives that a motion reports and central
+/// differences of its own values, over an interval of time.
 struct DerivativeErrors {
     double velocity_m_s = 0.0;
     double acceleration_m_s2 = 0.0;

@@ -22,11 +22,12 @@ struct Limits {
     double slowest_m_s;
     double fastest_m_s;
 };
-/// The rex between 4 and 20 s a step; what rolls or is carried up to a brisk walk.
+/// Speed limits: the REX takes 4 to 20 s a step; trolley and hand go up to a brisk walk.
 constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
 constexpr double kFarthest_m = 1000.0;
 constexpr double kLongestPause_s = 3600.0;
-/// Between two waypoints. What rolls takes a ramp; who carries a camera by hand climbs stairs.
+/// Steepest slope between two waypoints. A trolley takes a ramp; a person with a hand-held camera
+/// climbs stairs.
 constexpr double kSteepest[] = {0.5, 0.0, 1.0};
 constexpr double kLowestHand_m = 0.5;
 constexpr double kHighestHand_m = 2.2;
@@ -43,7 +44,7 @@ void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     }
 }
 
-/// Height of the way through the waypoints at its point nearest to (x, y).
+/// Height of the path through the waypoints at its point nearest to (x, y).
 double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) {
     double nearest_sq = std::numeric_limits<double>::infinity();
     double z_m = stops.front().ground_z_m;
@@ -113,7 +114,7 @@ Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
         return usage_error(
-            fmt::format("simulator: height_m is that of a hand; a {} has its own",
+            fmt::format("simulator: height_m is only for a hand; a {} has its own height",
                         kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};

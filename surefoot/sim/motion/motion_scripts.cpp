@@ -24,9 +24,9 @@ MotionScript through(MotionModel motion_model, std::vector<Waypoint> stops) {
 
 constexpr Waypoint kStart{0.0, 0.0, 0.0, kLook_s, 0.0, Move::automatic};
 
-/// Before the backward steps: twice from where it turned to the edge.
+/// Number of backward steps from the turn to the edge.
 constexpr int kStepsToEdge = 2;
-/// The ankles, which carry the weight, stand this far from the edge.
+/// Distance of the ankles, which carry the weight, from the edge.
 constexpr double kAnkleToEdge_m = 0.02;
 
 }  // namespace
@@ -41,7 +41,7 @@ MotionScript turn_round_script(MotionModel motion_model, double turn_rad) {
 }
 
 MotionScript back_to_table_script(MotionModel motion_model, double table_x_m, double left_m) {
-    // The machine is 0.33 m deep behind base_link: it ends a hand's breadth before the table.
+    // The machine extends 0.33 m behind base_link: it stops about 0.1 m before the table.
     constexpr double kBehind_m = 0.45;
     return through(motion_model,
                    {kStart,

@@ -10,7 +10,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRing_s = 1.2;  ///< a ringing is over after this
+constexpr double kRing_s = 1.2;  ///< duration of a ringing
 constexpr double kHanging_rad =
     3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: toes of a swinging foot
 constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: length of a foot strike
@@ -29,8 +29,8 @@ Jet falling_power(double u, double length_s, int n) {
     return jet;
 }
 
-/// Swelling and fading u^3 (1-u)^9, largest value 1 at u = 1/4: at rest at both ends with its first
-/// two derivatives.
+/// Envelope u^3 (1-u)^9, scaled to 1 at u = 1/4. Its value and its first two derivatives are 0 at
+/// both ends.
 Jet ring_window(double t_s) {
     constexpr double kPeak = (1.0 / 64.0) * (19683.0 / 262144.0);  // (1/4)^3 (3/4)^9
     const double u = t_s / kRing_s;
@@ -55,8 +55,8 @@ Pose about_toes(double lift_rad) {
 
 }  // namespace
 
-/// How much of its tilt a foot has: the heel goes up before the swing and down during it, or up
-/// during the swing and down after it.
+/// Share of its tilt that a foot has: the heel rises before the swing and falls during it, or rises
+/// during the swing and falls after it.
 double RexMotion::lifted(const Swing& swing, double time_s, double share) {
     if (swing.heel_up_s < swing.start_s) {
         if (time_s >= swing.start_s) return 1.0 - share;
@@ -140,7 +140,8 @@ std::optional<LegAngles> RexMotion::leg(Side side, double time_s) const {
 
 LegAngles RexMotion::joints(Side side, double time_s) const {
     const auto angles = leg(side, time_s);
-    SUREFOOT_ASSERT(angles.has_value());  // `make` has tried every sample, with a degree to spare
+    SUREFOOT_ASSERT(
+        angles.has_value());  // `make` has checked every sample with a margin of a degree
     return *angles;
 }
 

@@ -13,17 +13,17 @@
 
 namespace surefoot::sim {
 
-/// What is drawn anew for every step lies between `low` and `high`.
+/// Range from which a value is drawn for every step.
 struct Spread {
     double low = 0.0;
     double high = 0.0;
 };
 
-/// Everything but the step time and what the gait trace gives is an ASSUMPTION after the proposed
-/// model of the project's safety notes, to be replaced when somebody has recorded a REX.
+/// ASSUMPTION for every value except the step time and the gait trace: the model proposed in the
+/// project's safety notes. Replace the values when a recording of a real REX exists.
 struct RexGaitConfig {
     double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
-    double settle_s = 1.5;               ///< of it: standing until the frame has stopped ringing
+    double settle_s = 1.5;               ///< part of step_s: standing until ringing stops
     double foot_clearance_m = 0.01;      ///< of the toes of a swinging foot; ankles rise by 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< toward the standing foot
@@ -32,33 +32,33 @@ struct RexGaitConfig {
     Spread ring_mm{1.0, 3.0};            ///< its largest deflection, vertical
     Spread ring_deg{0.1, 0.3};           ///< its largest roll and pitch
     Spread strike_m_s2{0.5, 2.0};        ///< vertical acceleration pulse of a foot strike
-    bool ground_under_body = false;  ///< ask for the ground below base_link instead of each sole
+    bool ground_under_body = false;      ///< query the ground below base_link instead of each sole
 };
 
-/// Foot in the world. It stands flat, also on a ramp.
+/// Pose of one foot in the world. A foot stands flat on the ground, also on a ramp.
 struct FootState {
     Pose T_world_sole;    ///< below the ankle
     bool carries = true;  ///< stands flat; false while it swings or has its heel up
 };
 
-/// Quasi-static walk of the REX. A step is the gait trace: the leading foot goes half the way, the
-/// other one past it to the end, the first one closes; the machine stands with parallel feet before
-/// and after. A backward step is the trace played backwards. On stairs, where half a tread is no
-/// place to stand, the leading foot goes the whole way.
+/// Quasi-static walk of the REX. A step plays the gait trace: the leading foot moves half the way,
+/// the other foot passes it to the end, the first foot closes. The machine stands with parallel
+/// feet before and after a step. A backward step plays the trace backward. On stairs the leading
+/// foot moves the whole way, because nobody can stand on half a tread.
 ///
-/// Base_link's way, pitch and bob come from the trace: in every sample the standing leg (between
-/// two standing feet a mean of both, by load) carries the pelvis, whose pitch makes the sole flat.
-/// They are scaled to the length of the step; the shift of weight lies over it; where a leg would
-/// be too short the pelvis sinks. All are cubic B-splines of those samples, so the acceleration is
-/// continuous; the sharp transition is the foot strike, a pulse of 0.12 s, and the ringing after
-/// it. Feet are exact, legs follow by inverse kinematics, so a standing foot never slips; a foot
-/// that stays behind lifts its heel before it swings, as in the trace. Roll, yaw, ringing and pulse
-/// are the frame giving way above the hips (the trace's pelvis has none of them): `at` shows them,
-/// `pelvis` and `joints` do not.
+/// The trace gives the path, pitch and bob of base_link. In every sample the standing leg carries
+/// the pelvis, and the pitch of the pelvis makes the sole flat (between two standing feet: a mean
+/// by load). These values scale with the step length; the shift of weight is added; the pelvis
+/// sinks where a leg would be too short. All curves are cubic B-splines of the samples, so the
+/// acceleration is continuous. The sharp transition is the foot strike: a pulse of 0.12 s, then
+/// ringing. Foot poses are exact and legs follow by inverse kinematics, so a standing foot never
+/// slips. A foot that stays behind lifts its heel before it swings, as in the trace. Roll, yaw,
+/// ringing and pulse are the frame above the hips giving way; the pelvis of the trace has none of
+/// them. `at` includes these movements; `pelvis` and `joints` do not.
 class RexMotion final : public Motion {
   public:
-    /// A step that the legs cannot reach, or with a joint outside its range on level ground, is a
-    /// usage error. Stepping up and down only asks for reach: lifting the heel is not modelled.
+    /// Usage error: a step that the legs cannot reach, or a joint outside its range on level
+    /// ground. Steps up and down are checked for reach only: the heel lift is not modelled.
     [[nodiscard]] static Result<RexMotion> make(const RexPlan& plan,
                                                 const RexGaitConfig& config,
                                                 const GroundHeight& ground_z_m,
@@ -66,16 +66,16 @@ class RexMotion final : public Motion {
 
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return duration_s_; }
-    /// The legs as in `joints`; the frame as it sways, with which the feet of a REX that is drawn
-    /// at base_link stay where they stand (but for what rings up and down, a few millimetres).
+    /// The legs as in `joints` plus the sway of the frame. The feet of a REX drawn at base_link
+    /// then stay in place, except for the vertical ringing of a few millimetres.
     [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
-    /// What the legs carry: base_link without sway, ringing and strike pulses.
+    /// Pose of base_link without sway, ringing and strike pulses, as the legs carry it.
     [[nodiscard]] Pose pelvis(double time_s) const;
     [[nodiscard]] FootState foot(Side side, double time_s) const;
     [[nodiscard]] LegAngles joints(Side side, double time_s) const;
 
-    /// One step of the plan: when, and where base_link stands before and after, level.
+    /// Time span of one step, and where base_link stands before and after it, level.
     struct Span {
         double start_s = 0.0;
         double end_s = 0.0;
@@ -95,9 +95,9 @@ class RexMotion final : public Motion {
         SmoothCurve sway_yaw_rad;
     };
     struct Swing {
-        double heel_up_s = 0.0;  ///< the heel leaves the ground, the toes stay
+        double heel_up_s = 0.0;  ///< time when the heel leaves the ground; the toes stay
         double start_s = 0.0;
-        double end_s = 0.0;  ///< the toes land
+        double end_s = 0.0;  ///< time when the toes land
         double heel_down_s = 0.0;
         double lift_rad = 0.0;  ///< of the sole about the toes
         Eigen::Vector3d from_m = Eigen::Vector3d::Zero();
@@ -118,9 +118,9 @@ class RexMotion final : public Motion {
     [[nodiscard]] const Body& body(double time_s) const;
     [[nodiscard]] std::optional<LegAngles> leg(Side side, double time_s) const;
 
-    std::vector<Body> bodies_;                  ///< by time; the first one stands
-    std::array<std::vector<Swing>, 2> swings_;  ///< per side, by time; the first one is the start
-    std::vector<Strike> strikes_;               ///< by time
+    std::vector<Body> bodies_;                  ///< in time order; the first one is a stand
+    std::array<std::vector<Swing>, 2> swings_;  ///< per side, in time order; the first is the start
+    std::vector<Strike> strikes_;               ///< in time order
     std::vector<Span> steps_;
     double duration_s_ = 0.0;
 };

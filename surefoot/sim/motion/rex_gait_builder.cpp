@@ -19,19 +19,19 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kTrace = 64;
-// The first and last shift of weight need longer than the trace has them: it holds its ends.
+// The first and the last weight shift take longer than in the trace, so its end samples are held.
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
-/// The sole left behind in the trace lies 42 mm high at the ankle before it swings: 10 deg about
-/// the toes. It rises during this many samples, after
-/// the other foot has landed.
-constexpr double kHeelLift_rad = 10.0 * kRadPerDeg;
+/// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
+/// that foot is 42 mm higher then. The heel rises during this number of samples, after the other
+/// foot has landed.
+constexpr double kHeelLift_rad = 10.0 * kRad;
 constexpr double kHeel = 6.0;
-/// A difference of height from which a step is one on stairs.
+/// Smallest height difference of a step on stairs.
 constexpr double kStair_m = 0.02;
-/// Highest riser: the stair limit of the machine file is 0.18 m; 20 mm for what is built badly.
+/// Highest riser: the stair limit of the machine file, 0.18 m, plus 20 mm for irregular stairs.
 constexpr double kMaxRise_m = 0.20;
-/// A structure that rings faster rings less: keeps the acceleration within that of a strike.
+/// Limit of the ringing acceleration: it keeps fast ringing within the acceleration of a strike.
 constexpr double kMaxRing_m_s2 = 2.0;
 
 /// From one sample of the trace to another.
@@ -44,7 +44,7 @@ struct Phase {
     }
 };
 
-/// When feet swing and when the weight moves.
+/// Times of the swings and of the weight shifts.
 struct Phases {
     Phase lead_swings;
     Phase trail_swings;
@@ -54,7 +54,7 @@ struct Phases {
     Phase to_trail_again;
     Phase to_middle;
 };
-/// Read off the kinematics of the trace: a foot lands when the pelvis has moved on over the other.
+/// From the kinematics of the trace: a foot lands when the pelvis has moved over the other foot.
 constexpr Phases kAhead{
     {5.0, 20.0}, {26.0, 44.0}, {52.0, 60.0}, {-5.0, 5.0}, {16.0, 26.0}, {41.0, 51.0}, {58.0, 68.0}};
 constexpr Phases kBackward{kAhead.lead_closes.played_backwards(),
@@ -94,7 +94,7 @@ Eigen::Vector2d hanging(const LinkAngles& leg) {
             rex::kLowerLeg_m * std::cos(leg.lower_leg_rad) - rex::kAnkleHeight_m * std::cos(sole)};
 }
 
-/// The carrying sole is flat, so the pelvis turns back by what the trace turns that sole.
+/// The carrying sole is flat, so the pelvis turns back by the angle of that sole in the trace.
 Carried carried_by(const LinkAngles& leg, const LinkAngles& other) {
     const double pitch = -(leg.foot_rad - kFlatFoot_rad);
     const auto upright = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
@@ -127,7 +127,7 @@ TraceWay make_trace_way() {
         way.sink_m[i] = (1.0 - on_right) * left[i].z_m + on_right * right[i].z_m - left[0].z_m;
         way.pitch_rad[i] = (1.0 - on_right) * left[i].pitch_rad + on_right * right[i].pitch_rad;
     }
-    // The record stops a fraction of a millimetre and of a degree early.
+    // The record stops a fraction of a millimetre and of a degree too early.
     way.progress[kTrace - 1] = 1.0;
     way.sink_m[kTrace - 1] = 0.0;
     way.pitch_rad[kTrace - 1] = 0.0;
@@ -183,7 +183,7 @@ class RexMotionBuilder {
         double shift_m;
         double roll_rad;
         double yaw_rad;
-        double size;  ///< of what comes from the trace, against its step
+        double size;  ///< scale of the trace relative to its own step
     };
     [[nodiscard]] double interval_s() const {
         return (config_.step_s - config_.settle_s) / (kSamples + 1);
@@ -207,7 +207,8 @@ class RexMotionBuilder {
     double now_s_ = 0.0;
 };
 
-/// The ground under the middle of the sole carries it: toes may reach over an edge, or heels.
+/// Position of a sole on the ground. The ground under the middle of the sole carries it: toes or
+/// heels may reach over an edge.
 Vector3d RexMotionBuilder::sole_m(Side side, const RexStand& stand) const {
     constexpr double kMiddle_x_m = 0.057;  // machines/rex.yaml, feet
     constexpr double kMiddle_y_m = 0.180;
@@ -246,7 +247,8 @@ void RexMotionBuilder::stand(const RexStand& place) {
     }
 }
 
-/// `lift_rad` > 0: the heel goes up before the swing; < 0: it comes down after it.
+/// Adds a swing. `lift_rad` > 0: the heel rises before the swing; < 0: it comes down after the
+/// swing.
 void RexMotionBuilder::swing(
     Side side, const Phase& phase, double lift_rad, const RexStand& to, Rng& rng) {
     auto& swings = motion_.swings_[static_cast<std::size_t>(side)];
@@ -280,7 +282,8 @@ void RexMotionBuilder::swing_feet(const RexStep& step, Side lead, Rng& rng) {
     const Phases& phases = phases_of(step.movement);
     const Side trail = lead == Side::left ? Side::right : Side::left;
     const double rise_m = stand_z_m(step.after) - stand_z_m(step.before);
-    // A foot ahead of the other lifts its heel before it swings, backward puts it down after.
+    // A foot that moves forward lifts its heel before the swing; a foot that moves backward lowers
+    // it after the swing.
     const double lift_rad = kHeelLift_rad * step.movement.forward_m / trace_way().length_m;
     const double lead_rad = std::min(lift_rad, 0.0);
     const double close_rad = std::max(lift_rad, 0.0);
@@ -308,12 +311,13 @@ std::vector<Row> RexMotionBuilder::rows(const RexStep& step, Side lead, const Sw
         const int in_trace = std::clamp(sample, 0, kTrace - 1);
         const auto i = static_cast<std::size_t>(backward ? kTrace - 1 - in_trace : in_trace);
         const double share = backward ? 1.0 - way.progress[i] : way.progress[i];
-        // Over the trailing foot, the leading one, the trailing one, back to the middle.
+        // The weight moves over the trailing foot, the leading foot, the trailing foot, then back
+        // to the middle.
         const double over_trail =
             phases.to_trail.share(sample) - 2.0 * phases.to_lead.share(sample) +
             2.0 * phases.to_trail_again.share(sample) - phases.to_middle.share(sample);
         const double to_left = lead == Side::right ? over_trail : -over_trail;
-        // The pelvis turns with the foot that is ahead.
+        // The pelvis turns with the foot in front.
         const double lead_ahead = phases.lead_swings.share(sample) -
                                   2.0 * phases.trail_swings.share(sample) +
                                   phases.lead_closes.share(sample);
@@ -347,13 +351,13 @@ double RexMotionBuilder::reach_limit_m(const RexMotion::Body& body, double time_
     return limit_m;
 }
 
-/// Lowers the heights of base_link to where both legs reach their feet, as little as possible:
-/// wherever the spline is too high, the samples that make it are lowered by their weights, round
-/// after round (Kaczmarz' method). The first and last samples stand and stay.
+/// Lowers base_link as little as possible until both legs reach their feet. Where the spline is too
+/// high, the samples that influence it are lowered in proportion to their weights, in several
+/// rounds (Kaczmarz' method). The first and last samples stay unchanged.
 void RexMotionBuilder::sink_to_reach(RexMotion::Body& body, std::vector<double> heights_m) const {
     constexpr int kPerSample = 4;
     constexpr int kRounds = 100;
-    constexpr double kEnough_m = 1e-5;  // the knee of the reach limit leaves 0.2 mm
+    constexpr double kEnough_m = 1e-5;  // the knee margin of the reach limit leaves 0.2 mm
     std::vector<double> limits_m;
     for (int i = 0; i <= kPerSample * (kSamples + 1); ++i)
         limits_m.push_back(reach_limit_m(body, now_s_ + interval_s() * i / kPerSample));

@@ -71,7 +71,7 @@ TEST(RexGaitTest, ACarryingFootNeverMovesAndTheLegsReachIt) {
     }
 }
 
-/// A REX drawn at its base_link, which sways: do its feet stand where they stand?
+/// Checks that the feet of a REX drawn at its swaying base_link stay in place.
 TEST(RexGaitTest, TheJointsOfTheFrameTakeTheSwayOutOfTheFeet) {
     const RexMotion motion = walk({9, 13, 25, 17});
     double largest_sway_rad = 0.0;
@@ -87,7 +87,7 @@ TEST(RexGaitTest, TheJointsOfTheFrameTakeTheSwayOutOfTheFeet) {
             const LegAngles& leg = side == Side::left ? joints->left : joints->right;
             const Pose T_world_sole =
                 motion.at(t_s).T_world_body * T_body_pelvis * pelvis_to_sole(side, leg);
-            // What rings, 3 mm at most in each direction, and the dip of a strike: 1 mm.
+            // Ringing of at most 3 mm in each direction, and the dip of a strike: 1 mm.
             ASSERT_LT(
                 (T_world_sole.translation_m - motion.foot(side, t_s).T_world_sole.translation_m)
                     .norm(),

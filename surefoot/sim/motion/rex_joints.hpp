@@ -9,23 +9,23 @@
 
 namespace surefoot::sim {
 
-/// All that moves in a REX. Base_link is where the camera is mounted, and the frame above the hips
-/// gives way: it turns against the pelvis, from which the legs hang, by a few degrees.
+/// All moving joints of a REX. The camera is mounted at base_link. The legs hang from the pelvis.
+/// The frame above the hips gives way: it turns against the pelvis by a few degrees.
 struct RexJoints {
     static constexpr std::size_t kCount = 15;
 
-    /// Of the pelvis in base_link, Rz(yaw) Ry(pitch) Rx(roll).
+    /// Turn of the pelvis in base_link, Rz(yaw) Ry(pitch) Rx(roll).
     double frame_yaw_rad = 0.0;
     double frame_pitch_rad = 0.0;
     double frame_roll_rad = 0.0;
     LegAngles left;
     LegAngles right;
 
-    /// In the order of kRexJointNames.
+    /// Joint values in the order of kRexJointNames.
     [[nodiscard]] std::array<double, kCount> in_order() const noexcept;
 };
 
-/// As models/rex.yaml calls them.
+/// Joint names of models/rex.yaml.
 inline constexpr std::array<std::string_view, RexJoints::kCount> kRexJointNames{
     "frame_yaw",
     "frame_pitch",

@@ -17,11 +17,11 @@ inline constexpr const char* kSideNames[] = {"left", "right"};
     return side == Side::left ? 1.0 : -1.0;
 }
 
-/// Measures of a leg of the REX (data sheet and collision model of the reference thesis).
+/// Dimensions of a REX leg (data sheet and collision model of the reference thesis, Lange 2016).
 namespace rex {
 inline constexpr double kUpperLeg_m = 0.430;
 inline constexpr double kLowerLeg_m = 0.416;
-inline constexpr double kAnkleHeight_m = 0.144;  ///< over the sole
+inline constexpr double kAnkleHeight_m = 0.144;  ///< above the sole
 inline constexpr double kToes_m = 0.240;         ///< ahead of the ankle: 0.366 - 0.126 m
 /// Half the pelvis' width, 0.470 m. The foot, centred 0.180 m beside base_link, 0.190 m wide and
 /// with its inner edge 0.150 m from the ankle, has its ankle straight below.
@@ -29,14 +29,14 @@ inline constexpr double kHip_y_m = 0.235;
 /// The legs of the gait trace stand with the ankles this far behind the hips; the machine file has
 /// the ankles below base_link (heels 0.126 m behind them), so the hip axis lies ahead of it.
 inline constexpr double kHip_x_m = 0.0563;
-/// Base_link over the soles as the trace stands, knees bent by 3.5 deg (0.990 m with straight
-/// legs).
+/// Height of base_link above the soles in the stand of the trace, knees bent by 3.5 deg (0.990 m
+/// with straight legs).
 inline constexpr double kStand_m = 0.9877;
 }  // namespace rex
 
-/// Angles of a leg, each of the child link against its parent, about the parent's axes (x forward,
-/// y left, z up) in the order of the chain. The data sheet has no hip rotation: ASSUMPTION, the few
-/// degrees that a turn in place and the swaying pelvis need there are taken for play of the frame.
+/// Joint angles of a leg: each child link against its parent, about the parent's axes (x forward, y
+/// left, z up), in the order of the chain. ASSUMPTION: the data sheet has no hip rotation, so the
+/// few degrees that a turn in place and the swaying pelvis need count as play of the frame.
 struct LegAngles {
     double hip_rotation_rad = 0.0;  ///< about z
     double hip_roll_rad = 0.0;      ///< about x
@@ -46,15 +46,15 @@ struct LegAngles {
     double ankle_roll_rad = 0.0;    ///< about x
 
     [[nodiscard]] double hip_flexion_rad() const noexcept { return -hip_pitch_rad; }
-    /// Outward positive.
+    /// Positive = outward.
     [[nodiscard]] double hip_abduction_rad(Side side) const noexcept {
         return sign_of(side) * hip_roll_rad;
     }
     [[nodiscard]] double dorsiflexion_rad() const noexcept { return -ankle_pitch_rad; }
 };
 
-/// The links of a leg in base_link. Upper and lower leg hang from their origin, hip and knee, along
-/// -z.
+/// Poses of the links of a leg in base_link. Upper and lower leg extend from their origin (hip,
+/// knee) along -z.
 struct LegPoses {
     Pose T_body_upper;
     Pose T_body_lower;
@@ -63,17 +63,17 @@ struct LegPoses {
 [[nodiscard]] LegPoses leg_poses(Side side, const LegAngles& angles);
 [[nodiscard]] Pose pelvis_to_sole(Side side, const LegAngles& angles);
 
-/// Angles that bring the sole to a pose in base_link; nothing where the leg is too short or has to
-/// fold through itself. Closed form for a leg whose ankle axes meet (Kajita et al., "Introduction
-/// to Humanoid Robotics", 2014, section 2.5.2).
+/// Joint angles that bring the sole to a pose in base_link; no value if the leg is too short or
+/// would fold through itself. Closed form for a leg whose ankle axes meet (Kajita et al.,
+/// "Introduction to Humanoid Robotics", 2014, section 2.5.2).
 [[nodiscard]] std::optional<LegAngles> leg_angles(Side side, const Pose& T_body_sole);
 
-/// Height up to which a hip can be over its ankle, `horizontal_m` = their horizontal distance, with
-/// the knee bent by at least 3 deg (standing: 3.5 deg).
+/// Largest height of a hip above its ankle at the horizontal distance `horizontal_m`, with the knee
+/// bent by at least 3 deg (standing: 3.5 deg).
 [[nodiscard]] double hip_reach_m(double horizontal_m) noexcept;
 
-/// First joint outside the ranges of the machine's data sheet (machines/rex.yaml), in words;
-/// nothing when all are inside.
+/// Names the first joint outside the ranges of the machine's data sheet (machines/rex.yaml); no
+/// value if all joints are inside.
 [[nodiscard]] std::optional<std::string> joint_problem(Side side, const LegAngles& angles);
 
 }  // namespace surefoot::sim

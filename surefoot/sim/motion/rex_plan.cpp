@@ -17,10 +17,10 @@ namespace surefoot::sim {
 namespace {
 
 constexpr double kHalfTurn_rad = std::numbers::pi;
-constexpr std::size_t kMaxSteps = 2000;  // 5.5 h at 10 s a step: a slip in the script
-/// A step that brings the machine less nearer than this is not worth its ten seconds.
+constexpr std::size_t kMaxSteps = 2000;  // 5.5 h at 10 s a step: an error in the script
+/// A step that reduces the distance by less is not worth ten seconds.
 constexpr double kWorthwhile_m = 0.04;
-/// ASSUMPTION: the machine lands this much (1 sigma) beside the commanded place.
+/// ASSUMPTION: 1 sigma of the landing error relative to the commanded position.
 constexpr double kLandingSigma_m = 0.003;
 constexpr double kLandingSigma_rad = 0.2 * kRadPerDeg;
 
@@ -28,7 +28,7 @@ double wrapped(double angle_rad) {
     return std::remainder(angle_rad, 2.0 * kHalfTurn_rad);
 }
 
-/// Direction of a way in base_link: 0 = ahead, pi = back, +-pi/2 = left and right.
+/// Direction of travel in base_link: 0 = ahead, pi = back, +-pi/2 = left and right.
 struct Gait {
     Move move;
     double bearing_rad;
@@ -123,8 +123,8 @@ bool Planner::allowed(const RexMovement& movement, const Gait& gait) const {
     if (gait.any_sector) return true;
     const double along = std::cos(gait.bearing_rad) * movement.forward_m +
                          std::sin(gait.bearing_rad) * movement.left_m;
-    // The sectors about the direction, inner ring too. A sideways step is so short that a sector
-    // nearly ahead would still move as far to the side.
+    // Allows the sectors near the direction of travel, also those of the inner ring. A sideways
+    // step is short: a sector nearly ahead would move just as far to the side.
     return along > (gait.move == Move::side ? 0.45 : 0.3) * gait.step_m;
 }
 
@@ -146,13 +146,13 @@ void Planner::walk(const Waypoint& goal, const Gait& gait) {
 }
 
 void Planner::go_to(const Waypoint& goal) {
-    // The shortest step ahead is half a step; what is nearer than half of that is reached.
+    // The shortest forward step is half a step; a point nearer than half of that counts as reached.
     const double near_m = goal.move == Move::automatic ? 0.25 * sizes_.forward_m : kWorthwhile_m;
     if (distance_m(now_, goal) > near_m) {
         Gait gait = choose(goal);
         turn_to(std::atan2(goal.y_m - now_.y_m, goal.x_m - now_.x_m) - gait.bearing_rad);
         walk(goal, gait);
-        // What the heading's 15 deg have left to the side is made good by other sectors.
+        // Other sectors correct the lateral error that the 15 deg of heading leave.
         gait.any_sector = true;
         if (distance_m(now_, goal) > 0.4 * sizes_.forward_m) walk(goal, gait);
     }

@@ -9,7 +9,7 @@
 
 namespace surefoot::sim {
 
-/// Where one joystick code takes base_link, seen from where it stands.
+/// Target of one joystick code, relative to the current base_link.
 struct RexMovement {
     int command = 0;  ///< code of the machine file
     double forward_m = 0.0;
@@ -17,8 +17,8 @@ struct RexMovement {
     double turn_rad = 0.0;  ///< left positive
 };
 
-/// Steps of the machine. The reference thesis gives forward 0.35-0.40, backward 0.25-0.35, sideways
-/// 0.10-0.30 m; the defaults are those of machines/rex.yaml.
+/// Step sizes of the machine. The reference thesis (Lange 2016) gives forward 0.35-0.40, backward
+/// 0.25-0.35, sideways 0.10-0.30 m; the defaults are those of machines/rex.yaml.
 struct RexStepSizes {
     double forward_m = 0.40;
     double backward_m = 0.25;
@@ -26,11 +26,11 @@ struct RexStepSizes {
     double turn_deg = 15.0;
 };
 
-/// All codes as machines/rex.yaml has them: 9-24 the sectors clockwise from ahead on the ellipse
-/// through the four steps, 1-8 half as far, 25 and 26 turns to the left and to the right.
+/// All codes of machines/rex.yaml: 9-24 are the sectors clockwise from ahead on the ellipse through
+/// the four steps, 1-8 are half as far, 25 and 26 turn to the left and to the right.
 [[nodiscard]] std::vector<RexMovement> rex_movements(const RexStepSizes& sizes);
 
-/// Base_link of a standing machine, on the floor plan.
+/// Pose of base_link of a standing machine on the floor plan.
 struct RexStand {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -39,10 +39,10 @@ struct RexStand {
 [[nodiscard]] RexStand moved(const RexStand& stand, const RexMovement& movement, double share);
 
 struct RexStep {
-    double wait_s = 0.0;  ///< standing before the command
+    double wait_s = 0.0;  ///< time that the machine stands before the command
     RexMovement movement;
     RexStand before;
-    RexStand after;  ///< where it really ends: a few millimetres beside the commanded place
+    RexStand after;  ///< real end of the step: a few millimetres off the commanded place
 };
 
 struct RexPlan {
@@ -51,10 +51,10 @@ struct RexPlan {
     double last_wait_s = 0.0;
 };
 
-/// Commands through the waypoints as an operator would give them: turn in place toward the next one
-/// (or away from it, or sideways, if that takes fewer steps or the waypoint asks for it), then the
-/// sector that brings the machine nearest, again and again; at last turn to the waypoint's yaw.
-/// Stops within half a step and half a turn. A way of more than 2000 steps is a usage error.
+/// Plans commands through the waypoints as an operator would give them. First turn in place toward
+/// the waypoint (or go backward or sideways, if that takes fewer steps or the waypoint asks for
+/// it), then repeat the sector that brings the machine nearest, then turn to the waypoint's yaw.
+/// Stops within half a step and half a turn. A path of more than 2000 steps is a usage error.
 [[nodiscard]] Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
                                              const RexStepSizes& sizes,
                                              Rng& rng);

@@ -97,7 +97,7 @@ TEST(RexPlanTest, TakesTheShorterWayOrTheOneAskedFor) {
     EXPECT_EQ(codes(planned({{}, by(Move::automatic, -0.5, 0.0, 0.0)})), std::set<int>{17});
     EXPECT_EQ(codes(planned({{}, by(Move::automatic, 0.0, 0.3, 0.0)})), std::set<int>{21});
     EXPECT_EQ(codes(planned({{}, by(Move::side, 0.0, -1.0, 0.0)})), std::set<int>{13});
-    // Ten steps back, or turn and walk: asked for, it goes back.
+    // Ten steps back, or turn and walk: the script asks for steps back.
     const std::set<int> back = codes(planned({{}, by(Move::back, -2.5, 0.0, 0.0)}));
     EXPECT_EQ(back.count(25) + back.count(26), 0U);
     EXPECT_EQ(back.count(17), 1U);

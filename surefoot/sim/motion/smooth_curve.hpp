@@ -17,20 +17,20 @@ struct Jet {
 [[nodiscard]] Jet operator+(const Jet& a, const Jet& b) noexcept;
 [[nodiscard]] Jet operator*(double factor, const Jet& a) noexcept;
 [[nodiscard]] Jet operator*(const Jet& a, const Jet& b) noexcept;
-/// A sin(omega t + phase).
+/// Value and derivatives of A sin(omega t + phase).
 [[nodiscard]] Jet oscillation(double amplitude, double omega_rad_s, double phase_rad, double t_s);
 
-/// 6u^5 - 15u^4 + 10u^3 of u clamped to [0, 1]: from 0 to 1, at rest with its first two derivatives
-/// at both ends.
+/// Quintic smoothstep 6u^5 - 15u^4 + 10u^3 with u clamped to [0, 1]. Rises from 0 to 1; its first
+/// and second derivatives are 0 at both ends.
 [[nodiscard]] double eased(double u) noexcept;
 
-/// Uniform cubic B-spline through time with the samples of a curve as control values: its second
-/// derivative is continuous, single outliers are smoothed by [1 4 1] / 6, and it never leaves the
-/// range of four neighbouring samples (de Boor, "A Practical Guide to Splines", 1978). The first
-/// and the last sample are repeated, so the curve rests on them at both ends.
+/// Uniform cubic B-spline over time; the control values are the samples of a curve. Its second
+/// derivative is continuous, it smooths single outliers by [1 4 1] / 6, and it stays in the range
+/// of four neighbouring samples (de Boor, "A Practical Guide to Splines", 1978). The first and the
+/// last sample are repeated, so that the curve rests on them at both ends.
 class SmoothCurve {
   public:
-    /// At least one sample. Lasts (samples + 1) intervals.
+    /// Requires at least one sample. Duration: (samples + 1) intervals.
     SmoothCurve(double start_s, double interval_s, std::vector<double> samples);
     [[nodiscard]] Jet at(double time_s) const;
 
@@ -40,8 +40,8 @@ class SmoothCurve {
     std::vector<double> samples_;
 };
 
-/// Motion of a body from its position in the world and its roll, pitch and yaw, rotation
-/// Rz(yaw) Ry(pitch) Rx(roll); pitch is positive downward (REP-103).
+/// Motion of a body from its world position and roll, pitch and yaw; the rotation is Rz(yaw)
+/// Ry(pitch) Rx(roll). Positive pitch is downward (REP-103).
 [[nodiscard]] MotionState motion_state(const std::array<Jet, 3>& position_m,
                                        const std::array<Jet, 3>& roll_pitch_yaw_rad);
 

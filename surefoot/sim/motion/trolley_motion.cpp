@@ -11,14 +11,14 @@
 namespace surefoot::sim {
 namespace {
 
-/// Way s with its derivatives by time.
+/// Distance s with its derivatives by time.
 struct Progress {
     double way_m = 0.0;
     double speed_m_s = 0.0;
     double acceleration_m_s2 = 0.0;
 };
 
-/// Speeding up from rest: v = V (3u^2 - 2u^3), u = t / T; after T the way is V T / 2.
+/// Acceleration from rest: v = V (3u^2 - 2u^3), u = t / T; the distance after T is V T / 2.
 Progress speeding_up(double speed_m_s, double ramp_s, double t_s) {
     const double u = t_s / ramp_s;
     return {speed_m_s * ramp_s * u * u * u * (1.0 - 0.5 * u),
@@ -33,13 +33,13 @@ Progress progress(double length_m, double speed_m_s, double ramp_s, double durat
     return {length_m - mirrored.way_m, mirrored.speed_m_s, -mirrored.acceleration_m_s2};
 }
 
-/// Height gained and slope on a ramp after some way, the slope with its derivatives by that way.
+/// Height gain and slope on a ramp after some distance; the slope with its derivatives by distance.
 struct Ramp {
     double rise_m = 0.0;
     Jet slope;
 };
 
-/// The slope grows as 6u^5 - 15u^4 + 10u^3 over `blend`, stays, and vanishes the same way.
+/// The slope grows as 6u^5 - 15u^4 + 10u^3 over `blend`, stays constant, and vanishes the same way.
 Ramp starting_ramp(double steepest, double blend_m, double way_m) {
     const double u = std::min(way_m / blend_m, 1.0);
     const double rest_m = way_m - u * blend_m;
@@ -60,7 +60,7 @@ Ramp ramp(double length_m, double rise_m, double way_m) {
             {mirrored.slope.value, -mirrored.slope.rate, mirrored.slope.acceleration}};
 }
 
-/// A function of the way as a function of time.
+/// Converts a function of distance to a function of time.
 Jet in_time(const Jet& by_way, const Jet& way) {
     return {by_way.value,
             by_way.rate * way.rate,
@@ -122,7 +122,7 @@ void TrolleyMotion::append_way(const Waypoint& from,
                                 config.turn_lever_m * std::abs(to.yaw_rad - from.yaw_rad));
     if (segment.length_m == 0.0) return;
     segment.start_s = duration_s_;
-    // A short way never reaches the speed: it only speeds up and slows down.
+    // On a short path the trolley never reaches full speed: it only accelerates and brakes.
     segment.ramp_s = config.ramp_s;
     segment.speed_m_s = std::min(config.speed_m_s, segment.length_m / config.ramp_s);
     segment.duration_s = segment.length_m / segment.speed_m_s + config.ramp_s;
@@ -186,8 +186,8 @@ MotionState TrolleyMotion::at(double time_s) const {
                      here.slope.value * way.rate,
                      here.slope.rate * way.rate * way.rate + here.slope.value * way.acceleration};
     const Jet yaw = Jet{segment.from.yaw_rad, 0.0, 0.0} + turn_rad * part;
-    // Seen from the body the slope rises toward the way's direction; a quarter turn more
-    // makes the cosine a sine.
+    // In body axes the slope rises toward the direction of travel; a quarter turn more makes the
+    // cosine a sine.
     const double direction_rad = std::atan2(way_m.y(), way_m.x());
     const Jet ahead = slope * cosine(yaw, -direction_rad);
     const Jet left = slope * cosine(yaw, 0.5 * std::numbers::pi - direction_rad);

@@ -14,31 +14,31 @@ struct TrolleyConfig {
     double height_m = 0.95;     ///< of base_link above the ground
     double speed_m_s = 0.25;    ///< between waypoints
     double ramp_s = 1.0;        ///< time to reach that speed, and to stop
-    double turn_lever_m = 0.8;  ///< a turn by 1 rad takes as long as this way
-    bool tilts = true;          ///< with the slope between two waypoints of different height
+    double turn_lever_m = 0.8;  ///< a turn by 1 rad takes as long as this distance
+    bool tilts = true;          ///< follows the slope between two waypoints of different height
 };
 
-/// Motion of base_link through waypoints at constant height above the ground. Between two waypoints
-/// position and yaw follow one progress function s(t): speed rises as the smoothstep 3u^2 - 2u^3,
-/// stays, falls the same way, so acceleration is continuous. Before the start and after the end it
-/// stands still. It stands level at the waypoints; between two of different height the slope grows
-/// and vanishes smoothly over 0.3 m, so waypoints belong to the foot and to the top of a ramp.
+/// Motion of base_link through waypoints at constant height above the ground. Position and yaw
+/// between two waypoints follow one progress function s(t): the speed rises as the smoothstep 3u^2
+/// - 2u^3, stays, and falls the same way, so acceleration is continuous. The body stands still
+/// before the start and after the end. It is level at the waypoints. On a slope the tilt grows and
+/// vanishes smoothly over 0.3 m, so place waypoints at the foot and at the top of a ramp.
 class TrolleyMotion final : public Motion {
   public:
-    /// At least one waypoint; one alone stands for its pause.
+    /// Requires at least one waypoint; with one waypoint the trolley stands there for its pause.
     static TrolleyMotion trolley(const std::vector<Waypoint>& waypoints,
                                  const TrolleyConfig& config);
     static TrolleyMotion stand(const Waypoint& place, double height_m, double duration_s);
 
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return duration_s_; }
-    /// When each pause begins, in order.
+    /// Start time of each pause, in order.
     [[nodiscard]] std::vector<double> pauses_s() const;
 
   private:
     struct Segment {
         double start_s = 0.0;
-        double length_m = 0.0;  ///< way, or lever times turn where that is longer; 0 = pause
+        double length_m = 0.0;  ///< distance, or lever times turn if that is longer; 0 = pause
         double speed_m_s = 0.0;
         double ramp_s = 0.0;
         double duration_s = 0.0;

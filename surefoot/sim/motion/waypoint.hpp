@@ -6,18 +6,18 @@
 
 namespace surefoot::sim {
 
-/// How a walking machine goes to a waypoint; the other carriers just go there.
+/// How a walking machine approaches a waypoint; the other motion models ignore it.
 enum class Move : std::uint8_t { automatic, ahead, back, side };
 inline constexpr const char* kMoveNames[] = {"auto", "ahead", "back", "side"};
 
-/// A place on the floor, and how long the carrier waits there.
+/// A place on the floor, with the pause of the camera there.
 struct Waypoint {
     double x_m = 0.0;
     double y_m = 0.0;
     double yaw_rad = 0.0;
     double pause_s = 0.0;
     double ground_z_m = 0.0;      ///< height of the ground there
-    Move move = Move::automatic;  ///< automatic = whatever takes the fewest steps
+    Move move = Move::automatic;  ///< automatic = the way with the fewest steps
 };
 
 /// Height of the ground at a point of the world.

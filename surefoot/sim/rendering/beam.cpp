@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rounding of angles and of products of coordinates up to 1 km.
+/// Margin for rounding errors of angles and of products of coordinates up to 1 km.
 constexpr double kMargin_rad = 1e-6;
 constexpr double kMargin_m = 1e-9;
 
@@ -34,8 +34,8 @@ Beam::Beam(const Vector3d& tip_m, const Vector3d& axis, double half_angle_rad, d
       cosine_(std::cos(half_angle_rad_)),
       tip_radius_m_(tip_radius_m + kMargin_m) {}
 
-/// The distance of the centre from the nearest line of the cone; behind the tip it is even further
-/// away than that.
+/// Uses the distance of the centre from the nearest line of the cone; behind the tip the true
+/// distance is larger.
 bool Beam::misses(const Sphere& sphere) const {
     if (!(cosine_ > 0.0)) return false;
     const Vector3d to_center = sphere.center_m - tip_m_;
@@ -44,7 +44,7 @@ bool Beam::misses(const Sphere& sphere) const {
     return across_m * cosine_ - along_m * sine_ > sphere.radius_m + tip_radius_m_;
 }
 
-/// Looks for a plane between them among those that touch the cone on eight sides.
+/// Searches a separating plane among the planes that touch the cone on eight sides.
 bool Beam::misses(std::span<const Vector3d> corners_m) const {
     if (!(cosine_ > 0.0)) return false;
     const Vector3d side = axis_.unitOrthogonal();
@@ -68,8 +68,7 @@ bool Beam::misses(std::span<const Vector3d> corners_m) const {
 }
 
 double Beam::sine_of_hits(double above_m) const {
-    // A place at least `above_m` away moves by this angle at most when seen from elsewhere in the
-    // ball.
+    // A point at least `above_m` away moves by at most this angle between viewpoints in the ball.
     if (!(above_m > 2.0 * tip_radius_m_)) return 2.0;
     const double angle_rad = half_angle_rad_ + std::asin(tip_radius_m_ / (above_m - tip_radius_m_));
     return angle_rad < 0.5 * std::numbers::pi ? std::sin(angle_rad) : 2.0;

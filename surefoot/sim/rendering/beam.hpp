@@ -12,8 +12,8 @@ struct Sphere {
 };
 
 /// All rays of a block of pixels: a cone in the world frame whose tip may be anywhere in a small
-/// ball, because rows are exposed one after the other. The tests below are proofs: what they say
-/// holds for every ray; they may fail to see it (always from 90 deg of half angle on).
+/// ball, because the rows are exposed one after another. The tests below are conservative proofs:
+/// true holds for every ray; false may mean "not proved" (always from 90 deg of half angle on).
 class Beam {
   public:
     Beam(const Eigen::Vector3d& tip_m,
@@ -24,19 +24,19 @@ class Beam {
     [[nodiscard]] const Eigen::Vector3d& tip_m() const noexcept { return tip_m_; }
     [[nodiscard]] double tip_radius_m() const noexcept { return tip_radius_m_; }
 
-    /// No ray meets the sphere.
+    /// True if provably no ray meets the sphere.
     [[nodiscard]] bool misses(const Sphere& sphere) const;
-    /// No ray meets the convex hull of the corners.
+    /// True if provably no ray meets the convex hull of the corners.
     [[nodiscard]] bool misses(std::span<const Eigen::Vector3d> corners_m) const;
-    /// Every ray meets the convex polygon: its corners counter-clockwise as seen from the tip,
-    /// which lies `above_m` over its plane.
+    /// True if provably every ray meets the convex polygon. Corners: counter-clockwise as seen from
+    /// the tip, which is `above_m` above the plane of the polygon.
     [[nodiscard]] bool inside(std::span<const Eigen::Vector3d> polygon_m, double above_m) const;
-    /// No ray meets it.
+    /// True if provably no ray meets the polygon.
     [[nodiscard]] bool outside(std::span<const Eigen::Vector3d> polygon_m, double above_m) const;
 
   private:
-    /// Sine of the half angle of the cone from the middle of the ball that holds every place where
-    /// a ray meets a plane; above 1 where there is none.
+    /// Sine of the half angle of a cone from the middle of the ball that contains every point where
+    /// a ray meets a plane; above 1 if no such cone exists.
     [[nodiscard]] double sine_of_hits(double above_m) const;
 
     Eigen::Vector3d tip_m_;

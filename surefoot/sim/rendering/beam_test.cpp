@@ -63,8 +63,8 @@ std::vector<Primitive> shapes(Rng& rng) {
     };
 }
 
-/// No ray of a beam that is said to miss a thing meets it, and one whose rays all meet one face
-/// meets nothing else, at exactly the same distance.
+/// Checks the proofs of a beam: if it misses an object, no ray hits the object. If all its rays hit
+/// one face, no ray hits anything else, and the distance is exactly equal.
 TEST(BeamTest, WhatABeamProvesHoldsForItsRays) {
     Rng rng(7);
     int missed_spheres = 0;
@@ -100,7 +100,7 @@ TEST(BeamTest, WhatABeamProvesHoldsForItsRays) {
     EXPECT_GT(single_faces, 300);
 }
 
-/// Hulls are told from spheres: a beam along a wall misses the wall, not its bounding sphere.
+/// Hulls are tighter than spheres: a beam along a wall misses the wall but not its bounding sphere.
 TEST(BeamTest, ABeamAlongAWallMissesIt) {
     const Prism wall = make_box({0.0, 1.0}, {10.0, 0.1}, 0.0, 2.5);
     const Beam beam({-4.0, 0.0, 1.0}, Vector3d::UnitX(), 0.03, 0.0);

@@ -13,8 +13,8 @@
 namespace surefoot::sim {
 namespace {
 
-/// Samples in each direction that decide whether a pixel is of one colour; what is smaller than a
-/// third of a pixel may be missed.
+/// Samples in each direction that detect a pixel of one colour. Shapes smaller than a third of a
+/// pixel may be missed.
 constexpr int kProbeSamples = 4;
 
 bool inside(const PrintedSheet::Rectangle& box, const Eigen::Vector2d& p_m) {
@@ -22,8 +22,8 @@ bool inside(const PrintedSheet::Rectangle& box, const Eigen::Vector2d& p_m) {
            p_m.y() < box.bottom_m;
 }
 
-/// Finds the colour at a place of the sheet without asking every shape: square bins of the paper
-/// know which shapes reach into them.
+/// Finds the colour at a point of the sheet. A grid of square bins stores the shapes that reach
+/// into each bin, so that not every shape is tested.
 class Sheet {
   public:
     Sheet(const PrintedSheet& sheet, const ImagingConditions& look) : sheet_(sheet), look_(look) {
@@ -85,7 +85,8 @@ class Sheet {
     std::vector<Bin> bins_;
 };
 
-/// Where the ray of a pixel meets the sheet's plane, in its frame; NaN where it does not.
+/// Point where the ray of a pixel meets the sheet's plane, in the frame of the sheet; NaN if it
+/// does not.
 Eigen::Vector2d place_on_sheet(const camera::Camera& camera,
                                const Pose& T_sheet_camera,
                                const Eigen::Vector2d& pixel) {
@@ -99,9 +100,9 @@ Eigen::Vector2d place_on_sheet(const camera::Camera& camera,
     return (origin_m + distance_m * direction).head<2>();
 }
 
-/// Mean colour of a pixel whose corners see these places: top left, top right, bottom left, bottom
-/// right. Between them the place is bilinear: over one pixel the map differs from that by less than
-/// 1e-3 px for every lens that can be calibrated.
+/// Mean colour of a pixel with these sheet points at its corners: top left, top right, bottom left,
+/// bottom right. Points between them are bilinear: over one pixel this is exact to 1e-3 px for
+/// every lens that can be calibrated.
 double mean_colour(const Sheet& sheet, const std::array<Eigen::Vector2d, 4>& corners_m) {
     double first = 0.0;
     bool uniform = true;

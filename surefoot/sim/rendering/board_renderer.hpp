@@ -11,19 +11,19 @@
 
 namespace surefoot::sim {
 
-/// Light, lens and sensor of a board's picture. Grey values are linear in light, 0..255.
+/// Lighting, lens and sensor for the image of a board. Grey values are linear in light, 0..255.
 struct ImagingConditions {
     double paper_dn = 210.0;
     double ink_dn = 30.0;
     double background_dn = 100.0;
     double blur_sigma_px = 0.0;  ///< Gaussian spot of the lens; 0 = ideal
-    double noise_dn = 0.0;       ///< one sigma, every pixel for itself
+    double noise_dn = 0.0;       ///< one sigma, independent in every pixel
 };
 
-/// Image of a sheet in front of a camera. Analytic: no mesh, no texture. Every pixel is the mean
-/// over its square area; edges are sampled `kEdgeSamples` times in each direction, so that an edge
-/// lies right to about 1 / (2 kEdgeSamples) px in one pixel and far better over several.
-/// Same seed, same bytes, for every executor.
+/// Renders the image of a sheet in front of a camera analytically, without mesh or texture. Every
+/// pixel is the mean over its square area. Edges are sampled `kEdgeSamples` times in each
+/// direction, so an edge is right to about 1 / (2 kEdgeSamples) px in one pixel and far better over
+/// several. Deterministic: the same seed gives the same bytes for every executor.
 inline constexpr int kEdgeSamples = 16;
 [[nodiscard]] GreyImage render_board(const PrintedSheet& sheet,
                                      const camera::Camera& camera,

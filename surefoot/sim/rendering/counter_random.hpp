@@ -7,8 +7,8 @@
 
 namespace surefoot::sim {
 
-/// Uniform number in [0, 1) addressed by (seed, stream, index): the same for any order of
-/// evaluation, as PixelNoise is for Gaussian ones.
+/// Uniform number in [0, 1), a function of (seed, stream, index) alone: it does not depend on the
+/// order of evaluation. PixelNoise does the same for Gaussian numbers.
 [[nodiscard]] inline double uniform_at(std::uint64_t seed,
                                        std::uint64_t stream,
                                        std::uint64_t index) noexcept {

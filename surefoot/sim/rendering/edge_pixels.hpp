@@ -16,13 +16,13 @@ struct Pixel {
     int v = 0;
 };
 
-/// Pixels of a block with a neighbour of another key, row by row; returns how many there are.
+/// Finds pixels of a block whose neighbour has another key, row by row; returns their number.
 [[nodiscard]] std::size_t find_edge(const Image<std::uint32_t>& key,
                                     int block_x,
                                     int block_y,
                                     std::array<Pixel, CastBlock::kPixels>& out);
 
-/// Casts the rays of one place in each of some pixels of a block, ordered by row.
+/// Casts rays at one sub-pixel position in each of the given pixels of a block, ordered by row.
 void cast_within(const Scene& scene,
                  const RayField& rays,
                  const ImageViews& views,

@@ -24,7 +24,7 @@ void ExposureConfig::describe(ConfigVisitor& visitor) {
     visitor.number("lag_s", lag_s, 0.0, 10.0, "time constant of the control; 0 = at once");
     visitor.boolean("sun_warm_up", sun_warm_up, "over-exposed for the first 10-30 s");
     visitor.number("warm_up_factor", warm_up_factor, 1.0, 100.0, "too much light at first");
-    visitor.number("right_gain", right_gain, 0.5, 2.0, "right eye relative to the left");
+    visitor.number("right_gain", right_gain, 0.5, 2.0, "right camera relative to the left");
 }
 
 double metered_mean_dn(const Image<float>& signal_dn, double factor) {
@@ -81,7 +81,7 @@ void ExposureControl::settle(const Image<float>& signal_dn) {
 
 void ExposureControl::update(const Image<float>& signal_dn, double step_s) {
     if (!config_.automatic) return;
-    // Below a tenth of a grey value the image is black: the control opens as far as it can.
+    // An image below a tenth of a grey value is black: the control opens to its limit.
     const double mean_dn = std::max(metered_mean_dn(signal_dn, product_), 0.1);
     const double share = config_.lag_s > 0.0 ? 1.0 - std::exp(-step_s / config_.lag_s) : 1.0;
     product_ *= std::pow(config_.target_dn / mean_dn, share);

@@ -8,19 +8,19 @@
 
 namespace surefoot::sim {
 
-/// How a camera chooses its exposure. Grey values of the renderer hold for `exposure_s` and gain 1.
-/// ASSUMPTION: the figures of the control are typical of small cameras, not measured on a ZED.
+/// How a camera chooses its exposure. The renderer's grey values hold for `exposure_s` and gain 1.
+/// ASSUMPTION: the control parameters are typical of small cameras; nobody measured them on a ZED.
 struct ExposureConfig {
-    double exposure_s = 0.008;  ///< fixed, or where the automatic control begins
+    double exposure_s = 0.008;  ///< fixed value, or the start value of the automatic control
     bool automatic = false;     ///< keep the mean grey value at `target_dn`
     double target_dn = 110.0;   ///< mean of the left image
     double min_exposure_s = 0.0001;
-    double max_exposure_s = 0.016;  ///< longer blurs; beyond it the gain rises
+    double max_exposure_s = 0.016;  ///< longer exposures blur the image; beyond it the gain rises
     double max_gain = 8.0;
     double lag_s = 0.3;           ///< time constant; 0 = at once
     bool sun_warm_up = false;     ///< over-exposed for the first 10-30 s, drawn by the seed
-    double warm_up_factor = 8.0;  ///< too much light at the first frame
-    double right_gain = 1.0;      ///< of the right eye relative to the left
+    double warm_up_factor = 8.0;  ///< factor of too much light at the first frame
+    double right_gain = 1.0;      ///< of the right camera relative to the left one
 
     void describe(ConfigVisitor& visitor);
 };
@@ -32,24 +32,24 @@ struct Shot {
     double light = 1.0;  ///< signal relative to `exposure_s` of the configuration at gain 1
 };
 
-/// Mean grey value of an image whose signal is multiplied by a factor and saturates at 255. Looks
-/// at every fourth pixel of every fourth row.
+/// Mean grey value of an image whose signal is multiplied by `factor` and saturates at 255. Samples
+/// every fourth pixel of every fourth row.
 [[nodiscard]] double metered_mean_dn(const Image<float>& signal_dn, double factor);
 
-/// The exposure control of a stereo camera. It meters the left image and sets both eyes alike;
-/// exposure time first, gain when time is at its limit. The logarithm of the product follows the
-/// wanted one with a lag of first order. In the sun both eyes get too much light at first, by a
-/// factor that falls exponentially to 1 (thesis: useless disparity for 10-30 s in the sun; the law
-/// is an ASSUMPTION); the control does not see it.
+/// The exposure control of a stereo camera. It meters the left image and sets both cameras alike:
+/// exposure time first, then gain when the time is at its limit. The logarithm of their product
+/// follows the wanted value with a first-order lag. In the sun both cameras get too much light at
+/// first, by a factor that falls exponentially to 1; the control does not see this factor. (Lange
+/// 2016 reports useless disparities for 10-30 s in the sun; the exponential law is an ASSUMPTION.)
 class ExposureControl {
   public:
     ExposureControl(const ExposureConfig& config, std::uint64_t seed);
 
-    /// Settings for a frame.
+    /// Exposure settings for a frame.
     [[nodiscard]] Shot shot(double since_start_s) const;
-    /// At the first frame: as if the camera had looked at this for long.
+    /// Call at the first frame: sets the steady state for this image.
     void settle(const Image<float>& signal_dn);
-    /// After a frame, `step_s` before the next.
+    /// Call after each frame; `step_s` is the time to the next frame.
     void update(const Image<float>& signal_dn, double step_s);
     /// Duration of the warm-up; 0 without one.
     [[nodiscard]] double warm_up_s() const noexcept { return warm_up_s_; }

@@ -19,7 +19,7 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
     const int frames = static_cast<int>(schedule.size());
     int thaw_frame = 0;
     for (int frame = 1; frame < frames; ++frame) {
-        // Two numbers a frame, whatever happens: one setting does not shift the others' faults.
+        // Always draw two numbers per frame, so that one setting does not shift the other faults.
         double chance = rng.uniform();
         const int tear_row = 1 + static_cast<int>(rng.uniform() * std::max(height - 1, 1));
         const auto happens = [&](double probability) {
@@ -46,9 +46,9 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
 
 void ImageFaultConfig::describe(ConfigVisitor& visitor) {
     visitor.number("drop_probability", drop_probability, 0.0, 1.0, "a frame never arrives");
-    visitor.number("repeat_probability", repeat_probability, 0.0, 1.0, "the last images again");
+    visitor.number("repeat_probability", repeat_probability, 0.0, 1.0, "the previous images again");
     visitor.number("tear_probability", tear_probability, 0.0, 1.0, "bottom of the frame before");
-    visitor.number("freeze_probability", freeze_probability, 0.0, 1.0, "images stop to change");
+    visitor.number("freeze_probability", freeze_probability, 0.0, 1.0, "images stop changing");
     visitor.integer("freeze_frames", freeze_frames, 1, kMaxFreezeFrames, "length of a freeze");
 }
 

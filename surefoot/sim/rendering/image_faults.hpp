@@ -12,17 +12,17 @@
 
 namespace surefoot::sim {
 
-/// What goes wrong between a camera and its reader.
+/// Faults between a camera and its reader.
 enum class ImageFault : std::uint8_t {
     dropped,   ///< the frame never arrives
-    repeated,  ///< the images delivered before, under a new stamp
-    torn,      ///< top rows of this frame, the rest of the frame exposed before it
-    frozen,    ///< the images delivered before, for many frames
+    repeated,  ///< the previously delivered images, under a new stamp
+    torn,      ///< top rows are from this frame, the other rows from the previous exposure
+    frozen,    ///< the previously delivered images, for many frames
 };
 inline constexpr const char* kImageFaultNames[] = {"dropped", "repeated", "torn", "frozen"};
 
-/// One fault. Frames are counted as they are exposed, from 0, also those that are dropped; frame 0
-/// always arrives whole.
+/// One fault. Frames are counted from 0 as they are exposed, dropped frames included; frame 0
+/// always arrives intact.
 struct InjectedFault {
     int frame = 0;
     ImageFault kind = ImageFault::dropped;
@@ -31,27 +31,27 @@ struct InjectedFault {
     friend bool operator==(const InjectedFault&, const InjectedFault&) = default;
 };
 
-/// Chances for each frame; a frame has at most one fault. Frames of `planned` get just that one.
+/// Fault probabilities per frame; a frame has at most one. Frames in `planned` get only that fault.
 struct ImageFaultConfig {
     double drop_probability = 0.0;
     double repeat_probability = 0.0;
     double tear_probability = 0.0;
-    double freeze_probability = 0.0;  ///< that a freeze begins
-    int freeze_frames = 10;           ///< length of one
+    double freeze_probability = 0.0;  ///< that a freeze begins at this frame
+    int freeze_frames = 10;           ///< length of one freeze
     std::vector<InjectedFault> planned;
 
     void describe(ConfigVisitor& visitor);
-    /// First planned fault that cannot be, in words; or nothing.
+    /// Describes the first impossible planned fault; no value if all are possible.
     [[nodiscard]] std::optional<std::string> problem(int frames, int height) const;
 };
 
-/// The faults of a whole recording, in the order of frames; the same for the same seed.
+/// The faults of a whole recording in frame order; deterministic for a given seed.
 [[nodiscard]] std::vector<InjectedFault> plan_faults(const ImageFaultConfig& config,
                                                      int frames,
                                                      int height,
                                                      std::uint64_t seed);
 
-/// Replaces the rows from `tear_row` down by those of the older image.
+/// Replaces the rows from `tear_row` to the bottom by those of the older image.
 template <typename Pixel>
 void tear(const Image<Pixel>& older, int tear_row, Image<Pixel>& image) {
     for (int v = tear_row; v < image.height(); ++v) {

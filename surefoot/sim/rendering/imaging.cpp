@@ -33,7 +33,7 @@ double normal_quantile(double p) {
     return x;
 }
 
-/// What truncates to the nearest grey value; max() gives 0 for NaN.
+/// Value that truncates to the nearest grey value; max() gives 0 for NaN.
 float as_grey(float value_dn) {
     return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
 }

@@ -7,16 +7,16 @@
 
 namespace surefoot::sim {
 
-/// Light of a scene: even light from all sides, and one lamp or sun far away. Sun through a blind
+/// Lighting of a scene: uniform ambient light plus one distant lamp or sun. Light through a blind
 /// falls in stripes.
 struct Lighting {
-    double ambient = 0.45;             ///< even part, units of a white lit surface
-    double lamp = 0.55;                ///< directed part
-    double lamp_azimuth_deg = -53.0;   ///< where the lamp stands, from +x towards +y
+    double ambient = 0.45;             ///< ambient part; a fully lit white surface = 1
+    double lamp = 0.55;                ///< directed part, same unit
+    double lamp_azimuth_deg = -53.0;   ///< direction to the lamp, from +x towards +y
     double lamp_elevation_deg = 60.0;  ///< above the horizon
-    bool shadows = false;              ///< the lamp is blocked by what stands in its way
+    bool shadows = false;              ///< objects block the lamp
     double stripe_width_m = 0.0;       ///< bright stripes on the plane across the lamp; 0 = none
-    double stripe_gap_m = 0.1;         ///< dark between two stripes
+    double stripe_gap_m = 0.1;         ///< dark gap between two stripes
     double stripe_yaw_deg = 0.0;       ///< turn of the stripes about the direction of the lamp
 
     void describe(ConfigVisitor& visitor);

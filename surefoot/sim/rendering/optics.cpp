@@ -78,7 +78,7 @@ void OpticsConfig::describe(ConfigVisitor& visitor) {
 std::vector<float> smear_kernel(double sigma_px) {
     if (!(sigma_px > 0.0)) return {1.0F};
     const int radius = saturated_integer<int>(std::ceil(4.0 * sigma_px) + 1.0);
-    // Sampling narrows a small spot: bisect for the width whose samples have the moment wanted.
+    // Sampling narrows a small spot: bisect for the width whose samples have the requested moment.
     double low_px = 0.05;
     double high_px = 2.0 * sigma_px + 1.0;
     for (int i = 0; i < 60; ++i) {

@@ -9,8 +9,8 @@
 
 namespace surefoot::sim {
 
-/// A ray in the world that has come `way_m` from the camera to `point_m`, with the angle between
-/// the rays of neighbouring pixels.
+/// A ray in the world that has travelled `way_m` from the camera to `point_m`, with the angle
+/// between the rays of neighbouring pixels.
 struct Sight {
     Eigen::Vector3d point_m;
     Eigen::Vector3d direction;
@@ -18,7 +18,7 @@ struct Sight {
     double pixel_angle_rad = 0.0;
 };
 
-/// Several of them, coordinate by coordinate; filled up to `count`.
+/// Several rays, stored coordinate by coordinate; filled up to `count`.
 struct SightBatch {
     std::size_t count = 0;
     PointBatch points_m;
@@ -43,8 +43,8 @@ struct SightBatch {
     }
 };
 
-/// How a pattern lies on a plane: texels along its axes for each metre in the world, and where it
-/// begins.
+/// How a pattern lies on a plane: texels per metre along its axes in the world, and the offset of
+/// its origin.
 struct PlaneTexels {
     Eigen::Vector3d texel_u;
     Eigen::Vector3d texel_v;
@@ -54,12 +54,12 @@ struct PlaneTexels {
     double texels_per_m = 0.0;
 };
 
-/// Nearest to grazing incidence (1.1 deg) that the footprint of a pixel is stretched to.
+/// Smallest cosine of incidence (1.1 deg from grazing) that stretches the footprint of a pixel.
 inline constexpr double kLeastCosine = 0.02;
 
-/// What a sight of a plane needs of the pattern, see `look_at`.
+/// Texture coordinates and footprint of a ray that hits a plane, see `look_at`.
 [[nodiscard]] TexelLook look_at(const PlaneTexels& plane, const Sight& sight);
-/// The same, to the last bit and under every instruction set, for a batch.
+/// As above for a batch; bit-identical under every instruction set.
 void look_at(const PlaneTexels& plane, const SightBatch& sights, TextureBatch& out);
 
 }  // namespace surefoot::sim

@@ -8,19 +8,19 @@
 
 namespace surefoot::sim {
 
-/// Nearest hit so far along one ray. Faces are numbered through a whole scene.
+/// Nearest hit so far along one ray. Faces are numbered through the whole scene.
 struct RayHit {
     double distance_m = std::numeric_limits<double>::infinity();
     int face = -1;
 };
 
-/// As many rays as a block of pixels has; kept coordinate by coordinate, so that many are worked on
-/// side by side. Filled as far as they are read.
+/// As many rays as a block of pixels has, stored coordinate by coordinate for SIMD. Only the
+/// entries that are read are filled.
 inline constexpr std::size_t kBatchRays = 256;
 template <typename T>
 using BatchArray = std::array<T, kBatchRays>;
 
-/// Unit directions.
+/// Unit direction vectors.
 struct RayBatch {
     BatchArray<double> x;
     BatchArray<double> y;
@@ -51,16 +51,16 @@ struct BatchRange {
     std::size_t end = 0;
 };
 
-/// A half space that a convex solid lies in, as seen from one origin: n . p <= offset, the origin
-/// `outside_m` beyond it.
+/// A half space that contains a convex solid, relative to one origin: n . p <= offset, with the
+/// origin `outside_m` outside it.
 struct FacingSide {
     Eigen::Vector3d normal;
     double outside_m = 0.0;
     int face = 0;
 };
 
-// All of these do what the plain code named beside them does, to the last bit, for many rays at
-// once and under every instruction set.
+// Each function gives bit-identical results to the plain code named in its comment, for many rays
+// at once and under every instruction set.
 
 /// Directions from an optical frame into the world: R_world_camera * (x, y, z)[i] for the rays
 /// [range.first, range.end); `x` is that of ray 0, and so on.
@@ -71,8 +71,8 @@ void turn_rays(const Eigen::Matrix3d& R_world_camera,
                BatchRange range,
                RayBatch& out);
 
-/// Hits on a plane that all rays meet first, from `above_m` over it; a ray of NaN, beyond the rim
-/// of a fisheye image, meets nothing.
+/// Hits on a plane that all rays meet first, `above_m` below the origin. A NaN ray (beyond the rim
+/// of a fisheye image) hits nothing.
 void meet_plane(const Eigen::Vector3d& normal,
                 double above_m,
                 int face,
@@ -80,7 +80,7 @@ void meet_plane(const Eigen::Vector3d& normal,
                 BatchRange range,
                 HitBatch& hits);
 
-/// `Prism::intersect`: the first `towards` of `count` sides look at the origin.
+/// As `Prism::intersect`: the first `towards` of the `count` sides face the origin.
 void meet_convex(const FacingSide* sides,
                  std::size_t towards,
                  std::size_t count,
@@ -88,7 +88,7 @@ void meet_convex(const FacingSide* sides,
                  BatchRange range,
                  HitBatch& hits);
 
-/// Places where rays end: origin + distance * direction.
+/// End points of rays: origin + distance * direction.
 struct PointBatch {
     BatchArray<double> x;
     BatchArray<double> y;

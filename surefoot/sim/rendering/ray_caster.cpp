@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What touches a plane from behind is not taken for hidden: rounding decides what is seen.
+/// An object that touches a plane from behind does not count as hidden: rounding decides which
+/// surface is visible.
 constexpr double kBehind_m = 1e-6;
 
 /// Angle between two rotations, a little too large: |A - B| (Frobenius) = 2 sqrt(2) sin(angle / 2).
@@ -18,7 +19,8 @@ double angle_between_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     return 2.0 * std::asin(half_sine);
 }
 
-/// The cone of the block seen from its middle row, widened by the way to its other rows.
+/// The cone of the block from its middle row, widened by the motion of the camera until its other
+/// rows.
 Beam beam_of(const RayField& rays,
              const ImageViews& views,
              const CastBlock& block,
@@ -33,7 +35,7 @@ Beam beam_of(const RayField& rays,
         turn_rad =
             std::max(turn_rad, angle_between_rad(view.R_world_camera, middle.R_world_camera));
     }
-    // Places within a pixel lie up to half a pixel diagonal outside the outermost rays.
+    // Points within a pixel lie up to half a pixel diagonal outside the outermost rays.
     const double pixel_rad = rays.pixel_angle_rad(block.u0 + block.width / 2, v_middle);
     return {middle.origin_m,
             middle.R_world_camera * cone.axis,
@@ -41,7 +43,7 @@ Beam beam_of(const RayField& rays,
             tip_radius_m};
 }
 
-/// Keeps what is not hidden by the one face of a primitive that fills the beam.
+/// Drops primitives that are hidden by the one face that fills the beam.
 void drop_hidden(const Scene& scene, const Beam& beam, CastBlock& out) {
     for (const int k : out.primitives) {
         const auto plane = scene.only_face(k, beam);

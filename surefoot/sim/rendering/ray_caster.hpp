@@ -11,8 +11,8 @@
 
 namespace surefoot::sim {
 
-/// Rays of one block in the world frame with their nearest hits, row by row, `width` to a row. Kept
-/// from block to block: it is filled without allocating.
+/// World-frame rays of one block and their nearest hits, row by row, `width` a row. Reused from
+/// block to block, so that filling it does not allocate.
 struct CastBlock {
     static constexpr std::size_t kPixels = kBatchRays;
     static_assert(kPixels == static_cast<std::size_t>(RayField::kBlock * RayField::kBlock));
@@ -26,12 +26,12 @@ struct CastBlock {
     [[nodiscard]] std::size_t pixels() const noexcept {
         return static_cast<std::size_t>(width * height);
     }
-    std::vector<int> primitives;     ///< that some ray through a pixel of the block may meet first
-    std::optional<FacePlane> plane;  ///< of the face that all rays meet first, where that is proved
+    std::vector<int> primitives;     ///< that a ray through a pixel of the block may meet first
+    std::optional<FacePlane> plane;  ///< plane of the face that all rays provably meet first
 };
 
-/// Place and size of a block, the primitives that the cone round its pixels meets while its rows
-/// are exposed, and its plane, if it has only one.
+/// Finds position and size of a block, the primitives that may be hit from its pixels while its
+/// rows are exposed, and the plane if provably only one is hit.
 void find_primitives(const Scene& scene,
                      const RayField& rays,
                      const ImageViews& views,
@@ -39,7 +39,7 @@ void find_primitives(const Scene& scene,
                      int block_y,
                      CastBlock& out);
 
-/// Casts the rays of a block of pixels against those primitives.
+/// Casts the rays of a block of pixels against the primitives found by find_primitives.
 void cast_block(const Scene& scene,
                 const RayField& rays,
                 const ImageViews& views,

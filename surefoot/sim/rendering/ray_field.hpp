@@ -10,13 +10,13 @@
 
 namespace surefoot::sim {
 
-/// The viewing ray of every pixel of a camera, computed once by its lens model, and the cone round
-/// each block of pixels, with which whole primitives are skipped.
+/// The viewing ray of every pixel of a camera, computed once from its lens model, and a bounding
+/// cone of each pixel block, which lets the caster skip whole primitives.
 class RayField {
   public:
     static constexpr int kBlock = 16;  ///< pixels, both directions
 
-    /// Cone in the optical frame that holds every ray of a block.
+    /// Cone in the optical frame that contains every ray of a block.
     struct Cone {
         Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
         double half_angle_rad = 0.0;
@@ -29,12 +29,12 @@ class RayField {
     [[nodiscard]] int height() const noexcept { return height_; }
     [[nodiscard]] int blocks_x() const noexcept { return (width_ + kBlock - 1) / kBlock; }
     [[nodiscard]] int blocks_y() const noexcept { return (height_ + kBlock - 1) / kBlock; }
-    /// Unit ray in the optical frame; NaN where the lens has none.
+    /// Unit ray in the optical frame; NaN if the lens model has no ray there.
     [[nodiscard]] Eigen::Vector3d ray(int u, int v) const noexcept {
         const std::size_t i = index(u, v);
         return {x_[i], y_[i], z_[i]};
     }
-    /// The same of all pixels of a block, row by row, as many to a row as the block is wide.
+    /// Rays of all pixels of a block, row by row, block width per row.
     struct BlockRays {
         const double* x;
         const double* y;
@@ -49,14 +49,14 @@ class RayField {
     [[nodiscard]] double pixel_angle_rad(int u, int v) const noexcept {
         return static_cast<double>(pixel_angle_rad_[index(u, v)]);
     }
-    /// Ray of a place inside a pixel, offsets in pixels; NaN where a neighbour has none.
+    /// Ray of a sub-pixel position, offsets in px; NaN if a neighbouring pixel has no ray.
     [[nodiscard]] Eigen::Vector3d ray_within(int u, int v, double du_px, double dv_px) const;
     [[nodiscard]] const Cone& cone(int block_x, int block_y) const noexcept {
         return cones_[static_cast<std::size_t>(block_y * blocks_x() + block_x)];
     }
 
   private:
-    /// Blocks lie one behind the other.
+    /// Index of a pixel; the blocks are stored one after another.
     [[nodiscard]] std::size_t index(int u, int v) const noexcept {
         const int u0 = u / kBlock * kBlock;
         const int v0 = v / kBlock * kBlock;

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Four places in a pixel that no row and no column share: an edge of any direction is graded.
+/// Four sub-pixel positions with different rows and columns: edges of any direction get
+/// intermediate values.
 constexpr std::array<std::array<double, 2>, 4> kPlaces_px{
     {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
 
@@ -28,7 +29,7 @@ void for_each_block(const RayField& rays, Executor& executor, const Work& work) 
     });
 }
 
-/// Where the rays of a block end.
+/// Finds the end points of the rays of a block.
 void find_sights(const RayField& rays,
                  const ImageViews& views,
                  int block_x,
@@ -169,7 +170,7 @@ void Renderer::collect_camera(const RayField& rays,
     }
 }
 
-/// Depth of the middle of the exposure, mean signal of all its instants.
+/// Depth at the middle of the exposure, mean signal of all its instants.
 void Renderer::blur(const RayField& rays,
                     const ImageViews& middle,
                     std::span<const ImageViews> moving,
@@ -220,7 +221,7 @@ void Renderer::render_instant(const RayField& rays,
     });
 }
 
-/// Face after face, because many places of one surface are looked up at once.
+/// Shades face by face, because look-ups of many points on one surface run together.
 void Renderer::shade_by_face(const HitBatch& hits,
                              const SightBatch& sights,
                              std::span<Seen> out) const {
@@ -276,7 +277,7 @@ void Renderer::shade_block(const RayField& rays,
     }
 }
 
-/// Pixels beside another surface mix what is seen at several places in them, as real pixels do.
+/// Pixels next to another surface average several sub-pixel positions, as real pixels do.
 void Renderer::soften_block(const RayField& rays,
                             const ImageViews& views,
                             Places places,

@@ -21,9 +21,9 @@
 
 namespace surefoot::sim {
 
-/// What one camera sees, before the sensor. Depth is along the optical axis z, exact at pixel
-/// centres in the middle of their exposure, NaN where no surface is; `surface` is -1 there. A
-/// mirror or a pane has the depth of its own surface.
+/// Image of one camera before the sensor. Depth is along the optical axis z, exact at pixel centres
+/// in the middle of their exposure; NaN without a surface, where `surface` is -1. A mirror or a
+/// pane has the depth of its own surface.
 struct CleanImage {
     Image<float> signal_dn;
     Image<float> depth_m;
@@ -31,11 +31,11 @@ struct CleanImage {
     Image<std::uint32_t> key;  ///< see Seen::key
 };
 
-/// Signals of both eyes behind their lenses, for the exposure of the configuration.
+/// Signals of both cameras behind their lenses, for the configured exposure.
 struct CleanPair {
     CleanImage left;
     CleanImage right;
-    CleanImage instant;  ///< workspace
+    CleanImage instant;  ///< scratch memory
 };
 
 struct RenderedPair {
@@ -44,7 +44,7 @@ struct RenderedPair {
     Image<float> depth_m;  ///< of the raw left camera
 };
 
-/// Everything between the light of a scene and a grey value.
+/// All effects between the light of a scene and a grey value.
 struct CameraConfig {
     ImagingConfig imaging;
     OpticsConfig optics;
@@ -52,32 +52,32 @@ struct CameraConfig {
     ExposureConfig exposure;
 };
 
-/// Renders a scene by casting the exact ray of each pixel through its lens model, from where the
-/// camera is when that row is exposed. Textures are averaged over the pixel, edges of surfaces over
-/// 4 places in it, so that what is too small to be seen blurs as in a real camera. Blocks of pixels
-/// run through the executor; the same bytes for any executor. Immutable after construction.
+/// Renders a scene by casting the exact ray of each pixel through its lens model, from the camera
+/// pose at the exposure of that row. Textures are averaged over the pixel, surface edges over 4
+/// points in it, so that sub-pixel detail blurs as in a real camera. Pixel blocks run through the
+/// executor; the bytes do not depend on it. Immutable after construction.
 class Renderer {
   public:
-    /// Fails with the rig's problem in words. The scene must outlive the renderer. An RGB-D rig
-    /// (no right camera) is refused.
+    /// Fails with the problem of the rig in words. The scene must outlive the renderer. Refuses an
+    /// RGB-D rig, which has no right camera.
     [[nodiscard]] static Result<Renderer> make(const Scene& scene,
                                                const camera::StereoRig& rig,
                                                const CameraConfig& config,
                                                std::uint64_t seed);
 
-    /// What both eyes of a moving rig collect round a stamp (see `row_offset_s`).
+    /// Signals that both cameras of a moving rig collect around a stamp (see `row_offset_s`).
     void collect(const Motion& motion,
                  double stamp_s,
                  double exposure_s,
                  Executor& executor,
                  CleanPair& out) const;
-    /// Turns it into grey values; `frame` selects the noise.
+    /// Converts the signals to grey values; `frame` selects the noise.
     void expose(const CleanPair& clean,
                 const Shot& shot,
                 int frame,
                 Executor& executor,
                 RenderedPair& out) const;
-    /// Both images of a body at rest, exposed as configured.
+    /// Both images of a body at rest, with the configured exposure.
     void render(const Pose& T_world_body, int frame, Executor& executor, RenderedPair& out) const;
     /// One camera at rest behind an ideal lens.
     void render_clean(const RayField& rays,
@@ -88,9 +88,9 @@ class Renderer {
     [[nodiscard]] const RayField& right_rays() const noexcept { return right_rays_; }
 
   private:
-    /// Places in a pixel, offsets from its centre in pixels.
+    /// Sub-pixel positions: offsets from the pixel centre in px.
     using Places = std::span<const std::array<double, 2>>;
-    /// What to keep of an instant.
+    /// Outputs of an instant that the caller needs.
     enum class Wanted : std::uint8_t { picture, picture_and_depth };
     Renderer(const Scene& scene,
              const camera::StereoRig& rig,
@@ -151,12 +151,12 @@ class Renderer {
     PixelNoise noise_;
 };
 
-/// Exact disparity of a rectified left camera: fx * baseline / depth, NaN where no surface is.
+/// Exact disparity of a rectified left camera: fx * baseline / depth; NaN without a surface.
 [[nodiscard]] Image<float> disparity_px(const Image<float>& depth_m,
                                         const camera::RectifiedRig& rig);
 
-/// Exact disparity that the rectified left camera of a rig sees from a body pose, for rigs whose
-/// raw images are distorted or turned.
+/// Exact disparity in the rectified left camera of a rig at a body pose, for rigs whose raw images
+/// are distorted or rotated.
 [[nodiscard]] Image<float> rectified_disparity_px(const Scene& scene,
                                                   const camera::RectifiedRig& rig,
                                                   const Pose& T_world_body,

@@ -22,7 +22,8 @@ camera::StereoRig zed() {
     return rig_preset("zed_vga").value();
 }
 
-/// Left a fisheye, right a distorted pinhole, turned against each other by some degrees.
+/// A fisheye camera on the left and a distorted pinhole camera on the right, rotated against each
+/// other by some degrees.
 camera::StereoRig odd_rig() {
     camera::KannalaBrandt fisheye;
     fisheye.fx_px = 180.0;
@@ -89,8 +90,8 @@ TEST(RendererTest, DepthOfTheFloorFollowsThePlaneEquation) {
     }
 }
 
-/// Casting block by block, with what the cone round a block proves, against every ray and every
-/// primitive by itself: the same face and the same distance, to the last bit.
+/// Compares casting block by block, with the proofs of the cones, with casting every ray against
+/// every primitive: same face and same distance, to the last bit.
 TEST(RendererTest, WhatABlockProvesChangesNoHit) {
     Rng rng(5);
     int proved = 0;

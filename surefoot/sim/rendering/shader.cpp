@@ -13,9 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Grey 30 at the default exposure: a dim, even surrounding.
+/// Background radiance: grey 30 at the default exposure, a dim, uniform surrounding.
 constexpr float kBackground = 30.0F / (255.0F * 1.4F);
-/// A ray that goes on from a surface starts this far from it, so as not to meet it again.
+/// A ray that continues from a surface starts this far from it, so that it does not hit the surface
+/// again.
 constexpr double kClear_m = 1e-6;
 constexpr int kMaxBounces = 2;
 
@@ -48,7 +49,7 @@ Sight onward(const Sight& sight, const Vector3d& direction) {
     return {sight.point_m + kClear_m * direction, direction, sight.way_m, sight.pixel_angle_rad};
 }
 
-/// Share that a pane reflects (Schlick, "An Inexpensive BRDF Model", 1994): all of it at grazing
+/// Share of light that a pane reflects (Schlick, "An Inexpensive BRDF Model", 1994); 1 at grazing
 /// incidence.
 float reflected_share(float straight_on, double cosine) {
     const auto missing = static_cast<float>(1.0 - std::clamp(cosine, 0.0, 1.0));
@@ -86,7 +87,7 @@ Shader::Shader(const Scene& scene, std::uint64_t seed)
 
 void Shader::add_face(const Surface& surface, const Material& material) {
     const FaceFrame& frame = surface.frame;
-    // The pattern is shifted by the number of the face: in the scene, or in its own solid.
+    // The face number shifts the pattern: the number in the scene, or in its own solid.
     int number = static_cast<int>(faces_.size());
     if (material.same_look) number -= scene_->first_surface(surface.primitive);
     Face face;
@@ -253,7 +254,8 @@ bool Shader::lit(const Vector3d& point_m) const {
     return lit(point_m, blockers_);
 }
 
-/// Looks from the lamp: surfaces are seen from outside only, so a pit is shaded by its own rim.
+/// Casts a ray from the lamp: surfaces are visible from outside only, so a pit is shaded by its own
+/// rim.
 bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) const {
     if (!lighting_.shadows) return true;
     const double far_m = lamp_plane_m_ - towards_lamp_.dot(point_m) + 1.0;
@@ -268,7 +270,7 @@ bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) con
     return true;
 }
 
-/// Does the sphere meet the way of the lamp's light to a point of the other one?
+/// Whether the sphere meets the path of the lamp's light to a point of the other sphere.
 bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
     const Vector3d to_center = blocker.center_m - points.center_m;
     const double along_m = towards_lamp_.dot(to_center);
@@ -277,7 +279,7 @@ bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
            to_center.squaredNorm() - along_m * along_m <= radius_m * radius_m;
 }
 
-/// What may shade some points of a plane: never what lies behind it.
+/// Primitives that may shade some points of a plane; primitives behind the plane are left out.
 std::vector<Shader::Blocker> Shader::blockers_of(const Face& face, const SightBatch& sights) const {
     std::vector<Blocker> blockers;
     if (!lighting_.shadows || !(face.facing_lamp > 0.0)) return blockers;

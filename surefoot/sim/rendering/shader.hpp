@@ -12,28 +12,28 @@
 
 namespace surefoot::sim {
 
-/// What a ray sees. Radiance 1 = a white surface under full light. Places with another `key` differ
-/// in more than texture: another face, light instead of shadow, another thing in the mirror.
+/// What a ray hits. Radiance 1 = a white surface under full light. Points with different `key`
+/// differ in more than texture: another face, lit or in shadow, or another object in the mirror.
 struct Seen {
     float radiance = 0.0F;
     std::uint32_t key = 0;
 };
 
-/// Light that comes from the surfaces of a scene: texture, lamp with hard shadows and stripes,
-/// mirrors and panes. A mirror or a pane seen by two of the kind is matte: no deeper recursion.
-/// Panes are thin: no refraction; they cast no shadow. Immutable after construction.
+/// Light from the surfaces of a scene: texture, lamp with hard shadows and stripes, mirrors and
+/// panes. Recursion stops after two mirrors or panes: the next one appears matte. Panes are thin
+/// (no refraction) and cast no shadow. Immutable after construction.
 class Shader {
   public:
-    /// The scene must outlive the shader. The seed turns the textures.
+    /// The scene must outlive the shader. The seed shifts the textures.
     Shader(const Scene& scene, std::uint64_t seed);
 
-    /// A point of a surface that was hit.
+    /// Light from a hit point of a surface.
     [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
-    /// The same, bit by bit, for several points of one surface, at least one, which is faster.
+    /// Bit-identical and faster for several points of one surface; requires at least one point.
     void surface(int surface, const SightBatch& sights, std::span<Seen> out) const;
-    /// Where no surface is.
+    /// Light of a ray that hits no surface.
     [[nodiscard]] static Seen background() noexcept;
-    /// Does the lamp shine on a point of a surface? Always, where the scene has no shadows.
+    /// Whether the lamp lights a surface point. Always true in a scene without shadows.
     [[nodiscard]] bool lit(const Eigen::Vector3d& point_m) const;
 
   private:
@@ -78,7 +78,7 @@ class Shader {
     Eigen::Vector3d towards_lamp_;
     Eigen::Vector3d across_stripes_;
     std::vector<Blocker> blockers_;
-    double lamp_plane_m_ = 0.0;  ///< along `towards_lamp_`: everything is behind it
+    double lamp_plane_m_ = 0.0;  ///< along `towards_lamp_`: the whole scene is behind it
 };
 
 }  // namespace surefoot::sim

@@ -28,7 +28,7 @@ Sight sight_of(const Hit& hit, const Vector3d& direction) {
     return {hit.point_m, direction, hit.distance_m, kPixelAngle_rad};
 }
 
-/// What a ray sees; the test fails where it meets nothing.
+/// Light that a ray sees; the test fails if the ray hits nothing.
 Seen look(const Scene& scene,
           const Shader& shader,
           const Vector3d& from_m,
@@ -39,7 +39,7 @@ Seen look(const Scene& scene,
     return shader.surface(hit->surface, sight_of(*hit, direction));
 }
 
-/// Textured floor and, if wanted, a wall at x = 3 with its face towards the camera.
+/// Textured floor and, on request, a wall at x = 3 with its face towards the camera.
 Scene floor_and_wall(const Material* wall) {
     Scene scene;
     scene.add_floor(Floor({{-5.0, -5.0}, {8.0, 5.0}}, 0.0), scene.add_material({}), 0);

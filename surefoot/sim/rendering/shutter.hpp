@@ -10,20 +10,20 @@
 
 namespace surefoot::sim {
 
-/// How long and in which order pixels collect light. The exposure time is that of ExposureConfig.
+/// When and how long pixels collect light. ExposureConfig holds the exposure time.
 struct ShutterConfig {
-    int blur_samples = 0;  ///< instants that an exposure is averaged over; 0 or 1 = a sharp image
-    bool rolling = true;   ///< one row after the other, where the rig has a read-out time
+    int blur_samples = 0;  ///< instants averaged over an exposure; 0 or 1 = a sharp image
+    bool rolling = true;   ///< rows are exposed one after another if the rig has a read-out time
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Middle of the exposure of a row, seconds after the stamp of its image. The stamp is the middle
-/// of the exposure of the middle of the image: half of the rows are exposed before it, half after,
-/// so that the pose at the stamp is the best single pose of a rolling image.
+/// Middle of the exposure of a row, in seconds relative to the image stamp. The stamp is the middle
+/// of the exposure of the middle row: half of the rows are exposed before it, half after it. The
+/// pose at the stamp is then the best single pose of a rolling-shutter image.
 [[nodiscard]] double row_offset_s(int row, int height, double readout_s) noexcept;
 
-/// A camera at one instant.
+/// Pose of a camera at one instant.
 struct CameraView {
     Eigen::Matrix3d R_world_camera = Eigen::Matrix3d::Identity();
     Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< centre of projection, world
@@ -31,7 +31,7 @@ struct CameraView {
     friend bool operator==(const CameraView&, const CameraView&) = default;
 };
 
-/// Where a camera is when each of its rows is exposed; a single view where all rows share it.
+/// Camera pose at the exposure of each row; a single pose if all rows share it.
 class ImageViews {
   public:
     explicit ImageViews(const Pose& T_world_camera);
@@ -52,7 +52,7 @@ class ImageViews {
     std::vector<CameraView> views_;
 };
 
-/// Middles of `samples` equal parts of an exposure, seconds from its middle.
+/// Midpoints of `samples` equal parts of an exposure, in seconds from its middle.
 [[nodiscard]] std::vector<double> blur_offsets_s(double exposure_s, int samples);
 
 }  // namespace surefoot::sim

@@ -54,7 +54,7 @@ std::vector<double> edge_profile(const CleanImage& image, int row) {
     return profile;
 }
 
-/// Pixels that the plate covers: where the edge is, from the left border of the image.
+/// Number of pixels that the plate covers: position of the edge, from the left border of the image.
 double edge_px(const std::vector<double>& profile) {
     return std::accumulate(profile.begin(), profile.end(), 0.0);
 }
@@ -164,8 +164,8 @@ TEST(ShutterTest, DepthIsThatOfTheMiddleOfEachRowsExposure) {
     }
 }
 
-/// Away from edges a blurred image is the mean of sharp images at its instants; re-shading on known
-/// planes must not be seen.
+/// Away from edges a blurred image is the mean of sharp images at its instants; the shortcut of
+/// re-shading on known planes must not change the image.
 TEST(ShutterTest, BlurIsTheMeanOfItsInstants) {
     const Scene scene = make_scene("demo_stairs", 1).value().scene;
     CameraConfig config = test::noiseless();

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLengthInSteps = 1.1857971;
 enum Stream : std::uint64_t { shift, values };
 
-/// Numbers by their place on the lattice, whatever its size.
+/// Numbers addressed by their position on the lattice, independent of its size.
 std::vector<float> lattice(const PixelNoise& noise, std::uint64_t seed, int width, int height) {
     std::vector<float> nodes;
     nodes.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -10,20 +10,20 @@
 
 namespace surefoot::sim {
 
-/// Gaussian noise over an image that changes slowly: independent numbers on a lattice, low-passed
-/// by the cubic B-spline in both directions and scaled to variance 1 at every place. Its
-/// correlation along a row or a column has fallen to 1/e at `length_px`. The lattice is shifted at
-/// random, so that no pixel is preferred. A function of (seed, pixel) alone.
+/// Gaussian noise that changes slowly over an image: independent numbers on a lattice, low-passed
+/// by the cubic B-spline in both directions and scaled to variance 1 everywhere. Its correlation
+/// along a row or a column falls to 1/e at `length_px`. The lattice has a random offset, so that no
+/// pixel is special. A function of (seed, pixel) alone.
 class SmoothNoise {
   public:
-    /// Every `stride`-th pixel of `columns` by `rows` such pixels.
+    /// For every `stride`-th pixel of an image; `columns` by `rows` such pixels.
     SmoothNoise(const PixelNoise& noise,
                 std::uint64_t seed,
                 int columns,
                 int rows,
                 int stride,
                 double length_px);
-    /// Values of a row; `out` has one place for each column. `nodes` is scratch memory.
+    /// Writes the values of a row; `out` has one entry per column. `nodes` is scratch memory.
     void row(int v, std::vector<float>& nodes, std::span<float> out) const;
 
   private:
@@ -39,21 +39,21 @@ class SmoothNoise {
     std::vector<Tap> rows_;
 };
 
-/// Gaussian noise of unit variance that belongs to the surfaces of a scene: a function of (seed,
-/// surface, place on it). Linear between the nodes of a lattice with `size_m` between them.
+/// Gaussian noise of unit variance attached to the surfaces of a scene: a function of (seed,
+/// surface, position on it). Linear between the nodes of a lattice with spacing `size_m`.
 class SurfaceNoise {
   public:
     SurfaceNoise(std::uint64_t seed, double size_m);
     [[nodiscard]] float at(const PixelNoise& noise, int surface, double u_m, double v_m) const;
-    /// The numbers at the corners of the last square of the lattice that was looked at.
-    /// Neighbouring pixels see the same square.
+    /// Cache of the corner numbers of the last lattice square that was used. Neighbouring pixels
+    /// lie in the same square.
     struct Square {
         int surface = -1;  ///< none yet
         double u0 = 0.0;
         double v0 = 0.0;
         std::array<float, 4> corners{};
     };
-    /// The same, bit by bit, for places of which many lie in one square.
+    /// As above, bit-identical, for many positions of which most share one square.
     [[nodiscard]] float at(
         const PixelNoise& noise, int surface, double u_m, double v_m, Square& square) const;
 

@@ -61,7 +61,7 @@ void Material::describe(ConfigVisitor& visitor) {
     visitor.number("yaw_rad", yaw_rad, -10.0, 10.0, "turn of the pattern on the surface");
     visitor.enumeration("finish", finish, kFinishNames, "what happens to light");
     visitor.number("gloss", gloss, 0.0, 1.0, "mirror: share reflected; glass: share let through");
-    visitor.boolean("same_look", same_look, "all solids of this material look alike");
+    visitor.boolean("same_look", same_look, "all solids of this material get one pattern");
 }
 
 TextureTable::TextureTable(Pattern pattern, std::uint64_t seed) {

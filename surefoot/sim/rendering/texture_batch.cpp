@@ -21,7 +21,7 @@ using Place = TextureTable::Place;
 template <typename T>
 using Array = TextureBatch::Array<T>;
 
-/// What has to be looked up for each place of a batch.
+/// Look-ups that each point of a batch needs.
 struct Plan {
     Array<int> taps;
     Array<Place> u;  ///< of the next tap
@@ -56,7 +56,7 @@ HWY_INLINE int make_plan(const TextureBatch& in, Plan& plan) {
 HWY_INLINE void add_tap(const std::uint32_t* cells, int tap, std::size_t count, Plan& plan) {
     for (std::size_t i = 0; i < count; ++i) {
         const lookup::Levels levels = lookup::levels_of(plan.level[i]);
-        // Places that need no further tap look it up and forget it.
+        // Points that need no further tap do the look-up and discard the result.
         const std::uint32_t wanted = tap < plan.taps[i] ? ~0U : 0U;
         plan.fine_sum[i] += wanted & lookup::bilinear(cells, levels.fine, plan.u[i], plan.v[i]);
         plan.coarse_sum[i] += wanted & lookup::bilinear(cells, levels.coarse, plan.u[i], plan.v[i]);

@@ -8,13 +8,13 @@
 
 #include "surefoot/sim/rendering/texture.hpp"
 
-/// The arithmetic of one look-up, written without branches so that a compiler can do it for many
-/// places side by side. Only whole numbers and operations that IEEE 754 rounds exactly: the same
-/// bits however wide the registers are.
+/// Arithmetic of one texture look-up without branches, so that compilers vectorise it. Uses only
+/// whole numbers and operations that IEEE 754 rounds exactly: the bits do not depend on the
+/// register width.
 namespace surefoot::sim::lookup {
 
 inline constexpr float kQuantum = 1.0F / 127.0F;
-/// A pattern value of 0 as it is stored.
+/// Stored code of the pattern value 0.
 inline constexpr float kMiddle = 127.0F;
 inline constexpr float kBlotchWeight = 0.35F;
 inline constexpr float kBlotchLeastLevel = 2.0F;
@@ -22,8 +22,8 @@ inline constexpr float kBlotchLeastLevel = 2.0F;
 inline constexpr int kTopLevel = TextureTable::levels() - 1;
 static_assert(TextureTable::kSize == 1 << kTopLevel);
 
-/// Cells before the first one of a level. All levels from one on have 1 + 4 + 16 + ... cells, which
-/// in binary is 1010...1.
+/// Number of cells before the first cell of a level. Levels from one on have 1 + 4 + 16 + ...
+/// cells, which is 1010...1 in binary.
 inline std::uint32_t first_cell(std::uint32_t level) noexcept {
     constexpr std::uint32_t kAll = ((4U << (2U * kTopLevel)) - 1U) / 3U;
     return kAll - (kAll >> (2U * level));
@@ -37,8 +37,8 @@ inline float fast_log2(float x) noexcept {
     return static_cast<float>(exponent) + mantissa - 1.0F;
 }
 
-/// Stored value times 2^16 at a place of a level. Whole numbers: two texels above each other share
-/// a word, so that one multiplication weighs both. Weights are steps of 1/256.
+/// Stored value times 2^16 at a position of a level. Integer arithmetic: two vertically adjacent
+/// texels share a word, so that one multiplication weighs both. Weights are multiples of 1/256.
 inline std::uint32_t bilinear(const std::uint32_t* cells,
                               std::uint32_t level,
                               TextureTable::Place u,
@@ -60,7 +60,7 @@ inline std::uint32_t bilinear(const std::uint32_t* cells,
     return (both & 0xffffU) * (256U - fv) + (both >> 16U) * fv;
 }
 
-/// The two levels that a value comes from, and the share of the coarse one.
+/// The two mip levels that a value uses, and the weight of the coarse one.
 struct Levels {
     std::uint32_t fine = 0;
     std::uint32_t coarse = 0;
@@ -87,7 +87,7 @@ inline float pattern_value(std::uint32_t fine_sum,
     return (fine + share * (coarse - fine) - kMiddle) * kQuantum;
 }
 
-/// How the ellipse of a pixel is covered: `taps` look-ups along its long axis.
+/// How the pixel ellipse is sampled: `taps` look-ups along its long axis.
 struct Cover {
     int taps = 1;
     float level = 0.0F;
@@ -98,7 +98,7 @@ struct Cover {
 
 inline Cover cover_of(float along_u, float along_v, float minor_texel, float cosine) noexcept {
     Cover cover;
-    // As many taps as the footprint is longer than wide, to the nearest whole number.
+    // The number of taps is the aspect ratio of the footprint, rounded to a whole number.
     cover.taps = 1 + (cosine < 2.0F / 3.0F ? 1 : 0) + (cosine < 2.0F / 5.0F ? 1 : 0) +
                  (cosine < 2.0F / 7.0F ? 1 : 0);
     const float major_texel = minor_texel / cosine;
@@ -106,7 +106,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
     cover.level = fast_log2(std::max(minor_texel, step_texel));
     cover.blotch_level =
         std::max(fast_log2(major_texel * static_cast<float>(kBlotchScale)), kBlotchLeastLevel);
-    // Beyond the size of the tile all places look alike.
+    // Beyond the tile size all positions look alike.
     constexpr float kTile = TextureTable::kSize;
     const float length = std::max(std::sqrt(along_u * along_u + along_v * along_v), 1e-30F);
     const float step = std::min(step_texel, kTile) / length * 65536.0F;
@@ -117,7 +117,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
     return cover;
 }
 
-/// Place of the first of `taps` look-ups round a place.
+/// Position of the first of `taps` look-ups around a position.
 inline TextureTable::Place first_tap(TextureTable::Place middle,
                                      TextureTable::Place step,
                                      int taps) noexcept {

@@ -15,7 +15,7 @@ float uniform(Rng& rng, float low, float high) {
     return static_cast<float>(rng.uniform(static_cast<double>(low), static_cast<double>(high)));
 }
 
-/// Place in a tile whose size is a power of two.
+/// Index in a tile whose size is a power of two.
 int wrap(int i, int size) {
     return i & (size - 1);
 }
@@ -163,7 +163,7 @@ void draw_plaster(Image<float>& field, Rng& rng) {
     scatter(field, 400, 2.0F, 30.0F, false, rng);
 }
 
-/// What a paint roller leaves: dimples some texels wide, and patches where it passed twice.
+/// Marks of a paint roller: dimples some texels wide, and patches that were painted twice.
 void draw_white_wall(Image<float>& field, Rng& rng) {
     for (const int cell : {4, 8, 256}) add_noise(field, cell, cell, 0.5F, rng);
     scatter(field, 3000, 2.0F, 5.0F, true, rng);

@@ -25,8 +25,8 @@ constexpr int kBlock = 32;
 /// Cells of a block share samples if their levels fall into the same bin of this size.
 constexpr double kLevelBin_m = 0.05;
 
-/// Walks over the surfaces of the cells from the start; every surface of a cell is a place of its
-/// own. Cells keep the highest place that was reached, NaN for none.
+/// Walks from the start over the surfaces of the cells; each surface of a cell is a separate node.
+/// A cell keeps its highest reached surface, NaN for none.
 class Walk {
   public:
     Walk(const Scene& scene, const Lattice& lattice, double joined_m)
@@ -93,7 +93,7 @@ class Walk {
     std::vector<Place> open_;
 };
 
-/// The figures that do not depend on a movement; of the box only its size counts.
+/// The figures that do not depend on a movement; only the size of the box matters.
 rules::Figures foot_figures(const Machine& machine) {
     rules::Figures figures = rules::figures_of(machine, Movement{});
     Rect& foot = figures.feet[0];
@@ -125,7 +125,7 @@ bool edge_near(const GroundField& field,
     return false;
 }
 
-/// Where the lowest solid begins over the foot.
+/// Underside of the lowest solid over the foot.
 double ceiling_over(const GroundField& field, const FootGround& under) {
     double ceiling_m = std::numeric_limits<double>::infinity();
     for (const SolePoint& p : under.points)
@@ -144,7 +144,7 @@ CellSafety judge_cell(const GroundField& field,
         under.points.begin(), under.points.end(), [](auto& a, auto& b) { return a.z_m < b.z_m; });
     const double drop_m = figures.drop_m + kRounding;
     if (lowest->z_m < level_m - drop_m) return {false, Danger::drop_off};
-    // A block under a part of the foot does not lift what an edge is measured from.
+    // A block under a part of the foot must not raise the reference height for edges.
     const double standing_m = std::min(under.mean_z_m, level_m);
     if (edge_near(field, figures, T_field_foot, standing_m - drop_m))
         return {false, Danger::edge_too_near};
@@ -165,7 +165,8 @@ struct Block {
     int max_y = 0;
 };
 
-/// The samples are those of a frame turned like the foot, with its origin on the first cell.
+/// Judges one block of cells. The samples are in a frame turned like the foot, with its origin on
+/// the first cell.
 class BlockJudge {
   public:
     BlockJudge(const Scene& scene,

@@ -41,8 +41,8 @@ TEST(CellSafetyTest, AFlatFloorIsSafeEverywhere) {
     }
 }
 
-/// The middle of the foot needs half its length (0.183 m) and the band (0.1 m) before the edge, or
-/// half its width (0.095 m) and the band when it stands across.
+/// Required distance of the foot's centre before the edge: half its length (0.183 m) and the band
+/// (0.1 m), or half its width (0.095 m) and the band if the foot stands across.
 TEST(CellSafetyTest, AnEdgeIsKeptAtHalfAFootAndTheBand) {
     World world;
     world.floor(-0.17).box({-3.0, 0.605}, {-3.0, 3.0}, {-0.17, 0.0});

@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Least squares over points on a lattice; fewer than three points, or a line of them, lie level.
+/// Least-squares plane over points on a lattice; level for fewer than three points or collinear
+/// points.
 LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
     Vector2d middle = Vector2d::Zero();
     for (const SolePoint& p : points) middle += p.p_foot_m;

@@ -8,7 +8,7 @@
 
 namespace surefoot::sim {
 
-/// A sample under a foot; `p_foot_m` counts from the middle of the foot along its axes.
+/// A ground sample under a foot; `p_foot_m` is relative to the foot's centre, along its axes.
 struct SolePoint {
     int i = 0;
     int j = 0;
@@ -25,8 +25,8 @@ struct FootGround {
     LevelPlane plane;  ///< least squares, over `p_foot_m`
 
     [[nodiscard]] double tilt_rad() const;
-    /// Mean residual to the plane of the patch where it is largest, and where that is. The sole is
-    /// cut into equal patches not larger than `side_m`.
+    /// Patch of the sole with the largest mean residual to the plane, and its position. The sole is
+    /// cut into equal patches with sides of at most `side_m`.
     struct Patch {
         double residual_m = 0.0;
         Eigen::Vector2d center_field_m = Eigen::Vector2d::Zero();
@@ -34,12 +34,12 @@ struct FootGround {
     [[nodiscard]] Patch worst_patch(const Eigen::Vector2d& size_m, double side_m) const;
 };
 
-/// `foot` is a box of base_link.
+/// Samples the ground under `foot`, a rectangle in base_link.
 [[nodiscard]] FootGround ground_under(const GroundField& field,
                                       const Rect& foot,
                                       const PlanarPose& T_field_body);
 
-/// Calls f(i, j, p_field, p_body) for the samples under a box of base_link, rims included.
+/// Calls f(i, j, p_field, p_body) for the samples under a rectangle in base_link, rims included.
 template <typename F>
 void for_samples_under(const GroundField& field,
                        const Rect& box,

@@ -10,7 +10,7 @@
 
 namespace surefoot::sim::rules {
 
-/// The machine's figures for one movement in metres and radians.
+/// The machine's dimensions and limits for one movement, in metres and radians.
 struct Figures {
     std::array<Rect, 2> feet;  ///< in base_link
     /// A part of the body: its box in base_link, without sway; heights over the soles.
@@ -21,9 +21,9 @@ struct Figures {
     };
     std::vector<Part> body;
     double sway_m = 0.0;
-    double lower_edge_m = 0.0;  ///< of the whole body
-    double height_m = 0.0;      ///< likewise
-    double hips_m = 0.0;        ///< base_link over the soles
+    double lower_edge_m = 0.0;  ///< of the whole body, above the soles
+    double height_m = 0.0;      ///< of the whole body, above the soles
+    double hips_m = 0.0;        ///< base_link above the soles
     double up_m = 0.0;
     double down_m = 0.0;
     double tilt_rad = 0.0;
@@ -37,11 +37,11 @@ struct Figures {
 };
 [[nodiscard]] Figures figures_of(const Machine& machine, const Movement& movement);
 
-/// Limits multiplied by 1 - share (stricter, share > 0) or looser (share < 0). Distances that are
-/// asked for (band, margin, sway) grow where limits shrink; the user becomes taller by `taller_m`.
+/// Multiplies limits by 1 - share: stricter for share > 0, looser for share < 0. Required distances
+/// (band, margin, sway) grow where limits shrink. The user becomes taller by `taller_m`.
 [[nodiscard]] Figures stricter(const Figures& figures, double share, double taller_m);
 
-/// Region that the rules look at around `T_field_body` = identity, with room for `slack_m`.
+/// Region that the rules read around `T_field_body` = identity, enlarged by `slack_m`.
 [[nodiscard]] Rect region_of(const Figures& figures, double slack_m);
 
 }  // namespace surefoot::sim::rules

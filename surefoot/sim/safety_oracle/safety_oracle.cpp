@@ -50,7 +50,7 @@ const Movement* movement_of(const Machine& machine, int command) {
     return movement.configured && enabled ? &movement : nullptr;
 }
 
-/// Where the soles stand: the ground under the present feet, if it is near where the pose says.
+/// Stance on the ground under the present feet, if this ground is near the height of the pose.
 rules::Stance stance_here(const Scene& scene,
                           const Figures& figures,
                           const PlanarPose& T_world_field,
@@ -68,7 +68,7 @@ rules::Stance stance_here(const Scene& scene,
     return stance;
 }
 
-/// Is every pose and limit within the margin of the same opinion?
+/// Whether every pose and limit within the margin gives the same answer.
 bool holds_around(const GroundField& field,
                   const std::vector<char>& reached,
                   const Figures& figures,
@@ -82,7 +82,7 @@ bool holds_around(const GroundField& field,
                                           PlanarPose::of(0.0, -p_m, 0.0),
                                           PlanarPose::of(0.0, 0.0, margin.yaw_rad),
                                           PlanarPose::of(0.0, 0.0, -margin.yaw_rad)};
-    // What is safe under stricter limits is safe under looser ones too.
+    // A movement that is safe under stricter limits is also safe under looser ones.
     const Figures moved = safe ? rules::stricter(figures, margin.limit_share, p_m)
                                : rules::stricter(figures, -margin.limit_share, -p_m);
     return std::all_of(poses.begin(), poses.end(), [&](const PlanarPose& T_field_body) {
@@ -116,9 +116,10 @@ std::string describe(const Finding& f) {
                                at,
                                f.limit);
         case Danger::roughness: return against("uneven ground under a landing foot by");
-        case Danger::obstacle_in_way: return against("in the way of a foot is something at");
-        case Danger::body_hits: return against("the body meets something that begins at");
-        case Danger::overhang_too_low: return against("something over the machine begins at");
+        case Danger::obstacle_in_way:
+            return against("an obstacle in the path of a foot has a height of");
+        case Danger::body_hits: return against("the body hits an object that begins at");
+        case Danger::overhang_too_low: return against("an object above the machine begins at");
         case Danger::disconnected: return "the ground of landing is cut off " + at;
     }
     return "unknown danger";

@@ -103,7 +103,7 @@ TEST(SafetyOracleTest, AnEdgeIsDangerousUnderTheFootAndInsideTheBandBeforeIt) {
     EXPECT_TRUE(far.safe) << far.sentence();
     EXPECT_FALSE(far.clear_cut);
     EXPECT_TRUE(ask(platform(0.14), kForward).clear_cut);
-    // What is no drop may be near; what is one by a little may not.
+    // A step just below the drop limit may be near; a step just above it may not.
     const auto ledge = [&](double down_m) {
         return World().floor(-down_m).box({-3.0, toe_m + 0.03}, {-3.0, 3.0}, {-down_m, 0.0});
     };
@@ -190,7 +190,7 @@ TEST(SafetyOracleTest, ARampUnderTheMachineIsJudgedByItsSlopeAlone) {
 }
 
 TEST(SafetyOracleTest, ASteepRampAheadTiltsTheLandingFoot) {
-    // Begins 40 mm before the heels of landing, and is low enough there for no step.
+    // Begins 40 mm before the heels of the landing feet and is too low there to count as a step.
     World world;
     world.floor().slab({0.42, 3.0}, {-2.0, 2.0}, -1.0, {0.11, 0.0}, -0.11 * 0.42);
     const auto answer = ask(world, kForward);

@@ -11,8 +11,8 @@ namespace {
 using namespace testing;
 using Eigen::Vector2d;
 
-/// One hazard near the next step; drawn once, so that the same one can be built turned, mirrored or
-/// larger.
+/// One random hazard near the next step. It is drawn once, so that the same hazard can be built
+/// rotated, mirrored or larger.
 struct Hazard {
     enum class Kind { block, pit, hanging, wall } kind = Kind::block;
     Vector2d x;
@@ -31,8 +31,8 @@ Hazard draw(Rng& rng) {
     return hazard;
 }
 
-/// Sunk ground is built of slabs round the hole, so that it can be turned. `larger` >= 1 makes a
-/// block higher, a pit deeper, something hanging lower, a wall longer.
+/// Sunk ground consists of slabs around the hole, so that it can be rotated. `larger` >= 1 makes a
+/// block higher, a pit deeper, a hanging object lower, a wall longer.
 void build(World& world, const Hazard& hazard, double larger = 1.0) {
     const Vector2d far(-3.0, 3.0);
     const double size_m = larger * hazard.height_m;
@@ -50,7 +50,7 @@ void build(World& world, const Hazard& hazard, double larger = 1.0) {
     }
 }
 
-/// Dangers as one word of bits.
+/// Dangers as a bit mask.
 unsigned bits(const SafetyAnswer& answer) {
     unsigned all = 0;
     for (const Finding& f : answer.dangers) all |= 1U << static_cast<unsigned>(f.danger);
@@ -137,7 +137,8 @@ TEST(SafetyPropertyTest, ALargerHazardIsNeverSafer) {
     EXPECT_GT(became_unsafe, 2);
 }
 
-/// What is clear cut stays so for poses anywhere within the margin, not only for those tried.
+/// A clear-cut answer holds for all poses within the margin, not only for the poses that `judge`
+/// tries.
 TEST(SafetyPropertyTest, AClearCutAnswerHoldsAroundThePose) {
     Rng rng(14);
     int asked = 0;

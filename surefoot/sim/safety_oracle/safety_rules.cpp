@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// What reaches a limit exactly does not exceed it, whatever the rounding [m, rad].
+/// A value that reaches a limit exactly does not exceed it, despite rounding [m, rad].
 constexpr double kRounding = 1e-7;
 
 /// Keeps the worst place of each danger.
@@ -156,7 +156,7 @@ class Inspector {
 
     void check_height(const SolePoint& p, double above_m) {
         const Collector::Place at{p.p_field_m, p.z_m};
-        // Where stairs are walked, a step down is no drop.
+        // On stairs a step down is not a drop.
         const double drop_m = std::max(figures_.drop_m, figures_.down_m);
         if (above_m > figures_.up_m + kRounding) {
             found_.add(Danger::step_up, above_m, above_m, figures_.up_m, at);
@@ -189,7 +189,8 @@ class Inspector {
         }
     }
 
-    /// Round the corners of the foot the band is round. Heights count from the foot that landed.
+    /// Checks the drop band, which is round at the corners of the foot. Heights are relative to the
+    /// landed foot.
     void check_band(const Rect& foot, const PlanarPose& T_field_target, double landed_m) {
         const double lowest_m = landed_m - figures_.drop_m - kRounding;  // over the stance plane
         const auto matters = [&](const GroundField::Tile& tile, double, double high_m) {
@@ -212,8 +213,9 @@ class Inspector {
         });
     }
 
-    /// Calls f(p_field, sample) for the samples in `area` of those tiles that `matters` picks;
-    /// `matters(tile, low, high)` hears the lowest and highest height of the stance plane there.
+    /// Calls f(p_field, sample) for the samples in `area`, in tiles that `matters` selects.
+    /// `matters(tile, low, high)` gets the lowest and highest height of the stance plane in the
+    /// tile.
     template <typename Matters, typename F>
     void for_samples_in(const Rect& area, Matters&& matters, F&& f) const {
         const auto range = field_.range_of(area);
@@ -291,7 +293,8 @@ class Inspector {
 
 }  // namespace
 
-/// The slope is a median: a sill under the toes does not tilt the world ahead.
+/// Finds the stance. Its slope is a median: a sill under the toes does not tilt the ground plane
+/// ahead.
 Stance stand(const GroundField& field, const Figures& figures, const PlanarPose& T_field_body) {
     Stance stance;
     std::array<FootGround, 2> under;

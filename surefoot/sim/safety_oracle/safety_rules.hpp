@@ -8,23 +8,23 @@
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/scenes/ground_field.hpp"
 
-/// The rules of the safety oracle for one exact pose; `judge` asks them again around the pose.
+/// The rules of the safety oracle for one exact pose; `judge` also checks poses around it.
 namespace surefoot::sim::rules {
 
 /// The plane that both feet stand on, in the frame of the field.
 struct Stance {
     LevelPlane plane;
-    double height_difference_m = 0.0;  ///< between the means of the two feet, from the plane
-    double tilt_rad = 0.0;             ///< of the plane or of a foot, whichever is steeper
-    std::optional<Eigen::Vector2d> void_at_m;  ///< no ground under a foot: in the field's frame
-    bool known = false;                        ///< there is ground under some part of both feet
+    double height_difference_m = 0.0;  ///< between the mean heights of the feet, from the plane
+    double tilt_rad = 0.0;             ///< of the plane or of one foot, whichever is steeper
+    std::optional<Eigen::Vector2d> void_at_m;  ///< where a foot has no ground, field's frame
+    bool known = false;                        ///< some part of both feet has ground
 };
 [[nodiscard]] Stance stand(const GroundField& field,
                            const Figures& figures,
                            const PlanarPose& T_field_body);
 
-/// All that is dangerous, one finding for each danger, sorted. `reached` says which samples are
-/// joined to the ground of standing.
+/// All dangers at this pose, one finding for each danger, sorted. `reached` marks the samples that
+/// are joined to the ground under the feet.
 [[nodiscard]] std::vector<Finding> dangers_at(const GroundField& field,
                                               const std::vector<char>& reached,
                                               const Figures& figures,

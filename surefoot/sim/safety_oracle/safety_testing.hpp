@@ -17,7 +17,7 @@ namespace surefoot::sim::testing {
 
 inline constexpr double kSoleDepth_m = 0.99;
 
-/// The REX as machines/rex.yaml has it (sim cannot read files of machines), without the half steps.
+/// The REX of machines/rex.yaml without half steps; sim must not read machine files.
 inline Machine rex() {
     Machine m;
     m.sole_depth_tenth_mm = 9'900;
@@ -70,7 +70,7 @@ inline constexpr int kBack = 17;
 inline constexpr int kLeft = 21;
 inline constexpr int kTurnLeft = 25;
 inline constexpr int kTurnRight = 26;
-/// Toes and heels reach this far from base_link, feet this far to the side.
+/// Distances from base_link to toes and heels, and to the side of the feet.
 inline constexpr double kToe_m = 0.24;
 inline constexpr double kFootSide_m = 0.275;
 inline constexpr double kStep_m = 0.4;
@@ -84,11 +84,11 @@ inline Pose standing(double x_m, double y_m, double yaw_rad, double z_m = 0.0) {
     return T;
 }
 
-/// A floor of 8 x 8 m and whatever else; a scene can be built turned or mirrored.
+/// A floor of 8 x 8 m plus test objects; a scene can be built rotated or mirrored.
 class World {
   public:
     World() { material_ = scene.add_material({}); }
-    /// All further things stand moved by T; with `mirrored`, left and right are exchanged first.
+    /// Moves all further objects by T; with `mirrored`, left and right are swapped first.
     explicit World(const PlanarPose& T, bool mirrored = false) : World() {
         T_ = T;
         mirror_ = mirrored ? -1.0 : 1.0;
@@ -97,11 +97,11 @@ class World {
         scene.add_floor(Floor({{-4.0, -4.0}, {4.0, 4.0}}, z_m, std::move(pits)), material_, 0);
         return *this;
     }
-    /// x from-to, y from-to, z from-to.
+    /// Ranges (from, to) along x, y and z.
     World& box(Eigen::Vector2d x, Eigen::Vector2d y, Eigen::Vector2d z) {
         return prism(x, y, z.x(), {z.y(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()});
     }
-    /// Top z = top_m + slope . p.
+    /// Top surface: z = top_m + slope . p.
     World& slab(Eigen::Vector2d x,
                 Eigen::Vector2d y,
                 double bottom_m,

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kPiece_rad = 0.5 * std::numbers::pi / 180.0;
-/// A point on the border belongs to the box, whatever the rounding of the motion.
+/// A point on the border belongs to the box, despite rounding errors of the motion.
 constexpr double kRim_m = 1e-9;
 
-/// Narrows the part [enter, leave] of the way during which `offset - s * travel` lies in [low,
+/// Narrows the part [enter, leave] of the path during which `offset - s * travel` lies in [low,
 /// high].
 void clip_slab(
     double offset, double travel, double low, double high, double& enter, double& leave) {
@@ -57,7 +57,7 @@ SweptBox::SweptBox(const Rect& box, const PlanarPose& T_a_start, const PlanarPos
         const Vector2d p_m = parts * step_m;
         return T_a_start * PlanarPose::of(p_m.x(), p_m.y(), turned_parts * turn_rad / count);
     };
-    // Both ends stand exactly; a piece holds the yaw of its middle.
+    // Both ends are exact; a piece has the yaw of its middle.
     pieces_.push_back({pose_after(0, 0), Vector2d::Zero()});
     for (int k = 0; k < count; ++k) {
         const PlanarPose from = pose_after(k, k + 0.5);

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// How deep the point lies inside the box at the moment when it is deepest; a fine march over the
-/// way. Negative outside.
+/// Largest depth of the point inside the box during the motion, from fine steps along the path.
+/// Negative outside.
 double deepest_m(const Rect& box,
                  const PlanarPose& T_a_start,
                  const Vector2d& move_m,

@@ -7,7 +7,7 @@
 
 namespace surefoot::sim {
 
-/// The files of surefoot/sim/scene_files/, sorted by name; made by the build.
+/// The files of surefoot/sim/scene_files/, sorted by name; the build generates this list.
 [[nodiscard]] const std::vector<SceneFile>& embedded_scenes();
 
 }  // namespace surefoot::sim

@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Deeper nesting is no geometry but an attack on the stack.
+/// Limit of the nesting; deeper nesting would exhaust the stack and no scene needs it.
 constexpr int kMaxDepth = 64;
 
 bool is_letter(char c) noexcept {
@@ -45,7 +45,7 @@ class Parser {
     }
 
   private:
-    /// The next character that is no space, '\0' at the end.
+    /// The next character that is not a space; '\0' at the end.
     char next() {
         while (at_ < text_.size() && is_space(text_[at_])) ++at_;
         return at_ < text_.size() ? text_[at_] : '\0';

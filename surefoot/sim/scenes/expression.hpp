@@ -10,15 +10,15 @@
 
 namespace surefoot::sim {
 
-/// Values that an expression may name.
+/// Values of the names that an expression may use.
 using NamedNumbers = std::map<std::string, double, std::less<>>;
 
-/// Value of an arithmetic expression: numbers, names, + - * / and parentheses, the usual
-/// precedence, operators of equal rank from left to right. An error says what is wrong and where in
-/// the text; so does a value that is not finite (a division by zero).
+/// Evaluates an arithmetic expression: numbers, names, + - * / and parentheses with the usual
+/// precedence; operators of equal rank go from left to right. Errors, with their position in the
+/// text: a syntax error, an unknown name, a value that is not finite (division by zero).
 [[nodiscard]] Result<double> evaluate(std::string_view text, const NamedNumbers& names);
 
-/// Letters, digits and '_', not beginning with a digit.
+/// Whether the text is letters, digits and '_' and does not begin with a digit.
 [[nodiscard]] bool is_name(std::string_view text) noexcept;
 
 }  // namespace surefoot::sim

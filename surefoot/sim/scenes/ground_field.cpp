@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 
 /// A surface is buried when another solid begins at it or below and ends above it.
 constexpr double kTouch_m = 1e-9;
-/// Tiles are asked a little wider than they are, so that no rim on their border is lost.
+/// Queries of tiles are slightly wider than the tiles, so that no rim on their border is lost.
 constexpr double kTileMargin_m = 1e-5;
 constexpr int kTileSamples = 16;
 /// Sample indices that lie on a border belong to the area.
@@ -99,7 +99,7 @@ std::vector<int> all_primitives(const Scene& scene) {
     return all;
 }
 
-/// Of a sample; those beyond a million kilometres become one there.
+/// Index of a sample; limited to a million kilometres.
 int index_of(double samples) {
     constexpr int kFarthest = 1 << 28;
     return clamped_integer<int>(samples, -kFarthest, kFarthest);
@@ -184,7 +184,7 @@ std::vector<char> GroundField::reached_from(const std::vector<Range>& seeds, dou
         lowest_m = std::min(lowest_m, tile.lowest_ground_m);
         highest_m = std::max(highest_m, tile.highest_ground_m);
     }
-    // Without a jump anywhere (false with a void, whose height is -inf) all is joined.
+    // Without any jump all samples are joined (a void, with height -inf, counts as a jump).
     if (highest_m - lowest_m <= jump_m) return std::vector<char>(samples_.size(), 1);
 
     std::vector<char> reached(samples_.size(), 0);

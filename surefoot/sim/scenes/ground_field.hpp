@@ -9,20 +9,20 @@
 
 namespace surefoot::sim {
 
-/// What a machine that stands on some level meets on a plumb line (heights in the world frame).
+/// Ground and obstacles on one vertical line, for a machine on some level (world-frame heights).
 struct GroundSample {
-    /// The highest surface that a foot can meet: not higher than the reach above the level; where
-    /// everything is higher, the lowest of that. NaN where there is no ground at all.
+    /// The highest surface within a foot's reach above the level. If every surface is higher, the
+    /// lowest of them. NaN without any ground.
     double ground_m = std::numeric_limits<double>::quiet_NaN();
-    /// Where the lowest solid begins that ends above the reach; infinity where the air is free.
+    /// Underside of the lowest solid that ends above the reach; infinity if the space is free.
     double underside_m = std::numeric_limits<double>::infinity();
-    /// Where the highest of those solids ends; minus infinity where the air is free.
+    /// Top of the highest of those solids; minus infinity if the space is free.
     double top_m = -std::numeric_limits<double>::infinity();
 };
 
-/// Scene geometry sampled every 5 mm on a lattice of a yawed frame: (i, j) stands at (i, j) *
-/// spacing of that frame, so that mirrored and turned worlds are sampled alike. The samples
-/// themselves are exact; what is thinner than the spacing may slip between them.
+/// Scene geometry sampled every 5 mm on a lattice in a yawed frame: sample (i, j) is at (i, j) *
+/// spacing in that frame, so that mirrored and rotated worlds are sampled alike. The samples are
+/// exact; an object thinner than the spacing can fall between them.
 class GroundField {
   public:
     static constexpr double kSpacing_m = 0.005;
@@ -35,16 +35,16 @@ class GroundField {
         int max_j = -1;
     };
 
-    /// 16 x 16 samples and what they hold at most, so that what is plain can be passed over.
+    /// 16 x 16 samples with bounds of their values, so that flat areas can be skipped.
     struct Tile {
         Range range;
-        double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf: a void
+        double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf: has a void
         double highest_ground_m = -std::numeric_limits<double>::infinity();
         double lowest_underside_m = std::numeric_limits<double>::infinity();
         double highest_top_m = -std::numeric_limits<double>::infinity();
     };
 
-    /// `region` and `level` (where the soles stand) are in the field's frame.
+    /// `region` and `level` (height of the soles) are in the field's frame.
     GroundField(const Scene& scene,
                 const PlanarPose& T_world_field,
                 const Rect& region,
@@ -53,7 +53,7 @@ class GroundField {
 
     [[nodiscard]] const PlanarPose& T_world_field() const noexcept { return T_world_field_; }
     [[nodiscard]] const Range& range() const noexcept { return range_; }
-    /// Samples inside a rectangle, cut to the field.
+    /// Samples inside a rectangle, clipped to the field.
     [[nodiscard]] Range range_of(const Rect& area) const;
     [[nodiscard]] static Eigen::Vector2d point_m(int i, int j) {
         return {kSpacing_m * i, kSpacing_m * j};
@@ -65,8 +65,8 @@ class GroundField {
     [[nodiscard]] const GroundSample& at(int i, int j) const { return samples_[index(i, j)]; }
     [[nodiscard]] const std::vector<Tile>& tiles() const noexcept { return tiles_; }
 
-    /// 1 for every sample that is joined to `seeds` by ground without a jump of more than `jump_m`
-    /// between neighbours; indices as of `index`.
+    /// 1 for every sample that is connected to `seeds` by ground without a jump of more than
+    /// `jump_m` between neighbours; indexed by `index`.
     [[nodiscard]] std::vector<char> reached_from(const std::vector<Range>& seeds,
                                                  double jump_m) const;
 
@@ -80,7 +80,7 @@ class GroundField {
     std::vector<Tile> tiles_;
 };
 
-/// The same question for one plumb line.
+/// Samples one vertical line.
 [[nodiscard]] GroundSample sample_ground(
     const Scene& scene, double x_m, double y_m, double level_m, double reach_m);
 

@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rims belong to the solid: a point this close outside still stands on it.
 constexpr double kRim_m = 1e-9;
-/// A cell that only touches a primitive, or overlaps it by less, is not covered by it. Keeps the
-/// cell before a riser at the height of the floor when riser and cell border coincide.
+/// A cell that overlaps a primitive by less is not covered by it. This keeps the cell before a
+/// riser at the height of the floor if riser and cell border coincide.
 constexpr double kTouch_m = 1e-6;
 
 bool inside(const Rect& rect, double x_m, double y_m, double margin_m) {
@@ -72,7 +72,7 @@ Vector2d direction(double yaw_rad) {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
 
-/// Ray by ray.
+/// Intersects ray by ray.
 template <typename Shape>
 void intersect_each(const Shape& shape,
                     const Vector3d& origin,
@@ -259,7 +259,7 @@ void Prism::intersect(const Vector3d& origin,
         }
         for (std::size_t k = seen.towards; met && k < half_spaces_.size(); ++k) {
             const double speed = seen.sides[k].normal.dot(directions[i]);
-            // Would leave at -outside_m / speed.
+            // It would leave at -outside_m / speed.
             met = !(speed > 0.0 && enter_m * speed >= -seen.sides[k].outside_m);
         }
         if (met) hits[i] = {enter_m, face};

@@ -14,16 +14,16 @@
 
 namespace surefoot::sim {
 
-/// What a vertical line meets in one primitive: solid from `bottom_m` up to `top_m`. A sheet (a
-/// floor) has both equal. `face` is counted within the primitive.
+/// Intersection of a vertical line with one primitive: solid from `bottom_m` up to `top_m`. For a
+/// sheet (a floor) both are equal. `face` is the index within the primitive.
 struct Column {
     double bottom_m = 0.0;
     double top_m = 0.0;
     int face = 0;
 };
 
-/// Plane of a face for shading and texture. Surface coordinates of a point p are (p . tangent_u,
-/// p . tangent_v) in metres; on the side of a cylinder (arc length, height).
+/// Frame of a face for shading and texture. Surface coordinates of a point p are (p . tangent_u, p
+/// . tangent_v) in metres; on the side of a cylinder (arc length, height).
 struct FaceFrame {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< outward
     Eigen::Vector3d tangent_u = Eigen::Vector3d::UnitX();
@@ -33,7 +33,7 @@ struct FaceFrame {
     double radius_m = 0.0;                             ///< of that cylinder
 };
 
-/// The plane of a face: normal . p = offset_m. `face` is counted within the primitive.
+/// The plane of a face: normal . p = offset_m. `face` is the index within the primitive.
 struct FacePlane {
     int face = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -52,8 +52,8 @@ struct Pit {
     double depth_m = 0.0;
 };
 
-/// Horizontal sheet, seen from above, with pits. Face 0 is the floor; pit k has its bottom at
-/// face 1 + 5k, then the walls at -x, +x, -y, +y. The rim belongs to the floor.
+/// Horizontal sheet with pits, visible from above only. Face 0 is the floor; pit k has its bottom
+/// at face 1 + 5k, then the walls at -x, +x, -y, +y. The rim belongs to the floor.
 class Floor {
   public:
     Floor(const Rect& area, double z_m, std::vector<Pit> pits = {});
@@ -122,7 +122,7 @@ class Prism {
         double offset_m;  ///< inside: normal . p <= offset
     };
     static constexpr std::size_t kMaxFaces = 16;
-    /// Its sides as seen from an origin, those that look at it first.
+    /// Sides of the solid relative to a ray origin; the sides that face the origin come first.
     struct Facing {
         std::array<FacingSide, kMaxFaces> sides;
         std::size_t towards = 0;
@@ -133,7 +133,7 @@ class Prism {
     std::vector<Eigen::Vector2d> footprint_m_;
     double bottom_m_ = 0.0;
     Top top_;
-    std::vector<HalfSpace> half_spaces_;                    ///< numbered like the faces
+    std::vector<HalfSpace> half_spaces_;                    ///< indexed like the faces
     std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< of them, counter-clockwise
 };
 

@@ -12,7 +12,7 @@
 
 namespace surefoot::sim {
 
-/// What a surface is, for ground truth.
+/// Class of a surface, for ground truth.
 enum class Label : std::uint8_t {
     none,
     floor,
@@ -41,7 +41,7 @@ inline constexpr const char* kLabelNames[] = {"none",
                                               "overhang"};
 [[nodiscard]] const char* to_string(Label label) noexcept;
 
-/// A face of a primitive as the scene numbers it.
+/// A face of a primitive, as the scene numbers it.
 struct Surface {
     FaceFrame frame;
     int primitive = 0;
@@ -65,20 +65,20 @@ struct Hit {
     SurfacePoint at;
 };
 
-/// An upward surface at some point of the ground.
+/// An upward surface on a vertical line.
 struct SurfaceHeight {
     double z_m = 0.0;
     int surface = 0;
 };
 
-/// Analytic primitives in the world frame (x forward, z up, metres). Rays, heights and maps of
-/// heights all come from the same exact geometry, so a rendered image and its truth agree.
+/// Analytic primitives in the world frame (x forward, z up, metres). Rays, heights and height maps
+/// use the same exact geometry, so that a rendered image agrees with its ground truth.
 class Scene {
   public:
-    /// Returns the number of the material for `add`.
+    /// Returns the material index for `add`.
     int add_material(const Material& material);
     void add(Primitive primitive, int material, Label label);
-    /// Bottoms of the pits of a floor are labelled as a drop and may look different.
+    /// Pit bottoms get the label drop and can have another material.
     void add_floor(const Floor& floor, int material, int pit_material, Label label = Label::floor);
 
     void light(const Lighting& lighting) { lighting_ = lighting; }
@@ -87,14 +87,14 @@ class Scene {
     }
     [[nodiscard]] const Lighting& lighting() const noexcept { return lighting_; }
 
-    /// First surface along a ray (unit direction), the side that faces the origin only.
+    /// First surface along a ray (unit direction); only faces that point toward the origin count.
     [[nodiscard]] std::optional<Hit> intersect(const Eigen::Vector3d& origin_m,
                                                const Eigen::Vector3d& direction) const;
-    /// Is anything met nearer than `distance_m`?
+    /// Whether the ray hits any surface nearer than `distance_m`.
     [[nodiscard]] bool blocked(const Eigen::Vector3d& origin_m,
                                const Eigen::Vector3d& direction,
                                double distance_m) const;
-    /// Shortens `hits` by one primitive; the renderer's inner loop.
+    /// Shortens `hits` by one primitive; the inner loop of the renderer.
     void intersect_primitive(int primitive,
                              const Eigen::Vector3d& origin_m,
                              std::span<const Eigen::Vector3d> directions,
@@ -106,23 +106,23 @@ class Scene {
                              HitBatch& hits) const;
     [[nodiscard]] SurfacePoint surface_point(int surface, const Eigen::Vector3d& point_m) const;
 
-    /// Highest surface at a point; nothing where there is no ground.
+    /// Highest surface at a point; no value without ground.
     [[nodiscard]] std::optional<SurfaceHeight> height_at(double x_m, double y_m) const;
-    /// Every upward surface that is not buried in another solid, highest first (table, floor under
-    /// it).
+    /// Every upward surface that is not buried in another solid, highest first (a table, then the
+    /// floor under it).
     [[nodiscard]] std::vector<SurfaceHeight> surfaces_at(double x_m, double y_m) const;
     /// The first primitive that is solid at a point, its surface included.
     [[nodiscard]] std::optional<int> solid_at(const Eigen::Vector3d& point_m) const;
-    /// Highest point over the inside of a cell, exact; nothing where there is no ground.
+    /// Exact highest point over the inside of a cell; no value without ground.
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
 
     [[nodiscard]] int primitives() const noexcept { return static_cast<int>(primitives_.size()); }
     [[nodiscard]] const Primitive& primitive(int index) const;
     [[nodiscard]] const Sphere& bounds(int primitive) const;
     [[nodiscard]] const std::vector<Eigen::Vector3d>& hull(int primitive) const;
-    /// See Primitive; the face is numbered through the scene.
+    /// See Primitive; the face index is that of the scene.
     [[nodiscard]] std::optional<FacePlane> only_face(int primitive, const Beam& beam) const;
-    /// Number of the first surface of a primitive; its other ones follow.
+    /// Index of the first surface of a primitive; its other surfaces follow.
     [[nodiscard]] int first_surface(int primitive) const {
         return first_surface_[static_cast<std::size_t>(primitive)];
     }

@@ -28,7 +28,8 @@ SceneBuilder::SceneBuilder(SceneReader& reader, std::uint64_t seed)
 void SceneBuilder::add_materials(const SceneNode& group) {
     for (const SceneNode& node : group.items) {
         if (!is_name(node.key)) {
-            reader_.fail(node.line, fmt::format("'{}' is no name for a material", node.key));
+            reader_.fail(node.line,
+                         fmt::format("'{}' is not a valid name for a material", node.key));
         }
         Material material;
         material.seed = scene_.materials().size();
@@ -141,10 +142,11 @@ void SceneBuilder::add_solid(const SceneNode& item, const Place& place) {
     if (node.key == "spiral") return add_one<SpiralSpec>(node, place);
     if (node.key == "door") return add_one<DoorSpec>(node, place);
     if (node.key == "table") return add_one<TableSpec>(node, place);
-    reader_.fail(node.line,
-                 fmt::format("'{}' is no solid; there are: box, ramp, cylinder, floor, walls, "
-                             "flight, spiral, door, table, group, repeat",
-                             node.key));
+    reader_.fail(
+        node.line,
+        fmt::format("'{}' is not a solid; known solids: box, ramp, cylinder, floor, walls, "
+                    "flight, spiral, door, table, group, repeat",
+                    node.key));
 }
 
 void SceneBuilder::add_solids(const SceneNode& list, const Place& place) {

@@ -13,14 +13,14 @@
 
 namespace surefoot::sim {
 
-/// Turns the lists of a scene file into a scene. Problems are kept by the reader.
+/// Builds a scene from the lists of a scene file. The reader keeps the problems.
 class SceneBuilder {
   public:
     SceneBuilder(SceneReader& reader, std::uint64_t seed);
 
     void add_materials(const SceneNode& group);
     void add_lighting(const SceneNode& group);
-    /// The list in the frame of `place`.
+    /// Adds the solids of a list, in the frame of `place`.
     void add_solids(const SceneNode& list, const Place& place);
 
     [[nodiscard]] const Scene& scene() const noexcept { return scene_; }

@@ -29,7 +29,8 @@ struct Entry {
 
 void check_info(SceneReader& reader, const Entry& entry) {
     if (!is_name(entry.info.name)) {
-        reader.fail(entry.line, fmt::format("'{}' is no name for a scene", entry.info.name));
+        reader.fail(entry.line,
+                    fmt::format("'{}' is not a valid name for a scene", entry.info.name));
     }
     const std::string& text = entry.info.description;
     if (text.empty() || text.find('\n') != std::string::npos) {
@@ -59,8 +60,8 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
     return entries;
 }
 
-/// The figures of a variant are parameters before all others; each takes the place of the parameter
-/// of its name, which so is the default of the other variants.
+/// Defines the parameters. The figures of a variant come first; each replaces the parameter of its
+/// name, which is the default of the other variants.
 void define_parameters(SceneReader& reader,
                        const SceneNode& root,
                        const Entry& entry,
@@ -127,7 +128,7 @@ ScriptedScene build(SceneReader& reader,
     if (reader.error()) return out;
     if (motion_model && *motion_model != out.script.motion_model) {
         out.script.motion_model = *motion_model;
-        out.script.speed_m_s = 0.0;  // the other carrier's own
+        out.script.speed_m_s = 0.0;  // default speed of the other motion model
         out.script.height_m = 0.0;
     }
     auto made = make_motion(out.script, seed, ground_of(builder.scene()));
@@ -190,7 +191,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     if (reader.error()) return *reader.error();
     const Entry* entry = choose(reader, entries, name);
     if (entry == nullptr) return *reader.error();
-    // One seed must not draw the same light and the same distance in every scene.
+    // The same seed must not draw the same light and distance in every scene.
     const std::uint64_t scene_seed = mix_seed(seed, fnv1a(entry->info.name));
     ScriptedScene scene = build(reader, *root, *entry, scene_seed, motion_model);
     if (reader.error()) return *reader.error();

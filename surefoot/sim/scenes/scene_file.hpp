@@ -12,9 +12,9 @@
 
 namespace surefoot::sim {
 
-/// Scenes are data: a YAML file holds one scene, or one geometry with several `variants` (the same
-/// stairs with the figures of each class). A figure of a variant takes the place of the parameter
-/// of its name.
+/// A scene file is YAML and holds one scene, or one geometry with several `variants` (the same
+/// stairs with the figures of each class). A figure of a variant replaces the parameter of the same
+/// name.
 ///
 ///     name: kerb_ahead                  # or  variants: {name: {description: ..., figure: ...}}
 ///     description: one line
@@ -43,24 +43,24 @@ namespace surefoot::sim {
 ///     # sidestep_through_door: door_x_m, door_y_m, beyond_m; descend_backwards: steps_ahead,
 ///     riser_m
 ///
-/// The rex sets its feet on the ground of the scene.
+/// The feet of the REX land on the ground of the scene.
 ///
-/// Strict: unknown keys, wrong types, values out of range, impossible geometry, a camera or a
-/// foot inside a solid and steps too high are input errors that name file, line, value and limit.
+/// Strict: unknown keys, wrong types, values out of range, impossible geometry, a camera or a foot
+/// inside a solid, and too high steps are input errors that name file, line, value and limit.
 struct SceneFile {
     std::string file;  ///< for messages
     std::string_view text;
 };
 
-/// What a scene file may not exceed; images number surfaces with 15 bits.
+/// Largest number of primitives in a scene file; images number surfaces with 15 bits.
 inline constexpr int kMaxPrimitives = 2000;
 
 /// The scenes that a file holds.
 [[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
 
-/// One scene of a file; `name` may be empty where the file holds only one. The seed counts together
-/// with the scene's name: seed 7 of two scenes, or of two variants, has nothing in common.
-/// `carrier` goes the same way instead of the scene's own, at its own speed.
+/// Reads one scene; `name` may be empty if the file holds only one. The random stream depends on
+/// seed and scene name: seed 7 of two scenes or variants has nothing in common. `motion_model`
+/// replaces that of the scene (same path, default speed of that model).
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
                                                std::uint64_t seed,

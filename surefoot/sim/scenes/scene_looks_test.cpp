@@ -10,7 +10,7 @@
 #include "surefoot/sim/scenes/scenes.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 
-/// Scenes that are named after a look show it to the camera.
+/// Scenes that are named after a surface property show it to the camera.
 namespace surefoot::sim {
 namespace {
 
@@ -33,7 +33,7 @@ struct Ray {
     Hit hit;
 };
 
-/// What every eighth pixel of the left camera meets at a share of the way.
+/// Surfaces that every eighth pixel of the left camera hits at a share of the path.
 std::vector<Ray> view(const ScriptedScene& script, double share) {
     static const camera::StereoRig rig = rig_preset("zed_vga").value();
     const Pose T_world_camera =
@@ -55,7 +55,7 @@ const Material& material_of(const Scene& scene, const Hit& hit) {
     return scene.materials()[static_cast<std::size_t>(surface.material)];
 }
 
-/// The largest share of a view, from three places of the way, for which `is_it(ray)` holds.
+/// Largest share of a view, from three points of the path, for which `is_it(ray)` holds.
 template <typename F>
 double largest_share(const ScriptedScene& script, F&& is_it) {
     double largest = 0.0;
@@ -85,7 +85,7 @@ TEST(SceneLooksTest, GlassAndMirrorsAreInView) {
     }
 }
 
-/// Share of the level ground up to 3 m away that the sun reaches, in the middle of the way.
+/// Share of the level ground up to 3 m away that the sun reaches, in the middle of the path.
 double sunlit_share(const ScriptedScene& script) {
     constexpr double kClear_m = 1e-6;
     constexpr double kFar_m = 100.0;
@@ -138,7 +138,7 @@ TEST(SceneLooksTest, EveryPatternHasItsScene) {
     EXPECT_EQ(patterns.size(), static_cast<std::size_t>(kPatterns));
 }
 
-/// Faces of the corridor's doors that look at the way on the left side, by x.
+/// Faces of the corridor's doors that point at the path on the left side, by x.
 std::vector<int> left_doors(const Scene& scene) {
     std::vector<int> faces;
     for (std::size_t k = 0; k < scene.surfaces().size(); ++k) {

@@ -33,15 +33,16 @@ constexpr const char* kScriptNames[] = {"approach",
                                         "descend_backwards",
                                         "pivot_and_reverse"};
 
-/// What every motion may say.
+/// Keys of every motion.
 struct MotionModelSpec {
     MotionModel motion_model = MotionModel::trolley;
     double speed_m_s = 0.0;
     double height_m = 0.0;
     void describe(ConfigVisitor& visitor) {
-        visitor.enumeration("carrier", motion_model, kMotionModelNames, "what carries the camera");
-        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = the carrier's own");
-        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = its own");
+        visitor.enumeration(
+            "carrier", motion_model, kMotionModelNames, "motion model of the camera");
+        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = default of the motion model");
+        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = default");
     }
 };
 
@@ -62,7 +63,7 @@ struct WaypointSpec {
     }
 };
 
-/// One of the scripts; which keys there are depends on `script`.
+/// Keys of one script; `script` decides which keys are valid.
 struct ScriptSpec {
     MotionModelSpec carried;
     int script = kRequiredChoice;
@@ -122,8 +123,9 @@ std::optional<std::string> ScriptSpec::problem() const {
     if (which != Script::descend_backwards) return std::nullopt;
     if (steps_ahead < 1) return "key 'steps_ahead' is missing";
     if (carried.motion_model == MotionModel::rex) return std::nullopt;
-    return fmt::format("script descend_backwards is for feet: carrier must be rex, not {}",
-                       kMotionModelNames[static_cast<int>(carried.motion_model)]);
+    return fmt::format(
+        "script descend_backwards needs a walking machine: carrier must be rex, not {}",
+        kMotionModelNames[static_cast<int>(carried.motion_model)]);
 }
 
 MotionScript ScriptSpec::made() const {
@@ -182,7 +184,7 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     return script;
 }
 
-/// Points that must be free, and what they are.
+/// Checks that points are outside solids; the names are for messages.
 void check_free(SceneReader& reader,
                 const SceneNode& group,
                 const SceneBuilder& builder,
@@ -212,8 +214,8 @@ MotionScript read_motion(SceneReader& reader, const SceneNode& group) {
 }
 
 GroundHeight ground_of(const Scene& scene) {
-    // Above the highest riser of the gait, 0.20 m: what is a little higher is refused as a step,
-    // not walked through.
+    // Above the highest riser of the gait, 0.20 m: a slightly higher block is refused as a step
+    // instead of being walked through.
     constexpr double kFootReach_m = 0.25;
     constexpr double kBottomless_m = -1000.0;
     return [&scene, last_m = 0.0](double x_m, double y_m) mutable {

@@ -9,18 +9,18 @@
 
 namespace surefoot::sim {
 
-/// The group `motion` of a scene file: waypoints, or one of `motion_scripts.hpp` by its name.
+/// Reads the group `motion` of a scene file: waypoints, or a script of motion_scripts.hpp by name.
 [[nodiscard]] MotionScript read_motion(SceneReader& reader, const SceneNode& group);
 
-/// The ground of a scene for the feet of a walk that begins at z = 0: the highest surface that is
-/// not above a foot's reach from the ground of the last answer. So a table top or a lintel is none,
-/// but a ramp is, however far up it leads. A block that is too high is its top; where nothing is,
-/// the ground is 1000 m deep: neither can be walked. The scene must outlive the answer; questions
-/// must follow the walk.
+/// Ground height for the feet of a walk that begins at z = 0: the highest surface that is within a
+/// foot's reach of the previous answer. A table top or a lintel is therefore not ground, but a ramp
+/// is, however high it leads. For a block that is too high the answer is its top; without any
+/// surface the ground is 1000 m deep: neither is walkable. The scene must outlive the returned
+/// function. Call it in the order of the walk.
 [[nodiscard]] GroundHeight ground_of(const Scene& scene);
 
-/// Fails where base_link or a camera of the usual mount comes into a solid, anywhere on the way, or
-/// where a foot of a walking machine is set into one.
+/// Fails if base_link or a camera on the usual mount enters a solid anywhere on the path, or if a
+/// foot of a walking machine is set into a solid.
 void check_way(SceneReader& reader,
                const SceneNode& group,
                const SceneBuilder& builder,

@@ -54,7 +54,7 @@ class Copier {
         if (error_) return;
         const int line = line_of(key);
         if (!key.IsScalar()) return fail(line, "a key must be plain text");
-        if (out.items.size() >= kMaxKeys) {  // the search for doubles below is linear
+        if (out.items.size() >= kMaxKeys) {  // the search for repeated keys below is linear
             return fail(line, fmt::format("more than {} keys in a group", kMaxKeys));
         }
         if (out.find(key.Scalar()) != nullptr) {
@@ -96,7 +96,7 @@ Result<SceneNode> parse_scene_node(std::string_view text, const std::string& fil
         return input_error(
             fmt::format("{}: {} bytes; a scene file may have {}", file, text.size(), kMaxBytes));
     }
-    // yaml-cpp reports with exceptions; none leaves this function.
+    // yaml-cpp throws exceptions; this function catches all of them.
     try {
         Copier copier(file);
         SceneNode root = copier.copy(YAML::Load(std::string(text)), 0);

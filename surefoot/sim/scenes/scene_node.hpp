@@ -10,14 +10,14 @@
 
 namespace surefoot::sim {
 
-/// A scene file as a tree of texts in which every value knows its line. Keys of a group are unique
-/// and keep the order of the file.
+/// A scene file as a text tree in which every value knows its line. Keys of a group are unique and
+/// keep the order of the file.
 struct SceneNode {
     enum class Kind : std::uint8_t { nothing, text, list, group };
 
     Kind kind = Kind::nothing;
-    int line = 1;                  ///< from 1; of the key, for a value of a group
-    std::string key;               ///< of a value of a group
+    int line = 1;                  ///< from 1; for a value of a group: the line of its key
+    std::string key;               ///< key of a value in a group
     std::string text;              ///< of a single value
     std::vector<SceneNode> items;  ///< of a list or a group
 
@@ -28,8 +28,8 @@ struct SceneNode {
 /// "a list", "a group of keys" ... for messages.
 [[nodiscard]] const char* to_string(SceneNode::Kind kind) noexcept;
 
-/// `file` is only a name for messages. Refuses more than 1 MB, 32 levels, 10 000 keys in a group or
-/// 100 000 values, aliases counted each time.
+/// `file` is the name in messages. Errors: more than 1 MB, 32 levels, 10 000 keys in a group or 100
+/// 000 values (aliases count each time).
 [[nodiscard]] Result<SceneNode> parse_scene_node(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::sim

@@ -78,7 +78,7 @@ class GroupReader final : public ConfigVisitor {
         value = static_cast<int>(found - names.begin());
     }
 
-    /// Keys of the present group that nobody has asked for.
+    /// Refuses keys of the current group that nobody has read.
     void refuse_unknown_keys(const std::vector<std::string_view>& other_keys) {
         if (levels_.back().group == nullptr) return;
         std::vector<std::string_view> known = levels_.back().asked;
@@ -112,7 +112,7 @@ class GroupReader final : public ConfigVisitor {
     std::vector<int> lines_;
 };
 
-/// Would an expression be meant? Otherwise it is a word.
+/// Whether the text is a word, not an expression.
 bool looks_like_a_word(const std::string& text, const NamedNumbers& numbers) {
     return is_name(text) && numbers.find(text) == numbers.end();
 }
@@ -171,8 +171,7 @@ void SceneReader::only_keys(const SceneNode& group, const std::vector<std::strin
         if (std::find(keys.begin(), keys.end(), item.key) != keys.end()) continue;
         return fail(
             item.line,
-            fmt::format(
-                "key '{}' is not known here; there are: {}", item.key, fmt::join(keys, ", ")));
+            fmt::format("unknown key '{}'; known keys: {}", item.key, fmt::join(keys, ", ")));
     }
 }
 
@@ -190,7 +189,7 @@ void SceneReader::read_keys(const SceneNode& group,
 
 void SceneReader::define(const SceneNode& origin, const std::string& name, double value) {
     if (!is_name(name)) {
-        return fail(origin.line, fmt::format("'{}' is no name for a parameter", name));
+        return fail(origin.line, fmt::format("'{}' is not a valid name for a parameter", name));
     }
     if (numbers_.contains(name) || words_.contains(name)) {
         return fail(origin.line, fmt::format("parameter '{}' is there already", name));

@@ -19,13 +19,13 @@
 
 namespace surefoot::sim {
 
-/// A number that the file must give: what still has this value after reading is missing.
+/// Marks a required number: a value that is still NaN after reading is missing.
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
-/// A choice that the file must make.
+/// Marks a required choice.
 inline constexpr int kRequiredChoice = -1;
 
-/// Values of a scene file. Numbers are expressions of the parameters above them; a parameter that
-/// is a word stands for that word. The first failure is kept and names file, line, key and value;
+/// Reads values of a scene file. Numbers are expressions of the parameters above them; a parameter
+/// that is a word stands for that word. Keeps the first failure with file, line, key and value;
 /// later calls do nothing.
 class SceneReader {
   public:
@@ -35,8 +35,8 @@ class SceneReader {
     void fail(int line, const std::string& what);
     void fail(const SceneNode& node, const std::string& what);
 
-    /// A parameter: an expression, a word, {uniform: [low, high]} or {choice: [...]}. Draws at most
-    /// one number.
+    /// Defines a parameter: an expression, a word, {uniform: [low, high]} or {choice: [...]}. Draws
+    /// at most one random number.
     void define(const SceneNode& parameter, Rng& rng);
     void define(const SceneNode& origin, const std::string& name, double value);
     void forget(const std::string& name) {
@@ -48,15 +48,15 @@ class SceneReader {
         return words_;
     }
 
-    /// NaN after a failure.
+    /// Returns NaN after a failure.
     [[nodiscard]] double number(const SceneNode& node);
     [[nodiscard]] std::string word(const SceneNode& node);
-    /// A value that must be there and of that kind, or nullptr.
+    /// A required value of the given kind; nullptr after a failure.
     [[nodiscard]] const SceneNode* required(const SceneNode& group,
                                             std::string_view key,
                                             SceneNode::Kind kind);
-    /// Fills `config` by its own `describe`. Every key of the group must be one of its keys or of
-    /// `other_keys`, which somebody else reads.
+    /// Fills `config` through its own `describe`. Every key of the group must be a key of `config`
+    /// or one of `other_keys`, which the caller reads.
     template <typename Config>
     void read(const SceneNode& group,
               Config& config,

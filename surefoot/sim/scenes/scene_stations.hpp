@@ -10,14 +10,14 @@
 
 namespace surefoot::sim {
 
-/// Of a laser scanner over the ground, on its tripod.
+/// Height of a laser scanner on its tripod above the ground.
 inline constexpr double kTripod_m = 1.6;
 
-/// Inside a solid, or under everything that could carry a tripod.
+/// Whether a station is inside a solid, or below every surface that could carry a tripod.
 [[nodiscard]] bool is_buried(const Scene& scene, const Eigen::Vector3d& station_m);
 
-/// The group `scan` of a scene file: where a laser scanner stands, `above_m` over the highest
-/// surface there, in the world frame. Fails where that is in a solid, or where no ground is.
+/// Reads the group `scan` of a scene file: world positions of the laser scanner, `above_m` above
+/// the highest surface. Fails if a position is in a solid or has no ground.
 [[nodiscard]] std::vector<Eigen::Vector3d> read_stations(SceneReader& reader,
                                                          const SceneNode& group,
                                                          const Scene& scene);

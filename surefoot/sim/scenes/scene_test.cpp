@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kRounding_m = 1e-9;
 
-/// One of everything, nothing nearer than 5 mm to something else's edge.
+/// One solid of each kind; no solid is nearer than 5 mm to the edge of another.
 std::vector<Primitive> one_of_everything() {
     return {
         Floor({{-2.0, -2.0}, {4.0, 2.0}}, 0.0, {Pit{{{0.5, -1.5}, {1.5, -0.5}}, 0.3}}),
@@ -39,7 +39,8 @@ std::optional<Column> column_of(const Primitive& primitive, double x_m, double y
     return std::visit([&](const auto& shape) { return shape.column(x_m, y_m); }, primitive);
 }
 
-/// Is the point inside a solid, or on or below a floor? Uses columns only: an oracle for rays.
+/// Whether the point is inside a solid, or on or below a floor. Uses columns only: an oracle for
+/// rays.
 bool occupied(const std::vector<Primitive>& primitives, const Vector3d& p) {
     for (const Primitive& primitive : primitives) {
         const auto column = column_of(primitive, p.x(), p.y());

@@ -24,7 +24,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Of the scenes whose statements are held to several variants.
+/// Seeds with which the tests check the description of a scene.
 constexpr std::uint64_t kSeeds[] = {1, 2, 3, 4, 5, 6};
 
 /// Truth of a whole run at 5 Hz.
@@ -39,7 +39,7 @@ SceneTruth whole_run(const std::string& name, std::uint64_t seed) {
     return truth;
 }
 
-/// Share of a rectangle's 25 mm cells that the run has seen within 2.5 m.
+/// Share of the 25 mm cells of a rectangle that the run has observed within 2.5 m.
 double seen_share(const SceneTruth& truth, const Rect& area) {
     Lattice lattice;
     lattice.origin_m = area.min_m;
@@ -141,7 +141,8 @@ TEST(ScenesTest, AtTheEndOfTheDemoTheNextStepLandsOnFloorThatWasSeen) {
         const SceneTruth truth = whole_run("demo_stairs", seed);
         const double x_m = truth.trajectory.back().T_world_body.translation_m.x();
         EXPECT_EQ(seen_share(truth, {{x_m - 0.2, -0.35}, {x_m + 0.75, 0.35}}), 1.0) << seed;
-        // Beside the start nothing was ever seen; a step from there needs the operator's word.
+        // The ground beside the start was never observed; a step from there needs an operator
+        // attestation.
         EXPECT_EQ(seen_share(truth, {{-0.3, -0.3}, {0.3, 0.3}}), 0.0) << seed;
     }
 }
@@ -169,7 +170,7 @@ TEST(ScenesTest, TheDemoShowsStairTableRampAndPit) {
     }
 }
 
-/// What tools/demo and end_to_end.chain ask the gate at fixed places of the demonstration.
+/// Queries of tools/demo and end_to_end.chain to the gate at fixed places of the demonstration.
 TEST(ScenesTest, TheDangersOfTheDemoAreWhereTheyAreAskedForInEveryVariant) {
     const Machine machine = testing::rex();
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -222,7 +223,7 @@ TEST(ScenesTest, TheTableIsAsHighAsTablesAreAndStandsAcrossTheEndOfTheWay) {
 constexpr double kHalfLength_m = 0.325;
 constexpr double kHalfWidth_m = 0.33;
 
-/// Height of what is below a head 2.05 m high; a beam above it leaves the way free.
+/// Height of obstacles below a head at 2.05 m; a higher beam leaves the path free.
 double ground_m(const Scene& scene, double x_m, double y_m) {
     constexpr double kHead_m = 2.05;
     constexpr double kNothing_m = 1e3;
@@ -259,7 +260,7 @@ TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
                                                  {"thesis_h_hall_door", 0.001},
                                                  {"thesis_h_hall_pillar", 0.001},
                                                  {"thesis_h_hall_table", 0.001}};
-    // Walks into danger or uphill: walking_scenes_test.cpp tells which of their steps are safe.
+    // Walks into danger or uphill: walking_scenes_test.cpp checks which of their steps are safe.
     const std::set<std::string> not_free{"thesis_k_production_stairs_climbed",
                                          "walk_back_into_table",
                                          "walk_descend_backwards",
@@ -314,7 +315,7 @@ TEST(ScenesTest, TheSameSeedIsTheSameScene) {
     }
 }
 
-/// Labels that the left camera sees in at least 1 in 500 of its rays from some place of the path.
+/// Labels that at least 1 in 500 rays of the left camera hit, from some point of the path.
 std::set<Label> seen_labels(const ScriptedScene& script) {
     const camera::StereoRig rig = rig_preset("zed_vga").value();
     std::set<Label> seen;
@@ -370,7 +371,8 @@ TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
     }
 }
 
-/// Data sets of the thesis' Table 8.2: length and width [m] of each place, whichever way round.
+/// Data sets of Table 8.2 of the reference thesis (Lange 2016): length and width [m] of each place,
+/// in either order.
 TEST(ScenesTest, ThePlacesOfTheThesisHaveTheirSizeAndManyThings) {
     struct Place {
         const char* name;
@@ -410,8 +412,8 @@ TEST(ScenesTest, ThePlacesOfTheThesisHaveTheirSizeAndManyThings) {
     }
 }
 
-/// Who carries the camera through a place is a choice: each of the three can go the way of each
-/// place (but that of the flight that is climbed by hand).
+/// The motion model is a choice: each of the three models can follow the path of each place, except
+/// for the flight, which only the hand-held camera climbs.
 TEST(ScenesTest, EveryCarrierCanGoThroughThePlacesOfTheThesis) {
     for (const SceneInfo& info : list_scenes()) {
         if (!info.name.starts_with("thesis_") || info.name.ends_with("_climbed")) continue;
@@ -426,7 +428,7 @@ TEST(ScenesTest, EveryCarrierCanGoThroughThePlacesOfTheThesis) {
     }
 }
 
-/// Truth of a randomised scene: heights along the line through its subject.
+/// Ground truth of a randomised scene: heights along the line through its subject.
 class Figures {
   public:
     Figures(const std::string& name, std::uint64_t seed)

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Scenes are places to walk through, not landscapes.
+/// Limit of coordinates: scenes are places to walk through, not landscapes.
 constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 
@@ -79,7 +79,7 @@ void GroupSpec::describe(ConfigVisitor& visitor) {
 }
 
 void BoxSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
+    visitor.choice("material", material, materials, "its material");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
@@ -100,7 +100,7 @@ void BoxSpec::add(Site& site) const {
 }
 
 void RampSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
+    visitor.choice("material", material, materials, "its material");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
@@ -118,7 +118,7 @@ void RampSpec::add(Site& site) const {
 }
 
 void CylinderSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
+    visitor.choice("material", material, materials, "its material");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     describe_position(visitor, x_m, y_m);
     describe_size(visitor, "radius_m", radius_m);
@@ -161,8 +161,8 @@ void PitSpec::describe(ConfigVisitor& visitor) {
 }
 
 void FloorSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
-    visitor.choice("pit_material", pit_material, materials, "look of its pits");
+    visitor.choice("material", material, materials, "its material");
+    visitor.choice("pit_material", pit_material, materials, "material of its pits");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     area.describe(visitor);
     describe_height(visitor, "z_m", z_m);
@@ -187,8 +187,9 @@ void FloorSpec::add(Site& site) const {
 }
 
 void WallsSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "look of the walls in front and on the right");
-    visitor.choice("other_material", other_material, materials, "look of the other two");
+    visitor.choice(
+        "material", material, materials, "material of the walls in front and on the right");
+    visitor.choice("other_material", other_material, materials, "material of the other two");
     area.describe(visitor);
     describe_size(visitor, "thickness_m", thickness_m);
     describe_height(visitor, "bottom_m", bottom_m);
@@ -217,8 +218,8 @@ void WallsSpec::add(Site& site) const {
 }
 
 void TableSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
-    visitor.choice("leg_material", leg_material, materials, "look of its legs");
+    visitor.choice("material", material, materials, "its material");
+    visitor.choice("leg_material", leg_material, materials, "material of its legs");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
@@ -262,9 +263,10 @@ void TableSpec::add(Site& site) const {
 }
 
 void DoorSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "look of the wall");
-    visitor.choice("post_material", post_material, materials, "look of the posts and the lintel");
-    visitor.choice("sill_material", sill_material, materials, "look of the sill");
+    visitor.choice("material", material, materials, "material of the wall");
+    visitor.choice(
+        "post_material", post_material, materials, "material of the posts and the lintel");
+    visitor.choice("sill_material", sill_material, materials, "material of the sill");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
     describe_height(visitor, "z_m", z_m);

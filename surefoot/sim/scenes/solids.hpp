@@ -15,34 +15,34 @@
 
 namespace surefoot::sim {
 
-/// Where a group of solids stands in the world.
+/// Pose of a group of solids in the world.
 struct Place {
     Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
     double z_m = 0.0;
     double yaw_rad = 0.0;
 
     [[nodiscard]] Eigen::Vector2d to_world(const Eigen::Vector2d& p_m) const;
-    /// A place given within this one.
+    /// Composes a place that is given relative to this one.
     [[nodiscard]] Place then(double x_m, double y_m, double z_m, double heading_deg) const;
 };
 
-/// What solids are added to.
+/// The scene under construction, to which solids are added.
 struct Site {
     Scene& scene;
     Place place;
     Rng& rng;
 };
 
-/// Names of the materials, for the keys that choose one.
+/// Material names, for keys that select a material.
 using MaterialNames = std::span<const char* const>;
-/// A material that is the solid's own unless the file names another.
+/// The solid's own material, unless the file names another one.
 inline constexpr int kSameMaterial = -2;
 
-// The solids of a scene file. Each has its keys, the reason why it is impossible, and a way into a
-// scene. Metres; positions are those of the group that the solid stands in; heading_deg turns from
-// +x towards +y.
+// The solids of a scene file. Each struct holds its keys, reports why it is impossible, and adds
+// itself to a scene. Lengths in metres; positions are in the frame of the enclosing group;
+// heading_deg turns from +x towards +y.
 
-/// Moves what stands in it.
+/// A group moves the solids inside it.
 struct GroupSpec {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -162,9 +162,9 @@ struct TableSpec {
     void add(Site& site) const;
 };
 
-/// Wall across the way with an opening: door posts left and right of it, a sill below, and a lintel
-/// where `opening_height_m` is not 0. Without a lintel the opening is free to the sky, so that maps
-/// of the highest surface show the ground in it.
+/// Wall across the path with an opening: door posts left and right of it, a sill below, and a
+/// lintel if `opening_height_m` is not 0. Without a lintel the opening is open to the sky, so that
+/// maps of the highest surface show the ground in it.
 struct DoorSpec {
     MaterialNames materials;
     int material = kRequiredChoice;  ///< of the wall
@@ -190,9 +190,9 @@ struct DoorSpec {
 enum class StairDirection : std::uint8_t { up, down };
 inline constexpr const char* kStairDirectionNames[] = {"up", "down"};
 
-/// Straight flight along its heading. It begins at its first edge: going up the nose of the first
-/// step, going down the edge of the floor above. `going_m` is measured from nose to nose. Up: a
-/// flight of n rises has n treads, the last one `landing_m` deep. Down: n - 1 treads, then a
+/// Straight flight along its heading. It begins at its first edge: upward, the nose of the first
+/// step; downward, the edge of the floor above. `going_m` is the distance from nose to nose. Up: n
+/// rises have n treads, the last one `landing_m` deep. Down: n rises have n - 1 treads, then a
 /// landing if `landing_m` is not 0; the edge of the floor above belongs to that floor.
 struct FlightSpec {
     MaterialNames materials;

@@ -23,8 +23,7 @@ int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// One tread and what carries it, in the frame of the flight: along x, above z = 0 of its
-/// beginning.
+/// One tread and its support, in the frame of the flight: along x, above z = 0 at its beginning.
 struct Tread {
     double begin_m = 0.0;
     double end_m = 0.0;
@@ -43,13 +42,15 @@ void add_block(
                    flight.label);
 }
 
-/// A solid block, or a board with or without the block under it that is set back by the nosing.
+/// Adds a solid block, or a board with or without a block under it; the block is set back by the
+/// nosing.
 void add_tread(
     Site& site, const FlightSpec& flight, const Place& place, Tread tread, double bottom_m) {
     if (!flight.open && flight.nosing_m == 0.0) {
         return add_block(site, flight, place, tread, bottom_m);
     }
-    // The nose points to where people come from going up, to where they go going down.
+    // The nose points against the walking direction in an upward flight, and along it in a
+    // downward flight.
     const bool up = flight.direction == StairDirection::up;
     Tread support = tread;
     (up ? support.begin_m : support.end_m) += up ? flight.nosing_m : -flight.nosing_m;
@@ -92,7 +93,7 @@ Prism wedge(const Vector2d& axis_m,
 }  // namespace
 
 void FlightSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
+    visitor.choice("material", material, materials, "its material");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     visitor.number("x_m", x_m, -kReach_m, kReach_m, "its first edge");
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "its middle");
@@ -152,8 +153,8 @@ void FlightSpec::add(Site& site) const {
 }
 
 void SpiralSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its look");
-    visitor.choice("pole_material", pole_material, materials, "look of the pole");
+    visitor.choice("material", material, materials, "its material");
+    visitor.choice("pole_material", pole_material, materials, "material of the pole");
     visitor.enumeration("label", label, kLabelNames, "what it is");
     visitor.number("x_m", x_m, -kReach_m, kReach_m, "its axis");
     visitor.number("y_m", y_m, -kReach_m, kReach_m, "its axis");

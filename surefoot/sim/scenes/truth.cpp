@@ -11,11 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A ray to a point of a surface ends this much before it, so that the surface does not hide
-/// itself.
+/// A ray to a surface point ends this much before it, so that the surface does not hide itself.
 constexpr double kSelf_m = 1e-6;
 
-/// A camera at one moment.
+/// Pose of a camera at one time.
 struct EyePoint {
     const camera::Camera* camera = nullptr;
     Pose T_world_camera;

@@ -14,8 +14,8 @@
 
 namespace surefoot::sim {
 
-/// What is true about a simulated recording. The world frame equals odom when the run starts with
-/// its first frame: ground under the first base_link.
+/// Ground truth of a simulated recording. The world frame equals odom if the run starts with its
+/// first frame: the origin is the ground under the first base_link.
 struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
@@ -25,7 +25,7 @@ struct SceneTruth {
     std::vector<Stop> stops;              ///< of a trolley
 };
 
-/// Cells of a map: `origin_m` is the outer corner of cell (0, 0) in the world, images are indexed
+/// Cells of a map. `origin_m` is the outer corner of cell (0, 0) in the world. Images are indexed
 /// (ix, iy) with ix along +x and iy along +y.
 struct Lattice {
     Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
@@ -43,15 +43,15 @@ enum class DemReduce : std::uint8_t {
     center,   ///< highest surface at the centre of the cell
 };
 
-/// Height of the highest surface of each cell [m, world]; NaN where there is no ground. A primitive
-/// that overlaps a cell by less than a micrometre does not count: a riser on a cell border leaves
-/// the cell before it at the height of the floor.
+/// Height of the highest surface of each cell [m, world]; NaN without ground. A primitive that
+/// overlaps a cell by less than a micrometre does not count, so that a riser on a cell border
+/// leaves the cell in front of it at the height of the floor.
 [[nodiscard]] Image<float> dem(const Scene& scene,
                                const Lattice& lattice,
                                DemReduce reduce = DemReduce::highest);
 
-/// For a map that tells a surface from what hangs over it: `dem_m`, but where `clearance_m` is
-/// known the surface at the centre of the cell that is nearest to `height_m` [m, world].
+/// For a map that separates a surface from overhead objects. Returns `dem_m`; in cells with a known
+/// `clearance_m` it returns the surface at the cell centre nearest to `height_m` [m, world].
 [[nodiscard]] Image<float> dem_below_overhead(Image<float> dem_m,
                                               const Scene& scene,
                                               const Lattice& lattice,
@@ -64,23 +64,23 @@ enum class DemReduce : std::uint8_t {
 struct EdgeConfig {
     double jump_m =
         0.03;  ///< between neighbouring cells; slopes below jump / cell size are no edge
-    int margin_cells = 2;  ///< cells this near (the larger of |dx| and |dy|) are masked too
+    int margin_cells = 2;  ///< also masks cells this near (larger of |dx| and |dy|)
 };
 
-/// 1 where a cell is at or within the margin of a height discontinuity (or of the end of the
-/// ground).
+/// 1 if a cell is at or within the margin of a height discontinuity, or of the end of the
+/// ground.
 [[nodiscard]] Image<std::uint8_t> edge_mask(const Image<float>& dem_m,
                                             const EdgeConfig& config = {});
 
 struct VisibilityConfig {
-    double range_m = 2.5;    ///< from the left camera to the surface, straight
-    int min_frames = 1;      ///< in how many frames a cell must be seen
-    double margin_px = 0.0;  ///< pixels at the image border that do not count
-    int frame_stride = 1;    ///< look at every n-th pose only
+    double range_m = 2.5;    ///< from the left camera to the surface, straight line
+    int min_frames = 1;      ///< smallest number of frames that must see a cell
+    double margin_px = 0.0;  ///< ignored pixels at the image border
+    int frame_stride = 1;    ///< use every n-th pose only
 };
 
-/// 1 where the highest surface at the cell's centre is seen by the left and the right camera at
-/// once, in at least `min_frames` frames: inside both images, in range, nothing in between.
+/// 1 if both cameras see the highest surface at the cell's centre at once, in at least `min_frames`
+/// frames: inside both images, in range, not hidden.
 [[nodiscard]] Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
                                                   const Lattice& lattice,
                                                   const VisibilityConfig& config,

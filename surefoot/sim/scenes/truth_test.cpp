@@ -24,7 +24,7 @@ SceneTruth truth_from(const char* scene, double x_m) {
     return truth;
 }
 
-/// Is this place on or below the board of the scene `table`?
+/// Whether this point is on or below the board of the scene `table`.
 bool under_board(const ScriptedScene& table, const Eigen::Vector2d& p_m) {
     const auto T_world_side = PlanarPose::of(
         drawn_number(table, "distance_m"), 0.0, kRadPerDeg * drawn_number(table, "angle_deg"));

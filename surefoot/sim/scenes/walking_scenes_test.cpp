@@ -13,8 +13,8 @@
 #include "surefoot/sim/safety_oracle/safety_testing.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 
-/// What happens on the embedded walks, against the oracle: every scene is dangerous where and why
-/// its description says.
+/// Compares the embedded walks with the safety oracle: every scene is dangerous where and why its
+/// description says.
 namespace surefoot::sim {
 namespace {
 
@@ -136,7 +136,7 @@ TEST(WalkingScenesTest, ReversingToAnEdgeIsSafeUntilTheHeelsAreOverIt) {
     }
 }
 
-/// Of a ramp only the first step is one in height; after it the ramp itself is what counts.
+/// Only the first step onto a ramp is a step in height; after it the tilt of the ramp counts.
 TEST(WalkingScenesTest, ARampIsASafeWayWhereTheMachineMayStand) {
     for (const auto& [name, slope] :
          {std::pair("walk_ramp_1_12", 1.0 / 12.0), {"walk_ramp_1_8", 1.0 / 8.0}}) {

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Independent numbers of one frame, and those of all frames.
+/// Independent random streams per frame, and the stream of all frames.
 constexpr std::uint64_t kStreams = 3;
 enum Stream : std::uint64_t { white, correlated, luck };
 constexpr std::uint64_t kSurfaceStream = ~std::uint64_t{0};
@@ -41,7 +41,7 @@ float uniform_from(const std::vector<float>& cdf, float normal) {
     return cdf[std::min(saturated_integer<std::size_t>(place + 0.5F), cdf.size() - 1)];
 }
 
-/// The camera that sees every `stride`-th pixel, beginning in the middle of the first `stride`.
+/// The camera of every `stride`-th pixel, beginning in the middle of the first `stride`.
 camera::RectifiedRig thinned(const camera::RectifiedRig& full, int stride) {
     const int first = stride / 2;
     camera::RectifiedRig rig = full;
@@ -70,7 +70,7 @@ struct Scales {
     float fixed_px = 0.0F;
     float locking_px = 0.0F;
     float reported_px = 0.0F;
-    float full_pixels = 1.0F;  ///< real pixels in one of the output
+    float full_pixels = 1.0F;  ///< real pixels in one output pixel
 
     explicit Scales(const AnalyticStereoConfig& config) {
         const double sigma_px = config.sigma_px / config.stride;
@@ -186,7 +186,7 @@ void AnalyticStereo::cast_rows(const Pose& T_world_camera, int block_y, View& ou
                 disparity_px[u] = kNanF;
                 missing_chance[u] = 1.0F;
                 if (hit.face < 0) continue;
-                // Through a float as the depth images of the renderer are.
+                // Rounded to float like the depth images of the renderer.
                 const auto depth_m = static_cast<float>(hit.distance_m * ray_z[i]);
                 disparity_px[u] =
                     static_cast<float>(depth_to_disparity_px_m / static_cast<double>(depth_m));
@@ -276,7 +276,7 @@ void AnalyticStereo::measure(
     });
 }
 
-/// What the matcher takes for the disparity of a pixel, before noise.
+/// The matcher's disparity of a pixel, before noise.
 AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, float luck) const {
     const Shadow shadow = view.shadows.shadow.row(v)[u];
     const bool hidden = shadow == Shadow::occluded;
@@ -287,7 +287,7 @@ AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, floa
     const float found_px =
         match.invented ? view.shadows.bridge_px.row(v)[u] : view.disparity_px.row(v)[u];
     const auto search_px = static_cast<float>(config_.max_disparity_px / config_.stride);
-    // The other end of luck decides here, apart from what is bridged.
+    // The upper end of `luck` decides here, independent of the bridges.
     const bool missing = 1.0F - luck < view.missing_chance.row(v)[u];
     const bool nothing = shadow == Shadow::outside || (hidden && !bridged) || missing;
     match.disparity_px = nothing || !(found_px <= search_px) ? kNanF : found_px;
@@ -312,7 +312,7 @@ void AnalyticStereo::measure_row(const View& view,
             measured_px +=
                 scale.locking_px * std::sin(kTurn * scale.full_pixels * found.disparity_px);
         }
-        // Also what errors have pushed behind infinity.
+        // Also drops pixels that errors have pushed beyond infinity.
         const bool known = measured_px > 0.0F;
         const double suspicion = found.invented ? config_.edge_suspicion : config_.plain_suspicion;
         out.disparity_px.row(v)[u] = known ? measured_px : kNanF;

@@ -17,39 +17,39 @@
 
 namespace surefoot::sim {
 
-/// How a stereo matcher errs. Pixels are those of the full rectified image, whatever the stride.
+/// Error model of a stereo matcher. Pixels are those of the full rectified image for any stride.
 ///
-/// Disparity of a pixel that both eyes see = exact + white + correlated + locking, with
+/// Disparity of a pixel that both cameras see = exact + white + correlated + locking, with
 ///   white       independent in every pixel and frame, variance (1 - correlated_share) sigma^2
-///   correlated  smooth over `correlation_px`, variance correlated_share sigma^2; the share
-///               `fixed_share` of that sticks to the surface, so that no mean over frames removes
-///               it
+///   correlated  smooth over `correlation_px`, variance correlated_share sigma^2. The share
+///               `fixed_share` of this variance is attached to the surface: a mean over frames does
+///               not remove it.
 ///   locking     locking_px sin(2 pi d): matchers pull towards whole disparities
-/// Beside disparity jumps the nearer surface grows by a seam, and a share of what a window cannot
-/// decide is bridged by a ramp (see Shadow). All the rest that is not matched is unknown.
+/// Beside disparity jumps the nearer surface grows by a seam. A ramp bridges a share of the pixels
+/// that a window cannot decide (see Shadow). All other unmatched pixels are unknown.
 ///
 /// Nominal sigma: best planar windows of real pairs scatter by 0.28-0.43 px; 0.25 px is the nominal
 /// figure of the project's accuracy tables. ASSUMPTION: every other default, until measured on
 /// rendered kerbs and stairs.
 struct AnalyticStereoConfig {
-    int stride = 1;                 ///< every n-th row and column is made
-    double sigma_px = 0.25;         ///< white and correlated together
+    int stride = 1;                 ///< use every n-th row and column
+    double sigma_px = 0.25;         ///< white and correlated noise together
     double correlated_share = 0.5;  ///< of the variance
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
     double fixed_share = 0.3;       ///< of the correlated variance: sticks to the surface
-    double fixed_size_m = 0.09;     ///< scale of that on the surface: 30 px at 1 m
+    double fixed_size_m = 0.09;     ///< its scale on the surface: 30 px at 1 m
     double locking_px = 0.05;       ///< amplitude
     double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic
 
     ShadowConfig shadow;
-    double invented_share = 0.5;    ///< of shadowed and occluded pixels: bridged
+    double invented_share = 0.5;    ///< share of shadowed and occluded pixels that a ramp bridges
     double edge_suspicion = 0.3;    ///< outlier probability reported in seams and bridges
-    double plain_suspicion = 0.02;  ///< and elsewhere
+    double plain_suspicion = 0.02;  ///< outlier probability elsewhere
 
     double max_disparity_px = 128.0;  ///< search range
-    double missing_share = 0.02;      ///< of all other pixels, in patches of `patch_px`
+    double missing_share = 0.02;      ///< of all other pixels, lost in patches of `patch_px`
     double patch_px = 8.0;
-    double fade_incidence_deg = 75.0;  ///< missing from here, in growing share ...
+    double fade_incidence_deg = 75.0;  ///< losses grow from this incidence ...
     double max_incidence_deg = 85.0;   ///< ... to here
     double least_contrast =
         0.1;  ///< contrast of the texture below which pixels get lost, in proportion
@@ -57,28 +57,28 @@ struct AnalyticStereoConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// What rectification and a matcher would say about a scene, straight from its geometry: no image
-/// is rendered. With every error at 0 it is `rectified_disparity_px` wherever both eyes see.
-/// Mirrors and glass give nothing (ASSUMPTION). Hidden places are found among what the left eye
-/// sees, so that something only the right eye sees hides nothing. Immutable after construction;
-/// rows run through the executor, the same bytes for any.
+/// Computes the output of rectification and a matcher straight from the scene geometry; it renders
+/// no image. With every error at 0 it equals `rectified_disparity_px` where both cameras see the
+/// point. Mirrors and glass return nothing (ASSUMPTION). Occlusion uses only surfaces that the left
+/// camera sees; an object that only the right camera sees hides nothing. Immutable after
+/// construction; rows run through the executor, and the bytes do not depend on it.
 class AnalyticStereo {
   public:
-    /// `rig`: the full rectified camera. Fails on a stride or a share that cannot be used. The
-    /// scene must outlive it.
+    /// `rig`: the full rectified camera. Fails on an unusable stride or share. The scene must
+    /// outlive the object.
     [[nodiscard]] static Result<AnalyticStereo> make(const Scene& scene,
                                                      const camera::RectifiedRig& rig,
                                                      const AnalyticStereoConfig& config,
                                                      std::uint64_t seed);
-    /// The camera of the depth images: that of `make` for stride 1, else a smaller one with
-    /// proportionally shorter focal lengths, and disparities in its own pixels.
+    /// The camera of the depth images: that of `make` for stride 1, otherwise a smaller camera with
+    /// proportionally shorter focal lengths and disparities in its own pixels.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
-    /// What the left eye truly sees. Keep it from frame to frame: its memory is used again.
+    /// Exact view of the left camera. Keep the object from frame to frame to reuse its memory.
     struct View {
-        Image<float> disparity_px;  ///< exact, of the output's pixels; NaN where no surface is
+        Image<float> disparity_px;  ///< exact, in output pixels; NaN without a surface
         Image<std::int32_t> surface;
-        Image<float> fixed;           ///< noise of unit variance that sticks to the surface
-        Image<float> missing_chance;  ///< 1 for what can never be matched
+        Image<float> fixed;           ///< noise of unit variance attached to the surface
+        Image<float> missing_chance;  ///< 1 for pixels that can never be matched
         ShadowMap shadows;
     };
     /// `frame` selects the noise.
@@ -91,7 +91,7 @@ class AnalyticStereo {
                    const AnalyticStereoConfig& config,
                    std::uint64_t seed);
     void cast(const Pose& T_world_body, Executor& executor, View& out) const;
-    /// What a ray that ends on a surface meets there.
+    /// Properties of the surface point that a ray hits.
     struct Look {
         float fixed = 0.0F;
         float missing_chance = 1.0F;
@@ -122,8 +122,8 @@ class AnalyticStereo {
     RayField rays_;
     PixelNoise noise_;
     SurfaceNoise surface_noise_;
-    std::vector<double> known_;  ///< by surface, seen from straight ahead; 0 where nothing ever is
-    bool fixed_noise_ = false;   ///< does any stick to the surfaces?
+    std::vector<double> known_;  ///< per surface, seen head-on; 0 if the surface never matches
+    bool fixed_noise_ = false;   ///< whether some noise is attached to the surfaces
     double fade_cosine_ = 0.0;   ///< of `fade_incidence_deg`
     std::vector<float> cdf_;
 };

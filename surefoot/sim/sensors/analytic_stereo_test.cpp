@@ -55,10 +55,10 @@ Pose body_at_height(double height_m) {
 }
 
 DepthImage measured(const Scene& scene,
-                            const camera::RectifiedRig& rig,
-                            const AnalyticStereoConfig& config,
-                            double height_m = 1.0,
-                            int frame = 0) {
+                    const camera::RectifiedRig& rig,
+                    const AnalyticStereoConfig& config,
+                    double height_m = 1.0,
+                    int frame = 0) {
     Serial serial;
     AnalyticStereo::View view;
     DepthImage out;
@@ -73,7 +73,7 @@ Image<float> exact(const Scene& scene, const camera::RectifiedRig& rig, double h
     return rectified_disparity_px(scene, rig, body_at_height(height_m), serial);
 }
 
-/// Whether the right eye sees what the left one sees in a pixel, by rays.
+/// Whether the right camera sees the point that the left camera sees in a pixel; uses rays.
 bool right_camera_sees(const Scene& scene,
                        const camera::RectifiedRig& rig,
                        const Pose& T_world_body,
@@ -256,7 +256,8 @@ TEST(AnalyticStereoTest, LockingIsASineOfTheFraction) {
     }
 }
 
-/// Beside the left edge of a plate lies what the right eye cannot see: f b (1/z_plate - 1/z_wall).
+/// Left of a plate lies a strip that the right camera cannot see; its width is f b (1/z_plate -
+/// 1/z_wall).
 TEST(AnalyticStereoTest, OccludedStripIsAsWideAsGeometrySaysAndBridgedAsOftenAsAsked) {
     const Scene scene = test::plate_before_wall(1.0, 2.0, 0.5);
     const double width_px = 342.0 * 0.12 * (1.0 - 0.5);  // 20.5
@@ -341,7 +342,7 @@ TEST(AnalyticStereoTest, MissingSharesAreThoseOfTheModel) {
         for (int frame = 0; frame < 4; ++frame) {
             const DepthImage depth = measured(scene, level_rig(), config, 1.0, frame);
             for (int v = 0; v < 376; ++v) {
-                for (int u = 30; u < 672; ++u) {  // the right eye sees them
+                for (int u = 30; u < 672; ++u) {  // the right camera sees them
                     count += std::isnan(depth.disparity_px.at(u, v)) ? 0.0 : 1.0;
                     all += 1.0;
                 }
@@ -397,7 +398,7 @@ TEST(AnalyticStereoTest, SameBytesForAnyExecutorAndOtherNoiseInAnotherFrame) {
     DepthImage b;
     DepthImage c;
     DepthImage d;
-    AnalyticStereo::View view;  // used again and again: old contents must not show
+    AnalyticStereo::View view;  // reused: old contents must not appear
     stereo.measure(body_at_height(2.0), 1, serial, view, a);
     stereo.measure(body_at_height(kBodyHeight_m), 5, serial, view, a);
     stereo.measure(body_at_height(kBodyHeight_m), 5, backwards, view, b);

@@ -8,7 +8,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kCamera_m = 2.0;  ///< height of the camera: half of the largest board is below it
+constexpr double kCamera_m = 2.0;  ///< height of the camera; half of the largest board is below it
 constexpr double kThickness_m = 0.02;
 constexpr double kWallBehind_m = 1.5;
 constexpr double kWallHalf_m = 20.0;
@@ -28,7 +28,7 @@ void add_slab(double near_x_m, double half_m, int material, Label label, Scene& 
 Scene board_scene(const BoardView& view) {
     Scene scene;
     Lighting lighting;
-    lighting.lamp_azimuth_deg = 180.0;  // behind the camera: the board is lit
+    lighting.lamp_azimuth_deg = 180.0;  // behind the camera, so that it lights the board
     lighting.lamp_elevation_deg = 45.0;
     scene.light(lighting);
     Material board;

@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// A flat textured board across the optical axis of the left camera, as depth cameras are tested
-/// with; a wall 1.5 m behind it.
+/// A flat textured board across the optical axis of the left camera, as in tests of depth cameras,
+/// with a wall 1.5 m behind it.
 struct BoardView {
     double distance_m = 1.0;  ///< from the centre of the left camera
     double side_m = 0.6;      ///< square, its middle on the axis
@@ -22,7 +22,7 @@ struct BoardView {
     double contrast = 1.0;  ///< factor on the contrast of the materials
     CameraConfig camera;
     CalibrationError calibration_error;
-    std::uint64_t seed = 1;  ///< texture and noise
+    std::uint64_t seed = 1;  ///< for texture and noise
 };
 
 struct SeenBoard {
@@ -31,7 +31,7 @@ struct SeenBoard {
     Image<float> disparity_px;
 };
 
-/// `rectified`: what the rig is rectified to. Fails with the rig's problem in words.
+/// `rectified`: the rectified model of the rig. Fails with the problem of the rig in words.
 [[nodiscard]] Result<SeenBoard> see_board(const BoardView& view,
                                           const camera::StereoRig& rig,
                                           const camera::RectifiedRig& rectified,

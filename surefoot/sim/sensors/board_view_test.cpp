@@ -48,7 +48,7 @@ TEST(BoardView, TheImagesShowATextureThatTheSeedTurns) {
     ASSERT_TRUE(one.ok() && same.ok() && other.ok());
     EXPECT_EQ(one->frame.left, same->frame.left);
     EXPECT_FALSE(one->frame.left == other->frame.left);
-    // The right eye sees the middle of the board where the disparity says.
+    // The right camera sees the middle of the board at the position that the disparity gives.
     const int u = static_cast<int>(rectified.cx_px);
     const int v = static_cast<int>(rectified.cy_px);
     const int shift_px = static_cast<int>(std::lround(one->disparity_px.at(u, v)));

@@ -6,8 +6,8 @@
 
 namespace surefoot::sim {
 
-/// How the right eye really is, compared with what its calibration says: a stereo camera that was
-/// calibrated on another day, or warmed up since. Turns are about the axes of the left camera.
+/// Difference between the true right camera and its calibration, for example because the camera has
+/// warmed up since. Rotations are about the axes of the left camera.
 struct CalibrationError {
     double right_roll_rad = 0.0;     ///< about z, ahead: rows cross
     double right_pitch_rad = 0.0;    ///< about x, to the right: rows are shifted
@@ -17,7 +17,7 @@ struct CalibrationError {
     void describe(ConfigVisitor& visitor);
 };
 
-/// The rig that takes the images when `nominal` is what everybody believes.
+/// Returns the true rig that takes the images while all other code uses `nominal`.
 [[nodiscard]] camera::StereoRig with_error(const camera::StereoRig& nominal,
                                            const CalibrationError& error);
 

@@ -8,7 +8,8 @@
 namespace surefoot::sim {
 namespace {
 
-/// Where the right eye sees a point that the left camera has at `p_left_m`, minus where it should.
+/// Actual minus expected pixel of the right camera for a point that is at `p_left_m` in the left
+/// camera.
 Eigen::Vector2d displacement_px(const CalibrationError& error, const Eigen::Vector3d& p_left_m) {
     const camera::StereoRig nominal = *rig_preset("zed_vga");
     const camera::StereoRig real = with_error(nominal, error);

@@ -7,7 +7,7 @@
 
 namespace surefoot::sim::test {
 
-/// The VGA rig with a quarter of its pixels in each direction, for speed.
+/// The VGA rig with a quarter of the pixels in each direction, for fast tests.
 inline camera::StereoRig small_rig() {
     camera::StereoRig rig = rig_preset("zed_vga").value();
     camera::PinholeRadTan lens;

@@ -20,12 +20,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Independent numbers of one frame.
+/// Independent random streams per frame.
 constexpr std::uint64_t kStreams = 4;
 enum Stream : std::uint64_t { axial, lateral_u, lateral_v, loss };
 /// Pixels round an edge that lateral noise can reach: three sigma of 0.8 px.
 constexpr int kEdgeReach_px = 3;
-/// Light that starts on a surface does not meet it again.
+/// A light ray starts this far from its surface, so that it does not hit it again.
 constexpr double kSelf_m = 1e-6;
 
 double smaller_angle_rad(double cosine) {
@@ -187,7 +187,7 @@ void DepthCamera::measure_row(
         if (!returns(T_world_camera, at, cosine, uniform_at(seed_, stream + loss, pixel))) continue;
         if (edge && config_.mixes_edges) at.depth_m = mixed_depth_m(T_world_camera, u, v, at);
         const double sigma = sigma_m(at.depth_m, smaller_angle_rad(cosine));
-        // Rounding to steps is a part of what Nguyen measured, uniform over one step.
+        // Nguyen's measured noise already includes the rounding to steps, uniform over one step.
         const double step_m = depth_step_m(at.depth_m);
         const double before_m = std::sqrt(std::max(0.0, sigma * sigma - step_m * step_m / 12.0));
         double depth_m = at.depth_m + before_m * normal(stream + axial, pixel);
@@ -211,7 +211,8 @@ DepthCamera::Seen DepthCamera::look(
     return {hit->distance_m * ray.z(), hit->surface, direction, hit->distance_m};
 }
 
-/// Lateral noise: another place is measured; its depth counts if it lies on another surface.
+/// Lateral noise: the camera measures a neighbouring point; its depth counts if it lies on another
+/// surface.
 DepthCamera::Seen DepthCamera::beside_edge(
     const Pose& T_world_camera, int u, int v, const Seen& center, std::uint64_t stream) const {
     const double sigma_px = config_.lateral_share / rays_.pixel_angle_rad(u, v);
@@ -225,7 +226,7 @@ DepthCamera::Seen DepthCamera::beside_edge(
     return other.surface == center.surface ? center : other;
 }
 
-/// Mean depth of what is seen at four places in a pixel, as they add up in the sensor.
+/// Mean depth at four sub-pixel positions, as the sensor averages them.
 double DepthCamera::mixed_depth_m(const Pose& T_world_camera,
                                   int u,
                                   int v,
@@ -259,7 +260,7 @@ bool DepthCamera::returns(const Pose& T_world_camera,
     const Vector3d point_m = T_world_camera.translation_m + seen.distance_m * seen.direction;
     const Vector3d light = point_m - projector_m;
     const double distance_m = light.norm();
-    // A face turned away from the projector stays dark; others may be in a shadow.
+    // A face that points away from the projector is dark; other faces may be in a shadow.
     if (scene_->surface_point(seen.surface, point_m).normal.dot(light) >= 0.0) return false;
     return !scene_->blocked(projector_m, light / distance_m, distance_m - kSelf_m);
 }

@@ -27,19 +27,19 @@ struct DepthCameraConfig {
     double lateral_share = 0.001376915;  ///< of z, in the image plane: 0.8 px of a Kinect
     double min_range_m = 0.35;           ///< of z, where the model is valid
     double max_range_m = 3.0;
-    /// Projector beside the camera along its x axis: what it cannot light is unknown. 0 = light
-    /// from the camera itself (time of flight). Kinect v1: 75 mm (Khoshelham and Elberink 2012).
+    /// Projector offset along the camera's x axis; points in its shadow are unknown. 0 = light from
+    /// the camera itself (time of flight). Kinect v1: 75 mm (Khoshelham and Elberink 2012).
     double projector_x_m = 0.075;
-    /// Structured light: disparities come in steps of 1/8 px (same paper). The axial noise holds
-    /// this part already. 0 = none.
+    /// Structured light: disparities are quantised to 1/8 px (same paper). The axial noise already
+    /// includes this part. 0 = none.
     double disparity_step_px = 0.125;
     double max_incidence_deg = 80.0;  ///< ASSUMPTION: nothing is measured at grazing incidence
-    /// ASSUMPTION: share of light (reflectance times cosine) below which pixels get lost, in
-    /// proportion.
+    /// ASSUMPTION: share of returned light (reflectance times cosine) below which pixels get lost,
+    /// in proportion.
     double least_return = 0.06;
-    bool mixes_edges = false;  ///< time of flight: pixels on an edge lie between the surfaces
+    bool mixes_edges = false;  ///< time of flight: pixels on an edge lie between the two surfaces
 
-    /// The same with every axial error this much larger.
+    /// The same camera with every axial error multiplied by `factor`.
     [[nodiscard]] DepthCameraConfig with_noise(double factor) const;
 
     void describe(ConfigVisitor& visitor);
@@ -62,19 +62,19 @@ struct DepthFrame {
     Image<float> sigma_m;  ///< one sigma of it; NaN = unknown
 };
 
-/// Depth images of a scene. Mirrors and glass give nothing (ASSUMPTION: their light never comes
-/// back); reflectance is the mean of the material. Rows run through the executor; the same bytes
-/// for any executor. Immutable after construction.
+/// Depth images of a scene. Mirrors and glass return nothing (ASSUMPTION: their light never comes
+/// back). Reflectance is the mean of the material. Rows run through the executor; the bytes do not
+/// depend on it. Immutable after construction.
 class DepthCamera {
   public:
-    /// Fails with the camera's problem in words. The scene must outlive it.
+    /// Fails with the problem of the camera in words. The scene must outlive the object.
     [[nodiscard]] static Result<DepthCamera> make(const Scene& scene,
                                                   const camera::Camera& camera,
                                                   const DepthCameraConfig& config,
                                                   std::uint64_t seed);
     /// `frame` selects the noise.
     void render(const Pose& T_world_camera, int frame, Executor& executor, DepthFrame& out) const;
-    /// Axial noise of the model.
+    /// Axial noise of the model, one sigma.
     [[nodiscard]] double sigma_m(double depth_m, double incidence_rad) const;
 
   private:

@@ -49,7 +49,7 @@ DepthFrame shot(const Scene& scene,
     return out;
 }
 
-/// Unbiased standard deviation of what is known, against a constant.
+/// Unbiased standard deviation of the known pixels about a constant.
 struct Spread {
     double mean_m = 0.0;
     double sigma_m = 0.0;

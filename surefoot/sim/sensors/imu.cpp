@@ -26,7 +26,7 @@ constexpr std::uint64_t kBiasStream = ~std::uint64_t{0};
 constexpr std::uint64_t kGyroWalkStream = kBiasStream - 1;
 constexpr std::uint64_t kAccelWalkStream = kBiasStream - 2;
 
-/// What the converter makes of a value.
+/// Value after range limit and quantisation of the converter.
 Vector3d converted(Vector3d value, double range, double step) {
     if (range > 0.0) value = value.cwiseMax(-range).cwiseMin(range);
     if (step > 0.0) value = step * (value / step).array().round().matrix();
@@ -50,8 +50,8 @@ ImuNoiseConfig adis16448() {
 
 /// InvenSense PS-MPU-6000A-00, revision 3.4, sections 6.1 and 6.2: 0.005 deg/s/sqrt(Hz), 400
 /// ug/sqrt(Hz), zero offsets up to 20 deg/s and 50 mg (taken as 3 sigma), ranges 250 deg/s and 2 g
-/// with 131 and 16384 counts per unit. ASSUMPTION: random walks, which it does not tell, five times
-/// those of the gyroscope and once those of the accelerometer of the ADIS16448.
+/// with 131 and 16384 counts per unit. ASSUMPTION: the data sheet gives no random walks; gyroscope
+/// five times and accelerometer once those of the ADIS16448.
 ImuNoiseConfig mpu6050() {
     return {.gyro_density_rad_s_sqrt_hz = 0.005 * kRadPerDeg,
             .accel_density_m_s2_sqrt_hz = 400e-6 * kGravity_m_s2,

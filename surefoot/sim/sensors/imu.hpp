@@ -16,8 +16,8 @@ namespace surefoot::sim {
 inline constexpr double kGravity_m_s2 = 9.81;
 
 /// Errors of an inertial sensor: white noise by density, a bias that is drawn once per seed and
-/// then walks at random, a range beyond which readings stay at its end, and steps of the converter.
-/// The defaults are of the order of a consumer MEMS part with a steady bias.
+/// then follows a random walk, saturation at the range limits, and quantisation. The defaults have
+/// the order of a consumer MEMS part with a steady bias.
 struct ImuNoiseConfig {
     double gyro_density_rad_s_sqrt_hz = 1.5e-4;
     double accel_density_m_s2_sqrt_hz = 2.0e-3;
@@ -27,36 +27,36 @@ struct ImuNoiseConfig {
     double accel_walk_m_s3_sqrt_hz = 0.0;
     double gyro_range_rad_s = 0.0;  ///< 0 = unlimited
     double accel_range_m_s2 = 0.0;  ///< 0 = unlimited
-    double gyro_step_rad_s = 0.0;   ///< one count of the converter; 0 = none
+    double gyro_step_rad_s = 0.0;   ///< one count of the converter; 0 = no quantisation
     double accel_step_m_s2 = 0.0;
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Which inertial sensor.
+/// Model of the inertial sensor.
 enum class ImuKind : std::uint8_t {
     none,
     consumer,   ///< the defaults above
     adis16448,  ///< the IMU of the EuRoC recordings (their calibration)
-    mpu6050,    ///< also the inertial part of the MPU-9150; class of the IMU in the DUO
+    mpu6050,    ///< also the inertial part of the MPU-9150; same class as the IMU of the DUO
     bmi055,     ///< phone class, 12-bit accelerometer
 };
 inline constexpr const char* kImuNames[] = {"none", "consumer", "adis16448", "mpu6050", "bmi055"};
 
-/// Errors of a sensor by its data sheet.
+/// Errors of a sensor according to its data sheet.
 [[nodiscard]] ImuNoiseConfig imu_noise_of(ImuKind kind);
 
-/// A random walk with steps of unit variance, known at any index without the steps before it
+/// A random walk with steps of unit variance. Any index is computed without the steps before it
 /// (Levy's construction of Brownian motion: independent increments between powers of two, bridges
-/// between them). W(0) = 0; indices below zero walk the other way. A function of (seed, index)
+/// between them). W(0) = 0; negative indices walk the other way. A function of (seed, index)
 /// alone.
 [[nodiscard]] double random_walk(std::uint64_t seed, std::int64_t index);
 
-/// Samples of an IMU on a moving body. Sample k is taken at k / rate from time zero, whatever is
-/// asked for, and its errors depend on (seed, k) alone; the bias has its drawn value at the start.
+/// IMU samples on a moving body. Sample k is at k / rate from time zero for every query, and its
+/// errors depend on (seed, k) alone. At the start the bias has its drawn value.
 class ImuModel {
   public:
-    /// `start_ns` is the stamp at which the trajectory starts.
+    /// `start_ns` is the stamp of the start of the trajectory.
     ImuModel(std::shared_ptr<const Motion> motion,
              const camera::ImuMount& mount,
              const ImuNoiseConfig& noise,
@@ -65,7 +65,7 @@ class ImuModel {
     /// Samples with after_ns < stamp <= until_ns.
     [[nodiscard]] std::vector<ImuSample> samples(std::int64_t after_ns,
                                                  std::int64_t until_ns) const;
-    /// Noiseless sample at any time.
+    /// Sample without errors at any time.
     [[nodiscard]] ImuSample ideal(std::int64_t time_ns) const;
 
   private:

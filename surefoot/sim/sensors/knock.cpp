@@ -55,7 +55,7 @@ MotionState KnockedMotion::at(double time_s) const {
     const double rate_rad_s = angle_rad_ * turned.first / kKnockDuration_s;
     const double change_rad_s2 = angle_rad_ * turned.second / (kKnockDuration_s * kKnockDuration_s);
     const Eigen::Quaterniond knock(Eigen::AngleAxisd(angle_rad_ * turned.value, axis_));
-    // Where base_link's origin comes to lie, in the base_link of the machine, and its derivatives.
+    // Position of base_link's origin after the knock, in the machine's base_link, with derivatives.
     const Vector3d arm_m = knock * pivot_m_;
     const Vector3d r_m = pivot_m_ - arm_m;
     const Vector3d r_m_s = -rate_rad_s * axis_.cross(arm_m);

@@ -8,9 +8,9 @@
 
 namespace surefoot::sim {
 
-/// A blow that turns the camera on its mount, once and for good (hazard H6). Turns are about the
-/// axes of base_link, through the left eye, one after the other: roll, pitch, yaw as in
-/// Rz(yaw) Ry(pitch) Rx(roll), from `at_s` on.
+/// A knock that turns the camera on its mount permanently (hazard H6). The rotation is about the
+/// axes of base_link, through the left camera, in the order roll, pitch, yaw as in Rz(yaw)
+/// Ry(pitch) Rx(roll). It starts at `at_s`.
 struct KnockConfig {
     double at_s = 0.0;  ///< after the first frame
     double roll_deg = 0.0;
@@ -23,11 +23,11 @@ struct KnockConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// ASSUMPTION: how long the camera needs to turn; a frame and a half at 15 Hz.
+/// ASSUMPTION: duration of the camera's turn; one and a half frames at 15 Hz.
 inline constexpr double kKnockDuration_s = 0.1;
 
-/// Where a base_link that is fixed to the camera goes when the camera is knocked: the eyes and the
-/// IMU beside them move by this motion, the machine goes on by `machine`.
+/// Motion of a base_link that is fixed to the camera when the camera is knocked. Both cameras and
+/// the IMU beside them follow this motion; the machine follows `machine`.
 class KnockedMotion final : public Motion {
   public:
     KnockedMotion(std::shared_ptr<const Motion> machine,
@@ -41,7 +41,7 @@ class KnockedMotion final : public Motion {
     double at_s_;
     double angle_rad_;
     Eigen::Vector3d axis_;     ///< unit, in base_link
-    Eigen::Vector3d pivot_m_;  ///< likewise
+    Eigen::Vector3d pivot_m_;  ///< in base_link
 };
 
 }  // namespace surefoot::sim

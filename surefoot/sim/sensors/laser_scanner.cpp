@@ -16,17 +16,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Columns in memory at a time: enough for the threads of a desk, 15 MB at full resolution.
+/// Columns in memory at a time: enough for the threads of a desktop computer, 15 MB at full
+/// resolution.
 constexpr int kBatch = 16;
-/// Mean over a disc by its centre and four places at sqrt(2/3) of the radius (exact for polynomials
+/// Mean over a disc by its centre and four points at sqrt(2/3) of the radius (exact for polynomials
 /// of third degree: Abramowitz and Stegun 25.4.61).
 constexpr double kCenterWeight = 0.25;
 constexpr double kRingWeight = 0.1875;
 constexpr double kRingRadius = 0.816496580927726;
-/// Reflectance to which the greatest range belongs.
+/// Reflectance for which the maximum range holds.
 constexpr double kWhite = 0.9;
 
-/// Steps that fit into a span, for angles that decimal fractions do not hit exactly.
+/// Number of steps in a span; tolerates angles that decimal fractions do not represent exactly.
 int steps_in(double span_deg, double step_deg) {
     // in range: LaserScannerConfig::describe() keeps spans below 720 and steps above 0.001 deg
     return static_cast<int>(std::floor(span_deg / step_deg + 1e-6));
@@ -111,7 +112,7 @@ void LaserScanner::scan(const Pose& T_world_scanner,
     }
 }
 
-/// Middle rays of a column and what they meet.
+/// Casts the middle rays of a column.
 void LaserScanner::aim(const Pose& T_world_scanner, int column, Beams& beams) const {
     const auto rows = static_cast<std::size_t>(rows_);
     beams.directions_scanner.resize(rows);
@@ -132,7 +133,8 @@ void LaserScanner::aim(const Pose& T_world_scanner, int column, Beams& beams) co
     }
 }
 
-/// Four rays from the station through the disc that the beam lights at the range of its middle ray.
+/// Casts four rays from the station through the disc that the beam lights at the range of its
+/// middle ray.
 void LaserScanner::widen(Beams& beams) const {
     beams.ring.clear();
     for (std::size_t row = 0; row < beams.directions.size(); ++row) {
@@ -176,7 +178,7 @@ void LaserScanner::scan_column(const Pose& T_world_scanner,
     }
 }
 
-/// What a matt surface sends back, 0 for others.
+/// Share of light that a matt surface returns; 0 for other surfaces.
 double LaserScanner::return_share(int surface,
                                   const Vector3d& point_m,
                                   const Vector3d& direction) const {

@@ -16,26 +16,26 @@
 
 namespace surefoot::sim {
 
-/// A terrestrial laser scanner: an upright fan of beams that turns about the z axis of the scanner.
-/// Azimuth counts from x towards y, elevation from the horizon upward. The defaults are those of a
-/// Faro Focus3D S120 (data sheet) at a quarter of its resolution.
+/// A terrestrial laser scanner: a vertical fan of beams that turns about the z axis of the scanner.
+/// Azimuth counts from x towards y, elevation from the horizon upward. Defaults: Faro Focus3D S120
+/// (data sheet) at a quarter of its resolution.
 ///
-/// Range noise: signal falls with r^2 and with what a matt surface sends back, reflectance times
+/// Range noise: the signal falls with r^2 and with the return of a matt surface, reflectance times
 /// cosine, so
 ///   sigma^2 = floor^2 + (growth r)^2 / (reflectance cos)
-/// with both numbers fitted (least largest error, 9 %) to the sheet: 0.6 / 1.2 mm at 10 m and 0.95
-/// / 2.2 mm at 25 m on 90 % / 10 %.
+/// Both numbers are fitted (least largest error, 9 %) to the data sheet: 0.6 mm at 90 % reflectance
+/// and 1.2 mm at 10 % in 10 m; 0.95 mm at 90 % and 2.2 mm at 10 % in 25 m.
 struct LaserScannerConfig {
     double azimuth_min_deg = -180.0;  ///< first column
-    double azimuth_max_deg = 180.0;   ///< not reached
+    double azimuth_max_deg = 180.0;   ///< excluded
     double elevation_min_deg =
         -62.5;  ///< first row; 305 deg of view lie on both sides of the zenith
     double elevation_max_deg = 90.0;
     double step_deg = 0.036;     ///< 4 steps of 0.009 deg: 10 000 columns of 4237 points
-    double min_range_m = 0.6;    ///< of the beam
-    double max_range_m = 120.0;  ///< on 90 %; darker or slanted surfaces end nearer
+    double min_range_m = 0.6;    ///< along the beam
+    double max_range_m = 120.0;  ///< on 90 % reflectance; darker or slanted: shorter
     double noise_floor_m = 0.575e-3;
-    double noise_growth = 2.94e-5;         ///< share of range, on a white surface seen head-on
+    double noise_growth = 2.94e-5;         ///< share of the range, on a white surface seen head-on
     double beam_exit_m = 0.003;            ///< diameter
     double beam_divergence_rad = 0.19e-3;  ///< growth of the diameter with range
 
@@ -43,47 +43,47 @@ struct LaserScannerConfig {
 };
 
 struct ScanPoint {
-    Eigen::Vector3d point_scanner_m;  ///< NaN where nothing comes back
-    std::int32_t surface = -1;        ///< truth: what the middle of the beam meets
+    Eigen::Vector3d point_scanner_m;  ///< NaN without a return
+    std::int32_t surface = -1;        ///< truth: the surface that the middle of the beam hits
     bool mixed = false;               ///< truth: the beam met more than one surface
 };
 
-/// One turn of the mirror, lowest elevation first.
+/// One vertical column of the scan, lowest elevation first.
 struct ScanColumn {
     int index = 0;
     double azimuth_rad = 0.0;
     std::span<const ScanPoint> points;  ///< valid during the call only
 };
 
-/// Scans a scene from a station. Mirrors and glass give nothing (ASSUMPTION). A beam that meets
+/// Scans a scene from a station. Mirrors and glass return nothing (ASSUMPTION). A beam that hits
 /// several surfaces measures the mean of their ranges, weighted by its area and their brightness.
 /// Immutable after construction.
 class LaserScanner {
   public:
-    /// Fails if the angles or ranges leave nothing to scan. The scene must outlive the scanner.
+    /// Fails if the angles or ranges select no beam. The scene must outlive the scanner.
     [[nodiscard]] static Result<LaserScanner> make(const Scene& scene,
                                                    const LaserScannerConfig& config,
                                                    std::uint64_t seed);
     [[nodiscard]] int columns() const noexcept { return columns_; }
     [[nodiscard]] int rows() const noexcept { return rows_; }
-    /// Hands over column by column in order on the calling thread, until `take` returns false.
-    /// Only a few columns are in memory; they are computed through the executor, the same bytes
-    /// for any. `station` selects the noise.
+    /// Delivers the columns in order on the calling thread, until `take` returns false. Only a few
+    /// columns are in memory. The executor computes them; the bytes do not depend on it. `station`
+    /// selects the noise.
     void scan(const Pose& T_world_scanner,
               int station,
               Executor& executor,
               const std::function<bool(const ScanColumn&)>& take) const;
-    /// Noise of a range; `return_share` = reflectance times cosine of incidence.
+    /// Range noise, one sigma; `return_share` = reflectance times cosine of incidence.
     [[nodiscard]] double sigma_m(double range_m, double return_share) const;
 
   private:
     LaserScanner(const Scene& scene, const LaserScannerConfig& config, std::uint64_t seed);
-    /// Beams of one column in work.
+    /// Beams of the column that is being computed.
     struct Beams {
         std::vector<Eigen::Vector3d> directions_scanner;
         std::vector<Eigen::Vector3d> directions;  ///< world
         std::vector<RayHit> hits;
-        std::vector<Eigen::Vector3d> ring;  ///< four for each beam, one behind the other
+        std::vector<Eigen::Vector3d> ring;  ///< four per beam, one after another
         std::vector<RayHit> ring_hits;
     };
     void scan_column(const Pose& T_world_scanner,

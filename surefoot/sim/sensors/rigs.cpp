@@ -63,8 +63,8 @@ camera::StereoRig zed(const Mode& mode, bool rolling) {
     rig.rectified = true;
     if (rolling) {
         rig.name += kRolling;
-        // ASSUMPTION: no data sheet tells the read-out time; it cannot be longer than the frame
-        // period of the fastest rate, and such sensors are read without a pause.
+        // ASSUMPTION: no data sheet gives the read-out time. It cannot be longer than the frame
+        // period of the fastest rate, and such sensors read out without a pause.
         rig.readout_s = 1.0 / mode.rate_hz;
     }
     return rig;

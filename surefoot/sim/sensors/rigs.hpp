@@ -12,10 +12,10 @@ namespace surefoot::sim {
 /// Height of base_link above the floor in every scene; the cameras are 0.05 m higher.
 inline constexpr double kBodyHeight_m = 0.95;
 
-/// Pose of a left camera that looks `pitch_down_rad` below the horizon, straight ahead.
+/// Pose of a left camera that points straight ahead, `pitch_down_rad` below the horizon.
 [[nodiscard]] Pose looking_down(const Eigen::Vector3d& position_body_m, double pitch_down_rad);
 
-/// Names of the rigs that need no file.
+/// Names of the built-in rigs.
 [[nodiscard]] std::vector<std::string> rig_presets();
 
 /// A rig on the left armrest of the machine, 1.0 m above the floor, 32 deg down, with an IMU beside

@@ -28,8 +28,8 @@ TEST(RigsTest, EveryPresetCanBeUsedAndHasItsOwnName) {
     EXPECT_EQ(names.size(), rig_presets().size());
 }
 
-/// A pixel of the small mode is 4x4 of the sensor, of HD720 2x2, of the others one: the same point
-/// is seen under the same angle from the optical axis.
+/// A pixel of the small mode is 4x4 sensor pixels, of HD720 2x2, of the other modes one: the same
+/// point has the same angle to the optical axis in all modes.
 TEST(RigsTest, ModesOfTheZedSeeWithOneLens) {
     const double full_px = lens_of(rig_preset("zed_hd2k").value()).fx_px;
     EXPECT_EQ(lens_of(rig_preset("zed_hd1080").value()).fx_px, full_px);

@@ -13,7 +13,7 @@
 /// Small scenes and executors for the tests of the sensors.
 namespace surefoot::sim::test {
 
-/// Looks along +x of the world, level, at (0, 0, height): optical x = -y of the world.
+/// Camera pose at (0, 0, height), level, facing world +x: optical x = -y of the world.
 inline Pose level_camera(double height_m = 1.0) {
     Pose T = T_body_optical();
     T.translation_m = {0.0, 0.0, height_m};
@@ -43,7 +43,7 @@ inline Scene plate_before_wall(double plate_m, double wall_m, double width_m) {
     return scene;
 }
 
-/// Floor that ends at a drop: 0 up to `edge_m`, lower beyond.
+/// Floor with a drop: height 0 up to `edge_m`, lower beyond.
 inline Scene drop_ahead(double edge_m, double drop_m) {
     Scene scene;
     const int carpet = scene.add_material({});
@@ -59,7 +59,7 @@ inline Scene scene_with_box() {
     return scene;
 }
 
-/// Also where both are NaN.
+/// Equal, where two NaN values also count as equal.
 inline bool same_bytes(const Image<float>& a, const Image<float>& b) {
     return a.width() == b.width() && a.height() == b.height() &&
            std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;

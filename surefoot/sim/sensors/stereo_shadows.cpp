@@ -11,10 +11,10 @@
 namespace surefoot::sim {
 namespace {
 
-/// Columns that one piece of the vertical pass takes.
+/// Columns per piece of the vertical pass.
 constexpr int kStrip = 64;
-/// ASSUMPTION: steepest disparity of a surface that is no jump, px per px; a floor seen from 1 m
-/// with a baseline of 0.12 m has 0.12.
+/// ASSUMPTION: steepest disparity gradient of a surface without a jump, px per px. A floor seen
+/// from 1 m with a baseline of 0.12 m has 0.12.
 constexpr double kSlope = 0.2;
 
 /// The nearest jump to a nearer surface, for pixels behind it.
@@ -23,7 +23,7 @@ struct Behind {
     float front_px = 0.0F;
 };
 
-/// Follows one line of pixels away from the jumps on it. Where no surface is, disparity is NaN.
+/// Walks along a line of pixels, away from its jumps. Without a surface the disparity is NaN.
 class LineWalk {
   public:
     LineWalk(float jump_px, int reach) : jump_px_(jump_px), reach_(reach) {}
@@ -34,7 +34,7 @@ class LineWalk {
             steps_ = 1;
             front_px_ = before_px_;
         } else if (surface < 0 || (border && disparity_px - before_px_ > jump_px_)) {
-            steps_ = 0;  // nothing here, or the front itself
+            steps_ = 0;  // no surface, or the nearer surface itself
         } else if (steps_ > 0) {
             steps_ = steps_ < reach_ ? steps_ + 1 : 0;
         }
@@ -42,7 +42,7 @@ class LineWalk {
         before_surface_ = surface;
         note(behind);
     }
-    /// Goes on over pixels that show the surface before them, the last one with this disparity.
+    /// Skips pixels of the same surface; `disparity_px` belongs to the last of them.
     void skip(float disparity_px) { before_px_ = disparity_px; }
     [[nodiscard]] bool behind_nothing() const { return steps_ == 0; }
     [[nodiscard]] int surface() const { return before_surface_; }
@@ -62,7 +62,7 @@ class LineWalk {
     int before_surface_ = -1;
 };
 
-/// Pixels of a line that are looked at together: most show what the one before them shows.
+/// Pixels of a line that are tested together: most show the same surface as the previous pixel.
 constexpr int kTogether = 16;
 
 bool all_show(const std::int32_t* surface, int wanted) {
@@ -71,7 +71,7 @@ bool all_show(const std::int32_t* surface, int wanted) {
     return differs == 0;
 }
 
-/// One row, away from its jumps in both directions.
+/// Walks along one row, away from its jumps in both directions.
 void walk_row(const float* disparity_px,
               const std::int32_t* surface,
               int width,
@@ -140,7 +140,7 @@ class StripWalk {
     std::vector<LineWalk> lines_;
 };
 
-/// Bridges over a run of occluded pixels [first, end) of a row, from surface to surface.
+/// Bridges a run of occluded pixels [first, end) of a row, from surface to surface.
 void bridge_run(const float* disparity_px, int first, int end, int width, ShadowMap& out, int v) {
     if (first == 0 || end == width) return;
     const float from_px = disparity_px[first - 1];
@@ -151,13 +151,13 @@ void bridge_run(const float* disparity_px, int first, int end, int width, Shadow
     }
 }
 
-/// Marks what the right eye does not see: from right to left, `seen` is the leftmost place in the
-/// right image that is taken already.
+/// Marks pixels hidden from the right camera. Goes from right to left; `seen` is the leftmost
+/// column of the right image that is already occupied.
 void occlude_row(const Image<float>& disparity_px, int v, ShadowMap& out) {
     const float* d = disparity_px.row(v);
     const int width = disparity_px.width();
     float seen = std::numeric_limits<float>::infinity();
-    int run_end = -1;  // behind the last pixel of the run that is open
+    int run_end = -1;  // one past the last pixel of the open run
     for (int u = width - 1; u >= 0; --u) {
         const float right_u = static_cast<float>(u) - d[u];
         const bool hidden = right_u >= seen;
@@ -183,7 +183,7 @@ void find_shadows(const Image<float>& disparity_px,
                   ShadowMap& out) {
     const int width = disparity_px.width();
     const int height = disparity_px.height();
-    // Disparities and pixels of this image are `stride` real ones.
+    // Disparities and pixels of this image are `stride` real pixels.
     const auto jump_px = static_cast<float>(config.jump_px / stride + kSlope);
     const double widest_px = std::max(config.ramp_px, config.fattening_px);
     const int reach = std::min(saturated_integer<int>(widest_px / stride), 255);

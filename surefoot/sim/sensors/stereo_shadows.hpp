@@ -8,17 +8,17 @@
 
 namespace surefoot::sim {
 
-/// What a window that is slid over two images gets wrong in a pixel of the left one.
+/// Errors of window-based stereo matching at a pixel of the left image.
 enum class Shadow : std::uint8_t {
-    none,      ///< both eyes see the same place
-    fattened,  ///< so near to a nearer surface that the window takes its disparity
-    ramp,      ///< both see it, but a smooth matcher may put a bridge to the nearer surface here
-    occluded,  ///< the right eye does not see it: a bridge, or nothing
-    outside,   ///< the right image ends before it
+    none,      ///< both cameras see the same point
+    fattened,  ///< near a closer surface: the window takes that surface's disparity
+    ramp,      ///< both cameras see it, but a smooth matcher may bridge to the nearer surface
+    occluded,  ///< hidden from the right camera: a bridge, or unknown
+    outside,   ///< outside the right image
 };
 
-/// Shadows of disparity jumps. `bridge_px` is what a matcher that interpolates would say; NaN where
-/// it has nothing to hold on to, and without shadow.
+/// Shadows of disparity jumps. `bridge_px` is the disparity that an interpolating matcher would
+/// report; NaN without a shadow, and where the interpolation has no support.
 struct ShadowMap {
     Image<Shadow> shadow;
     Image<float> bridge_px;
@@ -27,13 +27,13 @@ struct ShadowMap {
 struct ShadowConfig {
     double jump_px = 0.5;       ///< smallest jump between neighbours on two surfaces
     double fattening_px = 2.0;  ///< width of the seam
-    double ramp_px = 8.0;       ///< width of what bridges may cover, counted from the jump
+    double ramp_px = 8.0;       ///< width that bridges may cover, from the jump
 };
 
-/// Shadows from exact disparities and the surface of each pixel (-1 = none). `stride`: neighbours
-/// in these images are so many real pixels apart, and disparities are in units of them too; the
-/// widths of `config` are real pixels. A pixel is occluded when another one to its right appears at
-/// its place or further left in the right image.
+/// Finds shadows from exact disparities and the surface of each pixel (-1 = none). Neighbouring
+/// pixels of these images are `stride` real pixels apart, and disparities have the same unit; the
+/// widths of `config` are in real pixels. A pixel is occluded if another pixel to its right appears
+/// at its position or further left in the right image.
 void find_shadows(const Image<float>& disparity_px,
                   const Image<std::int32_t>& surface,
                   const ShadowConfig& config,
