@@ -135,7 +135,7 @@ std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
 void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor", sensor, kSensorNames, "the sensor; analytic makes no images");
     visitor.enumeration(
-        "carrier", motion_model, kCarriedByNames, "motion model on the scene's path");
+        "motion_model", motion_model, kCarriedByNames, "motion model on the scene's path");
     visitor.boolean(
         "known_motion", known_motion, "known start pose and motion, except for analytic.drift");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");

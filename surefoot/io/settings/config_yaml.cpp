@@ -215,11 +215,9 @@ Status collect(const YamlNode& node,
                Notes* notes) {
     for (const YamlNode& child : node.items) {
         const std::string where = fmt::format("{}:{}", file, child.line);
-        const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
-        const bool group = std::any_of(keys.begin(), keys.end(), [&](const std::string& other) {
-            return other.starts_with(key + ".");
-        });
-        if (!known && !group) {
+        const std::string key = name_today(prefix + child.key, where, keys, notes);
+        const bool known = is_key(key, keys);
+        if (!known && !is_group(key, keys)) {
             // Report a complete key: any key inside a misspelled group serves, so take the first.
             const bool inner = child.is_mapping() && !child.items.empty();
             return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);

@@ -11,11 +11,15 @@
 
 /// Converts configuration objects to YAML and back. Works with every type that has `void
 /// describe(ConfigVisitor&)`. Strict: an unknown key, a wrong type or a value out of range is a
-/// usage error with file and line, and the object stays unchanged.
+/// usage error with file and line, and the object stays unchanged. Keys may have the names of the
+/// previous version (renamed_keys.hpp); `notes`, if given, receives a sentence with the new name.
 namespace surefoot::io {
 
 /// Describes a config object to a visitor.
 using DescribeConfig = std::function<void(ConfigVisitor&)>;
+
+/// Sentences for the user about a text that was read without an error, such as an old key.
+using Notes = std::vector<std::string>;
 
 /// One key with its current value, without nesting.
 struct ConfigEntry {
@@ -32,10 +36,12 @@ struct ConfigEntry {
 /// may be nested or written with dots ("elevation.length_m: 6").
 [[nodiscard]] Status parse_config(std::string_view yaml,
                                   const std::string& file,
-                                  const DescribeConfig& describe);
+                                  const DescribeConfig& describe,
+                                  Notes* notes = nullptr);
 /// Applies one override "key=value" with the same checks.
 [[nodiscard]] Status override_config(std::string_view key_and_value,
-                                     const DescribeConfig& describe);
+                                     const DescribeConfig& describe,
+                                     Notes* notes = nullptr);
 /// As above for a separate key and value; an error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,

@@ -67,7 +67,7 @@ HandMotion::HandMotion(const std::vector<Waypoint>& waypoints,
                         per_step[axis] ? omega_rad_s : 0.5 * omega_rad_s,
                         rng.uniform(0.0, 2.0 * std::numbers::pi)};
         // Two slow waves with unrelated periods, 4-9 and 10-25 s, do not repeat soon.
-        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRad;
+        const double drift = axis < 3 ? config.drift_m : config.drift_deg * kRadPerDeg;
         const double periods_s[2] = {rng.uniform(4.0, 9.0), rng.uniform(10.0, 25.0)};
         for (std::size_t i = 0; i < 2; ++i) {
             drifts_[axis][i] = {0.5 * drift * rng.uniform(0.9, 1.1),

@@ -25,7 +25,7 @@ constexpr int kSamples = kLead + kTrace + kLead;
 /// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
 /// that foot is 42 mm higher then. The heel rises during this number of samples, after the other
 /// foot has landed.
-constexpr double kHeelLift_rad = 10.0 * kRad;
+constexpr double kHeelLift_rad = 10.0 * kRadPerDeg;
 constexpr double kHeel = 6.0;
 /// Smallest height difference of a step on stairs.
 constexpr double kStair_m = 0.02;
