@@ -107,8 +107,8 @@ Image<std::uint32_t> observations_of(const grid::Layer& count) {
     Image<std::uint32_t> observations(count.width(), count.height(), 0);
     for (std::size_t i = 0; i < observations.size(); ++i) {
         const float value = count.data()[i];
-        // in range: above 0 and at most kMost
         if (value > 0.0F)
+            // in range: above 0 and at most kMost
             observations.data()[i] = static_cast<std::uint32_t>(std::min(value, kMost));
     }
     return observations;
