@@ -289,7 +289,7 @@ class Simulation(CliTest):
 
     def test_the_first_step_needs_an_operators_word(self):
         self.inhibited("UNKNOWN_CELLS", self.demo, (0, 0, 0), FORWARD)
-        verdict = self.verdict(self.demo, (0, 0, 0), FORWARD, "--vouch", "0.9")
+        verdict = self.verdict(self.demo, (0, 0, 0), FORWARD, "--attest", "0.9")
         self.assertEqual(verdict["verdict"], "OK", verdict)
         self.assertGreater(verdict["evidence"]["vouched_cells"], 0)
 

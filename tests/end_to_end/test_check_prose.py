@@ -38,7 +38,7 @@ class CheckProse(unittest.TestCase):
         self.assertEqual(found("The gate asks the\nthe map.\n"), [(1, "the the")])
 
     def test_code_measured_blocks_and_longer_words_are_not_found(self):
-        for text in ("Write `--vouch 1` and `told`.\n", "```\nstart anew\n```\n", "    start anew\n",
+        for text in ("Write `--attest 1` and `told`.\n", "```\nstart anew\n```\n", "    start anew\n",
                      "<!-- measured: begin -->\nstart anew\n<!-- measured: end -->\n", "[words](anew.md)\n",
                      "The scaffold of every renewed eyelet.\n", "Use `a` `b` and `a`.\n"):
             with self.subTest(text):

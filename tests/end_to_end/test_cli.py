@@ -128,7 +128,7 @@ class Verbs(CliTest):
              "significant median_lod95_m"),
             (["calibrate", "render", "--board", "chessboard:8x5:0.03", "--rig", "zed_vga", "--views", 12, "--out",
               self.dir / "chess"], "views folder"),
-            (["calibrate", "mono", self.dir / "chess", "--eye", "left", "--board", "chessboard:8x5:0.03", "--out",
+            (["calibrate", "mono", self.dir / "chess", "--camera", "left", "--board", "chessboard:8x5:0.03", "--out",
               self.dir / "camera"], "model width height views used rms_px sigma_px cameras rejected advice notes"),
             (["calibrate", "stereo", self.dir / "chess", "--board", "chessboard:8x5:0.03", "--out", self.dir / "rig"],
              "model views used rms_px sigma_px row_rms_px row_focal_px rectified_focal_px baseline_m rotation_rad depth_errors "
@@ -139,7 +139,7 @@ class Verbs(CliTest):
             (["bench", "gate"], "benchmarks"),
             (["record", recording, "--out", self.dir / "copy"], "frames complete error folder"),
             (["rex-link", "--script", recording / "joystick.csv"], "url connections questions motions inhibited events"),
-            (["serve", "sim:walk_floor", "--walk", 9, "--vouch", 1, "--port", 0, "--once", "--set",
+            (["serve", "sim:walk_floor", "--walk", 9, "--attest", 1, "--port", 0, "--once", "--set",
               "sim.sensor=analytic", "--audit", self.dir / "log"], "movements"),
             (["audit", "verify", self.dir / "log"], "files bytes runs verdicts gaps lost unfinished damage"),
             (["audit", "acts", self.dir / "log"], "files bytes runs verdicts gaps lost acts unfinished damage list"),

@@ -361,7 +361,7 @@ class LivePage(PageTest):
 class JoystickOnPages(PageTest):
     @classmethod
     def setUpClass(cls):
-        cls.serve("sim:walk_floor", "--joystick", "--vouch", "1", "--speed", "4", "--set", "sim.sensor=analytic")
+        cls.serve("sim:walk_floor", "--joystick", "--attest", "1", "--speed", "4", "--set", "sim.sensor=analytic")
 
     def hold(self, page, command, until, others=(), seconds=40.0):
         """Holds the joystick until `until(last steer message)`."""

@@ -29,7 +29,7 @@ class GateProcess(CliTest):
         for words, said in ((["--snapshots", "x", "--machine", "no_such_machine"], "no_such_machine"),
                             (["--snapshots", "x", "--bind", "0.0.0.0"], "--certificate"),
                             (["--snapshots", "x", "--assured"], "--audit"),
-                            (["--snapshots", "x", "--vouch", "1.1"], "vouch_radius_m"),
+                            (["--snapshots", "x", "--attest", "1.1"], "vouch_radius_m"),
                             (["--snapshots", "x", "--token-file", self.dir], "regular file"),
                             ([], "--snapshots")):
             process = subprocess.run([GATE, *words], capture_output=True, text=True, timeout=60)
@@ -100,7 +100,7 @@ class Walk(CliTest):
     def test_a_table_stops_the_walk_seen_and_remembered(self):
         """Fig. 9.16 of the reference thesis (Lange 2016): up to a table, back, half a turn, back to the table out of view."""
         log = self.dir / "audit"
-        told = self.json_of("serve", "sim:tests/end_to_end/table_ahead.yaml", "--seed", 1, "--vouch", 1, "--walk",
+        told = self.json_of("serve", "sim:tests/end_to_end/table_ahead.yaml", "--seed", 1, "--attest", 1, "--walk",
                             "9*6,17*2,25*12,17*5", "--port", 0, "--once", "--set", "sim.sensor=analytic",
                             "--audit", log, *FAIR_SHARE, cwd=ROOT)["movements"]
         self.assertEqual([m["command"] for m in told], [FORWARD] * 6 + [BACKWARD] * 2 + [TURN_LEFT] * 12 + [BACKWARD] * 5)
@@ -147,7 +147,7 @@ class Faults(CliTest):
         said = open(self.dir / "stderr", "a")
         self.addCleanup(said.close)
         self.service = subprocess.Popen(
-            [BINARY, "serve", "sim:walk_floor", "--vouch", "1", "--walk", "0", "--port", "0", "--set",
+            [BINARY, "serve", "sim:walk_floor", "--attest", "1", "--walk", "0", "--port", "0", "--set",
              "sim.sensor=analytic", "--no-page", "--channel", self.dir / "channel", *niceness],
             stdout=subprocess.PIPE, stderr=said, text=True)
         self.addCleanup(self.service.stdout.close)

@@ -18,7 +18,7 @@ def without_speed(answer):
 
 class Thesis(CliTest):
     def suite(self, *more, timeout=240):
-        return self.json_of("eval", "suite", "--thesis", *SMALL, *more, "--out", self.dir / "thesis", timeout=timeout)
+        return self.json_of("eval", "suite", "--lange2016", *SMALL, *more, "--out", self.dir / "thesis", timeout=timeout)
 
     def test_a_part_of_the_report(self):
         answer = self.suite("--threads", 2)
@@ -62,14 +62,14 @@ class Thesis(CliTest):
         self.assertEqual(without_speed(self.suite("--threads", 1)), before)
 
     def test_wrong_calls_are_told(self):
-        process = surefoot("eval", "suite", "--thesis", "--runs", "demo_stair_trolley", "--out", self.dir / "x")
+        process = surefoot("eval", "suite", "--lange2016", "--runs", "demo_stair_trolley", "--out", self.dir / "x")
         self.assertEqual(process.returncode, 2)
         self.assertIn("did you mean 'demo_stairs_trolley'?", process.stderr)
         process = surefoot("eval", "suite", "--runs", "flat_rex", "--out", self.dir / "x")
         self.assertEqual(process.returncode, 2)
         (self.dir / "thesis/scans/thesis_i_demo_stairs").mkdir(parents=True)
         (self.dir / "thesis/scans/thesis_i_demo_stairs/figures.csv").write_text("riser,1\n")
-        process = surefoot("eval", "suite", "--thesis", *SMALL, "--out", self.dir / "thesis")
+        process = surefoot("eval", "suite", "--lange2016", *SMALL, "--out", self.dir / "thesis")
         self.assertEqual(process.returncode, 1)
         self.assertIn("figures.csv: 'riser,1' is no line of such a file", process.stderr)
 
