@@ -289,6 +289,24 @@ void add_skip_broken(Verb verb, ReadingOptions& reading) {
               "the verb stops at the first such frame");
 }
 
+void add_source_options(Verb verb, SourceOptions& source) {
+    verb.option("--rig",
+                source.rig_file,
+                "calibration file, or name of a built-in rig; replaces that of the source")
+        .value("FILE|NAME");
+    verb.option("--imu",
+                source.imu_file,
+                "EuRoC IMU csv, or a FIFO of such rows; its time stamps use the clock of the "
+                "frames (CLOCK_MONOTONIC for a live camera)")
+        .value("FILE");
+    verb.option("--rate", source.rate_hz, "frame rate of a source without time stamps, in Hz")
+        .value("HZ")
+        .in(0.01, 1000.0);
+    verb.option("--max-frames", source.max_frames, "stop after this number of frames").positive();
+    add_reading(verb, source.reading);
+    add_skip_broken(verb, source.reading);
+}
+
 int run_command_line(int argc, char** argv) {
     cv::setNumThreads(1);  // only the executor creates threads
     CLI::App app{

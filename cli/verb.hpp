@@ -111,6 +111,8 @@ class VerbGroup {
 
 /// Adds the options that control how recordings of other programs are read.
 void add_reading(Verb verb, ReadingOptions& reading);
+/// Adds the options of a source: how to read it, its calibration, IMU, rate and length.
+void add_source_options(Verb verb, SourceOptions& source);
 /// Adds the option that skips frames that cannot be read.
 void add_skip_broken(Verb verb, ReadingOptions& reading);
 

@@ -12,15 +12,9 @@
 namespace surefoot::app {
 namespace {
 
-struct RecordOptions {
+struct RecordOptions : SourceOptions {
     CommonOptions common;
-    ReadingOptions reading;
-    std::string source;
     std::string out_dir;
-    std::string rig_file;
-    std::string imu_file;
-    double rate_hz = 0.0;
-    int max_frames = 0;
 };
 
 /// `surefoot record`: writes the frames of a source to a folder.
@@ -28,17 +22,7 @@ int record(const RecordOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
     const auto executor = make_executor(options.common);
-    auto source = open_source({options.source,
-                               options.rig_file,
-                               options.rate_hz,
-                               options.max_frames,
-                               options.common.seed,
-                               settings->sim,
-                               settings->live,
-                               options.imu_file,
-                               0,
-                               options.reading},
-                              *executor);
+    auto source = open_source(request_of(options, options.common, *settings), *executor);
     if (!source) return report(source.error());
     auto recorder = start_recording(options.out_dir, **source);
     if (!recorder) return report(recorder.error());
@@ -65,16 +49,7 @@ void add_record(VerbGroup verbs) {
                                  record);
     verb.option("source", o.source, "see 'surefoot run --help'").required().value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the recording").required().value("DIR");
-    add_reading(verb, o.reading);
-    add_skip_broken(verb, o.reading);
-    verb.option("--rig",
-                o.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the source")
-        .value("FILE");
-    verb.option("--imu", o.imu_file, "see 'surefoot run --help'").value("FILE");
-    verb.option("--rate", o.rate_hz, "frame rate of a source without time stamps, in Hz")
-        .in(0.01, 1000.0);
-    verb.option("--max-frames", o.max_frames, "stop after this number of frames").positive();
+    add_source_options(verb, o);
 }
 
 }  // namespace surefoot::app

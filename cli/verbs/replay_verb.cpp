@@ -23,11 +23,8 @@
 namespace surefoot::app {
 namespace {
 
-struct ReplayOptions {
+struct ReplayOptions : SourceOptions {
     CommonOptions common;
-    ReadingOptions reading;
-    std::string source;
-    std::string rig_file;
     std::string machine;
     double speed = 1.0;
 };
@@ -64,9 +61,9 @@ void print_frame(const FrameReport& seen, std::int64_t first_frame_ns) {
         to_string(seen.motion.health),
         seen.motion.inliers,
         seen.known_cells,
-        !seen.arrival.is_new_and_whole() ? "  no new image"
-        : seen.work == Work::odometry    ? "  late"
-                                         : "");
+        !seen.frame_status.is_new_and_whole() ? "  no new image"
+        : seen.work == Work::odometry         ? "  late"
+                                              : "");
 }
 
 /// Plays until the end of the source, the first error or an interrupt by the user.
@@ -107,17 +104,7 @@ int replay(const ReplayOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     const auto executor = make_executor(options.common);
-    auto source = open_source({options.source,
-                               options.rig_file,
-                               0.0,
-                               0,
-                               options.common.seed,
-                               settings->sim,
-                               settings->live,
-                               {},
-                               0,
-                               options.reading},
-                              *executor);
+    auto source = open_source(request_of(options, options.common, *settings), *executor);
     if (!source) return report(source.error());
     auto pipeline = pipeline::Pipeline::make(
         settings->pipeline, mounted_rig((*source)->rig(), *machine), *executor, steady_now_ns);
@@ -126,7 +113,7 @@ int replay(const ReplayOptions& options) {
     std::vector<FrameReport> seen;
     const Status played = play(options, **source, *pipeline, seen);
     const auto late = std::count_if(seen.begin(), seen.end(), [](const FrameReport& frame) {
-        return frame.work == Work::odometry && frame.arrival.is_new_and_whole();
+        return frame.work == Work::odometry && frame.frame_status.is_new_and_whole();
     });
     if (options.common.json) {
         print_answer(replay_json(seen, options.speed, late, (*source)->info()));

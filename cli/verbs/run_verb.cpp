@@ -28,17 +28,7 @@ int run(const RunOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     const auto executor = make_executor(options.common);
-    auto source = open_source({options.source,
-                               options.rig_file,
-                               options.rate_hz,
-                               options.max_frames,
-                               options.common.seed,
-                               settings->sim,
-                               settings->live,
-                               options.imu_file,
-                               0,
-                               options.reading},
-                              *executor);
+    auto source = open_source(request_of(options, options.common, *settings), *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
     fit_settings(rig, *machine, *settings);
@@ -115,25 +105,11 @@ void add_run(VerbGroup verbs) {
         .required()
         .value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the results").required().value("DIR");
-    verb.option("--rig",
-                o.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the recording")
-        .value("FILE");
-    verb.option("--imu",
-                o.imu_file,
-                "EuRoC IMU csv, or a FIFO of such rows; its time stamps use the clock of the "
-                "frames (CLOCK_MONOTONIC for a live camera)")
-        .value("FILE");
     verb.option("--machine",
                 o.machine,
                 "machine file, or name of a built-in machine; sets the camera mount")
         .value("FILE|NAME");
-    verb.option("--rate", o.rate_hz, "frame rate of a source without time stamps, in Hz")
-        .value("HZ")
-        .in(0.01, 1000.0);
-    verb.option("--max-frames", o.max_frames, "stop after this number of frames").positive();
-    add_reading(verb, o.reading);
-    add_skip_broken(verb, o.reading);
+    add_source_options(verb, o);
     verb.option(
             "--depth-every",
             o.depth_every,

@@ -35,4 +35,14 @@ struct ReadingOptions {
     bool skip_broken = false;                 ///< skip and count frames that cannot be read
 };
 
+/// A source of frames and how to open it.
+struct SourceOptions {
+    ReadingOptions reading;
+    std::string source;    ///< path, sim:SCENE or v4l2:DEVICE
+    std::string rig_file;  ///< calibration that replaces that of the source
+    std::string imu_file;  ///< IMU samples of another device
+    double rate_hz = 0.0;  ///< of a source without time stamps; 0 = its own rate
+    int max_frames = 0;    ///< 0 = all
+};
+
 }  // namespace surefoot::app

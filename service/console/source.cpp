@@ -102,6 +102,21 @@ Result<camera::StereoRig> read_noted_rig(const std::string& path) {
     return std::move(file->rig);
 }
 
+SourceRequest request_of(const SourceOptions& options,
+                         const CommonOptions& common,
+                         const Settings& settings) {
+    return {options.source,
+            options.rig_file,
+            options.rate_hz,
+            options.max_frames,
+            common.seed,
+            settings.sim,
+            settings.live,
+            options.imu_file,
+            0,
+            options.reading};
+}
+
 void apply(const ReadingOptions& reading, io::OpenOptions& options) {
     options.pair_tolerance_s = reading.pair_tolerance_s;
     options.depth_codes_per_m = reading.depth_codes_per_m;

@@ -13,6 +13,7 @@
 #include "surefoot/io/live_camera/live_camera.hpp"
 #include "surefoot/io/recordings/recording.hpp"
 #include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
@@ -30,6 +31,11 @@ struct SourceRequest {
     int first_frame = 0;         ///< first frame of a recording; earlier frames are skipped
     ReadingOptions reading = {};
 };
+
+/// The request for the source that the options name.
+[[nodiscard]] SourceRequest request_of(const SourceOptions& options,
+                                       const CommonOptions& common,
+                                       const Settings& settings);
 
 /// Copies the reading options of the command line to the options of the readers.
 void apply(const ReadingOptions& reading, io::OpenOptions& options);

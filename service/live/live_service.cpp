@@ -84,16 +84,8 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
                                                   const Settings& settings,
                                                   Executor& executor,
                                                   int first_frame = 0) {
-    SourceRequest request{options.source,
-                          options.rig_file,
-                          options.rate_hz,
-                          options.max_frames,
-                          options.common.seed,
-                          settings.sim,
-                          settings.live,
-                          {},
-                          first_frame,
-                          options.reading};
+    SourceRequest request = request_of(options, options.common, settings);
+    request.first_frame = first_frame;
     request.sim.commanded = options.joystick || !options.walk.empty();
     return open_source(request, executor);
 }

@@ -10,16 +10,11 @@
 namespace surefoot::app {
 
 /// Options of `surefoot serve`.
-struct ServeOptions {
+struct ServeOptions : SourceOptions {
     CommonOptions common;
-    ReadingOptions reading;
-    std::string source;
-    std::string rig_file;
     std::string machine = "rex";
     /// File or built-in name; empty = the built-in model with the name of the machine.
     std::string model;
-    double rate_hz = 0.0;
-    int max_frames = 0;
     /// Playback speed relative to real time; 0 = unpaced. Empty = 1 for recordings and with
     /// `joystick`, 0 for simulated scenes.
     std::optional<double> speed;

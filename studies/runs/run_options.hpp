@@ -8,16 +8,10 @@
 namespace surefoot::app {
 
 /// Options of `surefoot run`.
-struct RunOptions {
+struct RunOptions : SourceOptions {
     CommonOptions common;
-    ReadingOptions reading;
-    std::string source;
     std::string out_dir;
-    std::string rig_file;
-    std::string imu_file;
     std::string machine;
-    double rate_hz = 0.0;
-    int max_frames = 0;
     int depth_every = 1;
     bool all_layers = false;
     std::string save_map;  ///< file for the whole map; empty = not saved

@@ -80,6 +80,22 @@ inline Machine rex() {
     return m;
 }
 
+/// The REX with legs instead of one box, and movements for stairs ahead and backward.
+inline Machine stair_rex() {
+    Machine m = rex();
+    m.limits.step[1] = {true, 1800, 1800};
+    m.movements[kForward].movement_class = m.movements[kBackward].movement_class =
+        MovementClass::stair;
+    m.movements[kForward].forward_tenth_mm = 4200;
+    m.movements[kBackward].forward_tenth_mm = -4500;
+    m.body.parts[0] = {{700, 2300, 3000, 2800}, 1100, 6100};
+    m.body.parts[1] = {{700, -2350, 3000, 2700}, 1100, 6100};
+    m.body.parts[2] = {{-100, 0, 7200, 9400}, 6200, 20500};
+    m.body.count = 3;
+    m.body.sway_tenth_mm = 200;
+    return m;
+}
+
 /// Ground of 240 x 240 cells of 25 mm. The machine stands at the origin of odom and faces +x. The
 /// ground is flat, known and fresh unless a test changes it.
 struct Terrain {

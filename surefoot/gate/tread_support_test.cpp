@@ -23,22 +23,11 @@ constexpr double kUp_m = 0.42;    ///< of the step up
 constexpr double kDown_m = 0.45;  ///< of the step back and down
 constexpr std::uint8_t kDownAhead = 1;
 
-/// The REX with legs instead of one box, and two movements for stairs.
-Machine stair_rex() {
-    Machine m = rex();
-    m.limits.step[1] = {true, 1800, 1800};
-    const auto set = [&m](std::uint8_t code, int forward) {
-        m.movements[code].movement_class = MovementClass::stair;
-        m.movements[code].forward_tenth_mm = forward;
-    };
-    set(kForward, 4200);
-    set(kDownAhead, 4300);
-    set(kBackward, -4500);
-    m.body.parts[0] = {{700, 2300, 3000, 2800}, 1100, 6100};
-    m.body.parts[1] = {{700, -2350, 3000, 2700}, 1100, 6100};
-    m.body.parts[2] = {{-100, 0, 7200, 9400}, 6200, 20500};
-    m.body.count = 3;
-    m.body.sway_tenth_mm = 200;
+/// The REX on stairs with a third movement for the way down ahead.
+Machine climbing_rex() {
+    Machine m = stair_rex();
+    m.movements[kDownAhead].movement_class = MovementClass::stair;
+    m.movements[kDownAhead].forward_tenth_mm = 4300;
     return m;
 }
 
@@ -77,7 +66,7 @@ Terrain terrain_of(const Flight& flight, double drift_m = 0.001) {
 
 Verdict ask_stair(const grid::MapSnapshot& map,
                   std::uint8_t command,
-                  const Machine& machine = stair_rex()) {
+                  const Machine& machine = climbing_rex()) {
     return decide(machine, query_at_body(command, map), map, kReady, kNowNs);
 }
 Verdict ask_stair(Terrain& terrain, std::uint8_t command) {
@@ -109,7 +98,7 @@ TEST(GateTreads, flat_ground_is_a_tread_too) {
 }
 
 TEST(GateTreads, class_walk_takes_no_stairs) {
-    Machine machine = stair_rex();
+    Machine machine = climbing_rex();
     for (const std::uint8_t command : {kForward, kBackward}) {
         machine.movements[command].movement_class = MovementClass::walk;
         Terrain t = terrain_of(command == kForward ? kUpFlight : kDownFlight);
@@ -133,7 +122,7 @@ TEST(GateTreads, an_edge_a_cell_nearer_is_too_near_to_be_sure_and_two_cells_are_
 
 TEST(GateTreads, what_is_over_counts_in_all_its_limits) {
     const auto with = [](const std::function<void(Machine&)>& change) {
-        Machine machine = stair_rex();
+        Machine machine = climbing_rex();
         change(machine);
         Terrain t = terrain_of(kUpFlight);
         const auto map = t.snapshot();
@@ -160,12 +149,12 @@ TEST(GateTreads, toes_may_hang_over_as_heels_do) {
     // Down and ahead: 20 mm of the toes seem to overhang, 49 mm are allowed.
     Terrain t = terrain_of({0.250, 0.400, -kRise_m});
     const auto map = t.snapshot();
-    Machine machine = stair_rex();
+    Machine machine = climbing_rex();
     EXPECT_EQ(ask_stair(*map, kDownAhead, machine).decision, Decision::ok)
         << words(ask_stair(*map, kDownAhead, machine));
     machine.limits.tread_overhang_tenth_mm = 470;
     expect_refused(ask_stair(*map, kDownAhead, machine), Reason::edge_margin);
-    machine = stair_rex();
+    machine = climbing_rex();
     machine.ankle_from_heel_tenth_mm = 3000;  // its ground ends 41 mm from the toes
     expect_refused(ask_stair(*map, kDownAhead, machine), Reason::edge_margin);
 }
@@ -198,7 +187,7 @@ TEST(GateTreads, every_cell_around_the_foot_is_needed) {
 }
 
 TEST(GateTreads, the_band_asks_for_itself_what_the_body_asks_elsewhere) {
-    Machine slim = stair_rex();
+    Machine slim = climbing_rex();
     slim.body.parts[2] = {{0, 0, 1000, 1000}, 6200, 20500};
     Terrain t = terrain_of(kUpFlight);
     const auto map = t.snapshot();
@@ -313,7 +302,7 @@ TEST(GateTreads, the_body_rises_with_the_step) {
 }
 
 TEST(GateTreads, a_body_that_goes_down_keeps_clear_of_what_it_stood_on) {
-    Machine machine = stair_rex();
+    Machine machine = climbing_rex();
     Terrain t = terrain_of(kDownFlight);
     const auto map = t.snapshot();
     const Query query = query_at_body(kBackward, *map);

@@ -85,22 +85,6 @@ struct Case {
     std::int64_t used_ns = kNowNs;
 };
 
-/// The REX with legs instead of one box, and movements for stairs.
-Machine stair_rex() {
-    Machine m = gate::testing::rex();
-    m.limits.step[1] = {true, 1800, 1800};
-    m.movements[kForward].movement_class = m.movements[kBackward].movement_class =
-        MovementClass::stair;
-    m.movements[kForward].forward_tenth_mm = 4200;
-    m.movements[kBackward].forward_tenth_mm = -4500;
-    m.body.parts[0] = {{700, 2300, 3000, 2800}, 1100, 6100};
-    m.body.parts[1] = {{700, -2350, 3000, 2700}, 1100, 6100};
-    m.body.parts[2] = {{-100, 0, 7200, 9400}, 6200, 20500};
-    m.body.count = 3;
-    m.body.sway_tenth_mm = 200;
-    return m;
-}
-
 /// The fault is about as large as a limit, so that the limit's value decides.
 Case random_case(std::uint64_t seed) {
     Rng rng(seed);
@@ -176,7 +160,7 @@ Case random_case(std::uint64_t seed) {
         }
         case 12: evidence = uniform(1.0, 255.0); break;
         default: {  // stairs, up or down
-            one.machine = stair_rex();
+            one.machine = gate::testing::stair_rex();
             const bool up = rng.uniform() < 0.5;
             command = up ? kForward : kBackward;
             const double way = up ? 1.0 : -1.0;
