@@ -7,6 +7,7 @@
 
 #include "service/page/feature_lists.hpp"
 #include "service/page/page_decoder_testing.hpp"
+#include "service/page/page_map.hpp"
 #include "service/page/page_messages.hpp"
 #include "surefoot/core/unknown.hpp"
 
