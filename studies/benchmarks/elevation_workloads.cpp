@@ -171,7 +171,7 @@ Workload checking_sight(std::string name, int side, Executor& executor) {
         const auto state =
             std::make_shared<State>(State{.config = window_of(side), .geometry = centred(side)});
         elevation::ViewpointHistory views(state->config.viewpoint);
-        const elevation::Look look{views, views.look_from(body_at(0.0)), kFrame_ns};
+        const elevation::FrameObservation look{views, views.look_from(body_at(0.0)), kFrame_ns};
         FusionCounts counts;
         std::size_t index = 0;
         for_each_cell(state->geometry, [&](grid::Cell cell) {
