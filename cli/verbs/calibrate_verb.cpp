@@ -27,7 +27,7 @@ struct CalibrateOptions {
     std::string source;
     std::string board;  ///< text for calibration::parse_board()
     std::string model = "pinhole5";
-    std::string this_camera;  ///< left | right: which camera of a stereo source
+    std::string camera;  ///< left | right: which camera of a stereo source
     std::string out_dir;
 };
 
