@@ -105,7 +105,7 @@ struct Evidence {
 Evidence::Evidence(const TruePair& pair) {
     constexpr double kJump_px = 1.0;
     constexpr int kNeighbourhoodRadius_px = 4;
-    const Image<float> found_px = refined_px({}, pair);
+    const Image<float> found_px = selected_px({}, pair);
     Serial serial;
     Image<std::uint8_t> jumps;
     stereo::mark_jumps(serial, found_px, kJump_px, jumps);

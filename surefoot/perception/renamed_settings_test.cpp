@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "surefoot/io/file.hpp"
+#include "surefoot/core/fnv1a.hpp"
 #include "surefoot/io/settings/config_yaml.hpp"
 #include "surefoot/perception/settings.hpp"
 
@@ -84,6 +84,17 @@ TEST(RenamedSettings, BothNamesOfOneSettingAreAnError) {
 TEST(RenamedSettings, UnknownKeysStayErrors) {
     EXPECT_FALSE(load_settings(overridden({"trim.nothing=1"})).ok());
     EXPECT_FALSE(load_settings(overridden({"trimmed.enabled=false"})).ok());
+}
+
+TEST(SettingsHash, CoversKeysAndValuesButNoDescription) {
+    const Settings usual;
+    std::string text;
+    for (const io::ConfigEntry& entry : io::list_config_of(usual))
+        text += entry.key + "=" + entry.value + "\n";
+    EXPECT_EQ(hash_of(usual), fnv1a(text));
+    Settings other = usual;
+    other.pipeline.elevation.resolution_m *= 2.0;
+    EXPECT_NE(hash_of(other), hash_of(usual));
 }
 
 }  // namespace

@@ -72,7 +72,10 @@ Status apply_overrides(const SettingsRequest& request,
 }
 
 std::uint64_t hash_of(const Settings& settings) {
-    return fnv1a(io::format_config_of(settings));
+    std::string text;
+    for (const io::ConfigEntry& entry : io::list_config_of(settings))
+        text += entry.key + "=" + entry.value + "\n";
+    return fnv1a(text);
 }
 
 std::unique_ptr<Executor> make_executor(int threads) {

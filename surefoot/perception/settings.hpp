@@ -45,7 +45,7 @@ struct SettingsRequest {
 [[nodiscard]] Status apply_overrides(const SettingsRequest& request,
                                      const io::DescribeConfig& describe,
                                      io::Notes* notes = nullptr);
-/// Hash of every setting. The map snapshot and each verdict carry it.
+/// Hash of the keys and values of all settings. The map snapshot and each verdict carry it.
 [[nodiscard]] std::uint64_t hash_of(const Settings& settings);
 
 /// Returns an executor with this many threads; 0 = one per core of the computer.
