@@ -24,8 +24,8 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
                    min_overhead_m,
                    0.05,
                    100.0,
-                   "smallest height above a cell at which a surface counts as overhead; it then "
-                   "limits the clearance of the cell");
+                   "smallest height above a cell at which a surface counts as overhead; an "
+                   "overhead surface limits the clearance of the cell");
     fusion.describe(visitor);
     visitor.group("reduction", reduction);
     visitor.group("sensor", sensor);

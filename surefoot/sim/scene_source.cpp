@@ -153,10 +153,11 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
         "true: frames carry the machine's motion estimate, with the errors of machine_drift");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "number of frames per second");
     const ImuKind imu_before = imu;
-    visitor.enumeration("imu",
-                        imu,
-                        kImuNames,
-                        "model of the IMU; used if the rig has an IMU; imu_noise sets its errors");
+    visitor.enumeration(
+        "imu",
+        imu,
+        kImuNames,
+        "model of the IMU; used if the rig has an IMU; imu_noise sets the errors of the IMU");
     if (imu != imu_before) imu_noise = imu_noise_of(imu);
     visitor.enumeration("profile",
                         profile,
@@ -169,7 +170,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
         "depth_camera",
         depth_camera,
         kDepthCameraNames,
-        "model of the depth camera; it sets the lens; depth_errors sets the errors");
+        "model of the depth camera, which defines its lens; depth_errors sets its errors");
     if (depth_camera != depth_camera_before)
         depth_errors = depth_camera_preset(depth_camera).config;
     visitor.group("imaging", camera.imaging);

@@ -15,7 +15,8 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    mirror_correlation,
                    0.1,
                    1.0,
-                   "smallest correlation between the floor and its mirror image at a mirror");
+                   "smallest correlation between the floor and its image in a mirror; a line with "
+                   "less is not a mirror");
     visitor.number(
         "mirror_score", mirror_score, 4.0, 50.0, "smallest score at which a mirror is suspected");
     visitor.number(

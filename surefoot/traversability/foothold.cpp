@@ -385,7 +385,7 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    corner_m,
                    0.0,
                    1.0,
-                   "largest distance before its edge in the map at which a drop may begin");
+                   "largest distance by which a drop may begin before its edge in the map");
     visitor.number("drop_m",
                    drop_m,
                    0.001,

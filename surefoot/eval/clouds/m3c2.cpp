@@ -101,11 +101,12 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
                    1e-4,
                    100.0,
                    "diameter of the cylinder whose points are averaged");
-    visitor.number("half_length_m",
-                   half_length_m,
-                   1e-4,
-                   100.0,
-                   "half the length of the cylinder; it is the largest distance that can be found");
+    visitor.number(
+        "half_length_m",
+        half_length_m,
+        1e-4,
+        100.0,
+        "half the length of the cylinder, which is the largest distance that can be found");
     visitor.number(
         "registration_error_m",
         registration_error_m,

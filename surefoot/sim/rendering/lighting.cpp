@@ -8,8 +8,16 @@
 namespace surefoot::sim {
 
 void Lighting::describe(ConfigVisitor& visitor) {
-    visitor.number("ambient", ambient, 0.0, 10.0, "brightness of the uniform light from all sides");
-    visitor.number("lamp", lamp, 0.0, 50.0, "brightness of the lamp or the sun");
+    visitor.number("ambient",
+                   ambient,
+                   0.0,
+                   10.0,
+                   "brightness of the uniform light from all sides; a fully lit white surface = 1");
+    visitor.number("lamp",
+                   lamp,
+                   0.0,
+                   50.0,
+                   "brightness of the lamp or the sun; a fully lit white surface = 1");
     visitor.number("lamp_azimuth_deg",
                    lamp_azimuth_deg,
                    -360.0,

@@ -122,7 +122,7 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    fixed_size_m,
                    0.001,
                    10.0,
-                   "scale on the surface of the noise attached to it");
+                   "size of the pattern on a surface of the noise that is attached to the surface");
     visitor.number(
         "locking_px", locking_px, 0.0, 0.5, "amplitude of the pull towards whole disparities");
     visitor.number(

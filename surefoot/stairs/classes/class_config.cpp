@@ -10,7 +10,7 @@ void ClassConfig::describe(ConfigVisitor& visitor) {
                    headroom_m,
                    0.0,
                    10.0,
-                   "smallest free height above ground; ground with less is a tunnel");
+                   "smallest free height above ground; ground with less free height is a tunnel");
     visitor.number(
         "max_step_m",
         max_step_m,

@@ -539,11 +539,12 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    0.05,
                    10.0,
                    "largest depth of a door; deeper passages are corridors");
-    visitor.number("rise_m",
-                   rise_m,
-                   0.01,
-                   2.0,
-                   "height above the ground beside it from which an object is a wall");
+    visitor.number(
+        "rise_m",
+        rise_m,
+        0.01,
+        2.0,
+        "smallest height of a wall above the ground beside the wall; lower objects are not walls");
     visitor.number("wall_height_m",
                    wall_height_m,
                    0.01,

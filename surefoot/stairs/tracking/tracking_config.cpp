@@ -23,14 +23,14 @@ void TrackingConfig::describe(ConfigVisitor& visitor) {
                     missed_observations,
                     1,
                     1000,
-                    "number of consecutive observations in which a feature in view is not found "
-                    "that end the feature (not a drop)");
+                    "number of consecutive observations that see the location of a feature but not "
+                    "the feature, after which the feature ends (drops excepted)");
     visitor.integer("first_observations",
                     first_observations,
                     1,
                     1000,
-                    "number of consecutive observations in which a feature in view is not found "
-                    "that end it if it was found only once");
+                    "number of consecutive observations that see the location of a feature but not "
+                    "the feature, after which a feature ends that was found only once");
     visitor.number(
         "steps_observations",
         steps_observations,
