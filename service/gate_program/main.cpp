@@ -263,52 +263,61 @@ int main_with_arguments(int argc, char** argv) {
         "inhibit.\n"
         "Usually started by `surefoot serve`.");
     app.footer("Example:\n  surefoot-gate --snapshots /dev/shm/surefoot.channel --audit out/audit");
-    app.add_option("--snapshots", options.snapshots, "file in shared memory with the maps")
+    app.add_option("--snapshots", options.snapshots, "file in shared memory that holds the maps")
         ->required()
         ->type_name("FILE");
-    app.add_option("--machine", options.machine, "machine file, or a built-in name")
+    app.add_option("--machine", options.machine, "machine file, or the name of a built-in machine")
         ->capture_default_str();
-    app.add_option("--port", options.server.port, "0 = any free one")->capture_default_str();
+    app.add_option(
+           "--port", options.server.port, "TCP port on which the gate listens; 0 = any free port")
+        ->capture_default_str();
     app.add_option("--bind",
                    options.server.bind_address,
-                   "address; beyond loopback everybody needs a token, and the gate needs "
-                   "--certificate and --key")
+                   "address on which the gate listens; on an address other than loopback every "
+                   "client needs a token, and the gate needs --certificate and --key")
         ->capture_default_str();
     app.add_option("--token-file",
                    options.token_file,
-                   "tokens of observer, rider and operator; made at the first start; unless given "
-                   "~/.local/state/surefoot/tokens")
+                   "file with the tokens of observer, rider and operator; the gate makes it at the "
+                   "first start (default: ~/.local/state/surefoot/tokens)")
         ->type_name("FILE");
     app.add_option("--guests",
                    options.guests,
-                   "what a client without a token is: none, observer, rider; unless given rider on "
-                   "loopback, none beyond")
+                   "role of a client without a token: none, observer or rider (default: rider on "
+                   "loopback, none on other addresses)")
         ->check(CLI::IsMember({"none", "observer", "rider"}))
         ->type_name("ROLE");
-    app.add_option(
-           "--certificate", options.server.tls.certificate_file, "for TLS: certificate chain (PEM)")
+    app.add_option("--certificate",
+                   options.server.tls.certificate_file,
+                   "file with the certificate chain for TLS (PEM)")
         ->type_name("FILE");
-    app.add_option("--key", options.server.tls.key_file, "for TLS: private key (PEM), rights 0600")
+    app.add_option("--key",
+                   options.server.tls.key_file,
+                   "file with the private key for TLS (PEM), permissions 0600")
         ->type_name("FILE");
     app.add_option("--insecure",
                    options.server.insecure,
-                   "beyond loopback without TLS: a sentence, which the error says")
+                   "sentence that confirms an address other than loopback without TLS; the error "
+                   "message without this option gives the sentence")
         ->type_name("TEXT");
     app.add_option(
            "--origin",
            options.server.origins,
-           "web pages of this origin may connect, as http://192.0.2.7:8000, null or file://")
+           "origin whose web pages may connect, for example http://192.0.2.7:8000, null or file://")
         ->type_name("URL");
     app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
-    app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");
-    app.add_option(
-           "--audit-mb", options.audit_mb, "size limit of that folder; the oldest logs are deleted")
+    app.add_flag(
+        "--assured", options.assured, "never answer OK while the audit log cannot be written");
+    app.add_option("--audit-mb",
+                   options.audit_mb,
+                   "largest size of the folder of the audit log; the gate deletes the oldest logs")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str()
         ->type_name("MB");
     app.add_option("--max-rate",
                    options.server.session.messages.per_s,
-                   "messages of a client in a second, beyond it the answer is OVERLOAD")
+                   "largest number of messages from one client in a second; the gate answers "
+                   "further messages with OVERLOAD")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
         ->type_name("HZ");
@@ -323,7 +332,7 @@ int main_with_arguments(int argc, char** argv) {
     app.add_option("--channel-key",
                    options.key_file,
                    "file with the key of the maps, as given to `surefoot serve`; 32 hexadecimal "
-                   "digits, rights 600")
+                   "digits, permissions 0600")
         ->type_name("FILE");
     app.add_option("--parent-fd", options.parent_fd)->group("");  // only `surefoot serve` passes it
     try {

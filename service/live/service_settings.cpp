@@ -73,7 +73,7 @@ void ServiceConfig::describe(ConfigVisitor& visitor) {
                    layer_hz,
                    kLeast_hz,
                    page::PageWish::kMaxMap_hz,
-                   "largest number of layers per second for the engineer's view");
+                   "largest number of layers per second for one engineer's view");
     visitor.end_group();
     visitor.begin_group("service");
     visitor.number(
@@ -86,8 +86,8 @@ void ServiceConfig::describe(ConfigVisitor& visitor) {
                     niceness,
                     0,
                     19,
-                    "niceness of perception, so that the gate answers in time; never below the "
-                    "value at the start");
+                    "niceness of perception: a larger value leaves more processor time to the "
+                    "gate; never below the value at the start");
     visitor.end_group();
 }
 

@@ -151,7 +151,8 @@ void RectificationConfig::describe(ConfigVisitor& visitor) {
                    rectified_focal_px,
                    0.0,
                    1e5,
-                   "focal length of rectified images; 0 = the smallest that leaves no pixel black");
+                   "focal length of rectified images; 0 = the smallest focal length that leaves no "
+                   "pixel black");
     visitor.integer("rectified_width_px",
                     rectified_width_px,
                     0,
@@ -166,8 +167,8 @@ void RectificationConfig::describe(ConfigVisitor& visitor) {
                    max_view_deg,
                    10.0,
                    kWidestPlane_deg,
-                   "widest view if rectified_focal_px is 0; a wider view reduces the resolution "
-                   "in the middle of the image");
+                   "largest angle of view of rectified images if rectified_focal_px is 0; a wider "
+                   "view reduces the resolution in the middle of the image");
 }
 
 std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_height) const {

@@ -11,19 +11,21 @@ constexpr double kMaxSideCells = 4096.0;  ///< 16 million cells, about 0.7 GB of
 }  // namespace
 
 void ElevationConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("resolution_m", resolution_m, 0.001, 10.0, "edge of a cell");
-    visitor.number("length_m", length_m, 0.1, 1000.0, "edge of the square map around the machine");
+    visitor.number("resolution_m", resolution_m, 0.001, 10.0, "side length of a map cell");
+    visitor.number(
+        "length_m", length_m, 0.1, 1000.0, "side length of the square map around the machine");
     visitor.number("camera_tilt_sigma_rad",
                    camera_tilt_sigma_rad,
                    0.0,
                    1.0,
-                   "error of the camera's roll and pitch in one frame: mounting, vibration");
-    visitor.number(
-        "min_overhead_m",
-        min_overhead_m,
-        0.05,
-        100.0,
-        "a surface this far above a cell's height hangs over it and bounds its clearance");
+                   "one sigma of the error of the camera's roll and pitch in one frame, from "
+                   "mounting and vibration");
+    visitor.number("min_overhead_m",
+                   min_overhead_m,
+                   0.05,
+                   100.0,
+                   "smallest height above a cell at which a surface counts as overhead; an "
+                   "overhead surface limits the clearance of the cell");
     fusion.describe(visitor);
     visitor.group("reduction", reduction);
     visitor.group("sensor", sensor);

@@ -4,73 +4,100 @@
 namespace surefoot::odometry {
 
 void OdometryConfig::describe(ConfigVisitor& visitor) {
-    visitor.integer("max_tracks", max_tracks, 40, 2000, "landmarks tracked at the same time");
-    visitor.integer("grid_columns", grid_columns, 2, 100, "cells over which corners are spread");
-    visitor.integer("grid_rows", grid_rows, 2, 100, "cells over which corners are spread");
+    visitor.integer(
+        "max_tracks", max_tracks, 40, 2000, "largest number of landmarks tracked at the same time");
+    visitor.integer("grid_columns",
+                    grid_columns,
+                    2,
+                    100,
+                    "number of columns of the grid over which corners are spread");
+    visitor.integer(
+        "grid_rows", grid_rows, 2, 100, "number of rows of the grid over which corners are spread");
     visitor.number("min_depth_m",
                    min_depth_m,
                    0.05,
                    10.0,
-                   "nearest point that is matched between the cameras");
-    visitor.number(
-        "sigma_px",
-        sigma_px,
-        0.05,
-        3.0,
-        "noise of an aligned point per camera and axis; a larger measured noise replaces it");
-    visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
+                   "smallest depth of a point that is matched between the cameras");
+    visitor.number("sigma_px",
+                   sigma_px,
+                   0.05,
+                   3.0,
+                   "one sigma of the position of an aligned point per camera and axis; a larger "
+                   "measured noise replaces it");
+    visitor.integer("window_keyframes",
+                    window_keyframes,
+                    3,
+                    30,
+                    "number of keyframes that are adjusted together");
     visitor.number("still_parallax_px",
                    still_parallax_px,
                    0.0,
                    3.0,
-                   "below this median parallax, in addition to its noise, the camera may stand "
+                   "median parallax, in addition to its noise, below which the camera may stand "
                    "still; 0 = never");
     visitor.number("bridge_s",
                    bridge_s,
                    0.0,
                    5.0,
-                   "how long landmarks are kept while lost, before new ones are seeded");
+                   "time for which landmarks are kept while the odometry is lost; then new "
+                   "landmarks are seeded");
+    visitor.number("max_gap_s",
+                   max_gap_s,
+                   0.05,
+                   60.0,
+                   "longest time between two frames; a longer time counts as a time gap");
+    visitor.integer(
+        "ok_inliers",
+        ok_inliers,
+        10,
+        1000,
+        "smallest number of agreeing points with health OK; fewer points degrade the health");
+    visitor.integer("min_inliers",
+                    min_inliers,
+                    6,
+                    1000,
+                    "smallest number of agreeing points; with fewer points the odometry is lost");
     visitor.number(
-        "max_gap_s", max_gap_s, 0.05, 60.0, "a longer pause between frames is a time gap");
-    visitor.integer("ok_inliers", ok_inliers, 10, 1000, "fewer agreeing points degrade the health");
-    visitor.integer("min_inliers", min_inliers, 6, 1000, "fewer agreeing points mean lost");
-    visitor.number("ok_residual_px",
-                   ok_residual_px,
-                   0.1,
-                   10.0,
-                   "larger rms reprojection error degrades the health");
+        "ok_residual_px",
+        ok_residual_px,
+        0.1,
+        10.0,
+        "largest rms reprojection error with health OK; a larger error degrades the health");
     visitor.number("calibration_share",
                    calibration_share,
                    0.0,
                    0.1,
-                   "share of a motion that the calibration may get wrong (one sigma)");
+                   "relative error of a motion that the calibration may cause (one sigma)");
     visitor.number("landmark_s",
                    landmark_s,
                    0.01,
                    60.0,
-                   "after this time the errors of two poses count as independent");
+                   "time after which the errors of two poses count as independent");
     visitor.number("machine_speed_m_s",
                    machine_speed_m_s,
                    0.0,
                    100.0,
-                   "largest speed of base_link; 0 = unknown; the machine file sets it");
+                   "largest speed of base_link; 0 = unknown; the machine file sets this value");
     visitor.number("machine_turn_deg_s",
                    machine_turn_deg_s,
                    0.0,
                    3600.0,
-                   "largest turn rate of base_link; 0 = unknown; the machine file sets it");
-    visitor.number(
-        "lost_speed_m_s", lost_speed_m_s, 0.01, 100.0, "one sigma of the unseen speed while lost");
+                   "largest turn rate of base_link; 0 = unknown; the machine file sets this value");
+    visitor.number("lost_speed_m_s",
+                   lost_speed_m_s,
+                   0.01,
+                   100.0,
+                   "one sigma of the unmeasured speed while the odometry is lost");
     visitor.number("lost_turn_rad_s",
                    lost_turn_rad_s,
                    0.01,
                    100.0,
-                   "one sigma of the unseen turn rate while lost");
+                   "one sigma of the unmeasured turn rate while the odometry is lost");
     visitor.group("imu", imu);
 }
 
 void InertialConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled", enabled, "use the IMU where there is one");
+    visitor.boolean("enabled", enabled, "true: use the IMU if the source has one");
     visitor.number("gyro_density_rad_s_sqrt_hz",
                    noise.gyro_density_rad_s_sqrt_hz,
                    1e-6,
@@ -80,7 +107,7 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    noise.accel_density_m_s2_sqrt_hz,
                    1e-5,
                    10.0,
-                   "white noise of the accelerometer, as above");
+                   "white noise of the accelerometer, including its other errors on a machine");
     visitor.number("gyro_walk_rad_s2_sqrt_hz",
                    noise.gyro_walk_rad_s2_sqrt_hz,
                    1e-7,
@@ -91,19 +118,21 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    1e-6,
                    10.0,
                    "random walk of the accelerometer's bias");
-    visitor.number("gyro_range_rad_s",
-                   limits.gyro_range_rad_s,
-                   0.0,
-                   1e3,
-                   "readings at it are not used; 0 = unknown");
+    visitor.number(
+        "gyro_range_rad_s",
+        limits.gyro_range_rad_s,
+        0.0,
+        1e3,
+        "measuring range of the gyroscope; readings at the range limit are not used; 0 = unknown");
     visitor.number("accel_range_m_s2",
                    limits.accel_range_m_s2,
                    0.0,
                    1e4,
-                   "readings at it are not used; 0 = unknown");
-    visitor.number("max_gap_s", limits.max_gap_s, 1e-3, 1.0, "longest time without a sample");
+                   "measuring range of the accelerometer; readings at the range limit are not "
+                   "used; 0 = unknown");
+    visitor.number("max_gap_s", limits.max_gap_s, 1e-3, 1.0, "longest time without an IMU sample");
     visitor.number(
-        "gravity_m_s2", gravity_m_s2, 9.7, 9.9, "magnitude of gravity at the place of use");
+        "gravity_m_s2", gravity_m_s2, 9.7, 9.9, "magnitude of gravity at the location of use");
     visitor.number("gyro_bias_sigma_rad_s",
                    gyro_bias_sigma_rad_s,
                    1e-5,
@@ -114,13 +143,17 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    1e-4,
                    5.0,
                    "one sigma of the accelerometer's bias at the initialisation");
-    visitor.number(
-        "start_s", start_s, 0.2, 10.0, "duration of vision from which the IMU is initialised");
+    visitor.number("start_s",
+                   start_s,
+                   0.2,
+                   10.0,
+                   "duration of visual odometry from which the IMU is initialised");
     visitor.number("dead_reckoning_s",
                    dead_reckoning_s,
                    0.0,
                    5.0,
-                   "how long the IMU alone carries the pose while lost");
+                   "longest time for which the IMU alone continues the pose while the visual "
+                   "odometry is lost");
 }
 
 }  // namespace surefoot::odometry

@@ -129,45 +129,58 @@ Direction find_up(const AlignmentConfig& config,
 }  // namespace
 
 void AlignmentConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("pitch_deg",
-                   pitch_deg,
-                   -90.0,
-                   90.0,
-                   "pitch of base_link below the horizon; used if neither plane nor IMU "
-                   "measures it");
+    visitor.number(
+        "pitch_deg",
+        pitch_deg,
+        -90.0,
+        90.0,
+        "pitch of base_link below the horizon; used if neither a plane nor an IMU measures it");
     visitor.number("still_gyro_rad_s",
                    still_gyro_rad_s,
                    0.0,
                    1.0,
-                   "above this turn rate the accelerometer does not measure gravity");
-    visitor.number("still_force_m_s2",
-                   still_force_m_s2,
-                   0.0,
-                   5.0,
-                   "largest deviation of the mean specific force from 9.81 when standing");
+                   "largest turn rate at which the accelerometer measures gravity");
+    visitor.number(
+        "still_force_m_s2",
+        still_force_m_s2,
+        0.0,
+        5.0,
+        "largest deviation of the mean specific force from 9.81 when the machine stands still");
     visitor.group("gravity", gravity);
     visitor.number("max_lean_deg",
                    max_lean_deg,
                    0.1,
                    45.0,
-                   "largest lasting lean of base_link against its first attitude");
-    visitor.number("max_sway_deg", max_sway_deg, 0.1, 90.0, "lean beyond any gait");
+                   "lean of base_link against its first attitude above which the mount counts as "
+                   "moved, if the lean lasts");
+    visitor.number("max_sway_deg",
+                   max_sway_deg,
+                   0.1,
+                   90.0,
+                   "lean of base_link, above that of any gait, from which the mount counts as "
+                   "moved almost at once");
     visitor.number("max_lean_before_step_deg",
                    max_lean_before_step_deg,
                    0.1,
                    20.0,
-                   "no step may begin while base_link leans by more");
-    visitor.number("max_lean_still_s", max_lean_still_s, 0.1, 600.0, "longest lean at rest");
+                   "largest lean of base_link at which a step may begin");
+    visitor.number(
+        "max_lean_still_s",
+        max_lean_still_s,
+        0.1,
+        600.0,
+        "longest time of a lean above max_lean_deg at rest; after it the mount counts as moved");
     visitor.number("max_lean_walking_s",
                    max_lean_walking_s,
                    0.1,
                    600.0,
-                   "longest total lean without an upright phase");
+                   "longest total time of a lean above max_lean_deg without an upright phase; "
+                   "after it the mount counts as moved");
     visitor.number("wait_for_exposure_s",
                    wait_for_exposure_s,
                    0.0,
                    600.0,
-                   "longest wait for well-exposed frames before odom is placed");
+                   "longest wait for well-exposed frames before the odom frame is placed");
     visitor.number("wait_for_ground_s",
                    wait_for_ground_s,
                    0.0,
@@ -178,8 +191,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    wait_for_search_s,
                    0.0,
                    10.0,
-                   "longest search for the ground if the mounting of the camera is unknown; "
-                   "without ground, the first frames place odom");
+                   "longest search for the ground if the mounting of the camera is unknown; if no "
+                   "ground is found, the first frames place the odom frame");
 }
 
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {

@@ -92,19 +92,19 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    accel_bias_m_s2,
                    1e-4,
                    5.0,
-                   "one sigma of the accelerometer's constant error along each axis; calibrated "
-                   "parts 0.02, others 0.2 to 0.6");
+                   "one sigma of the accelerometer's constant error along each axis; 0.02 for "
+                   "calibrated parts, 0.2 to 0.6 for others");
     visitor.number("level_floor_deg",
                    level_floor_deg,
                    0.001,
                    5.0,
                    "one sigma of the slope of floors that are built level");
-    visitor.number("sloped_floor_deg",
-                   sloped_floor_deg,
-                   0.001,
-                   20.0,
-                   "one sigma of the slope of all other floors, and of the vertical without "
-                   "an accelerometer");
+    visitor.number(
+        "sloped_floor_deg",
+        sloped_floor_deg,
+        0.001,
+        20.0,
+        "one sigma of the slope of all other floors, and of the vertical without an accelerometer");
     visitor.number("sloped_share",
                    sloped_share,
                    0.001,

@@ -17,13 +17,23 @@ constexpr double kLongest_s = 1.0;
 }  // namespace
 
 void LevelConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled", enabled, "correct poses whose tilt has drifted from the vertical");
-    visitor.number("slew_deg_s", slew_deg_s, 0.0, 0.05, "fastest correction");
-    visitor.number("max_tilt_deg", max_tilt_deg, 0.1, 5.0, "steeper ground is a slope, not drift");
-    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt up to this is not corrected");
-    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
+    visitor.boolean(
+        "enabled", enabled, "true: correct poses whose tilt has drifted from the vertical");
     visitor.number(
-        "agreeing_share", agreeing_share, 0.0, 1.0, "required share of nearly level sightings");
+        "slew_deg_s", slew_deg_s, 0.0, 0.05, "largest rate of the tilt drift correction");
+    visitor.number("max_tilt_deg",
+                   max_tilt_deg,
+                   0.1,
+                   5.0,
+                   "largest tilt of ground that is used for the tilt drift correction; steeper "
+                   "ground counts as a slope");
+    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "largest mean tilt that is not corrected");
+    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
+    visitor.number("agreeing_share",
+                   agreeing_share,
+                   0.0,
+                   1.0,
+                   "smallest share of nearly level ground observations that a correction needs");
 }
 
 void TiltDriftCorrection::start_at(const Pose& T_odom_body, double ground_lean_rad) {

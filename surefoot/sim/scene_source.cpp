@@ -133,25 +133,44 @@ std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
 }
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
-    visitor.enumeration("sensor", sensor, kSensorNames, "the sensor; analytic makes no images");
-    visitor.enumeration(
-        "motion_model", motion_model, kCarriedByNames, "motion model on the scene's path");
+    visitor.enumeration("sensor",
+                        sensor,
+                        kSensorNames,
+                        "sensor that records the scene; analytic computes depth without images");
+    visitor.enumeration("motion_model",
+                        motion_model,
+                        kCarriedByNames,
+                        "motion model that moves the camera along the path of the scene");
     visitor.boolean(
-        "known_motion", known_motion, "known start pose and motion, except for analytic.drift");
-    visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
-    visitor.boolean("machine_motion",
-                    machine_motion,
-                    "frames carry the machine's motion, with the error of machine_drift");
-    visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
+        "known_motion",
+        known_motion,
+        "true: start pose and motion are known, except for the errors of analytic.drift");
+    visitor.integer(
+        "frames", frames, 0, kMaxFrames, "number of frames; 0 = to the end of the path");
+    visitor.boolean(
+        "machine_motion",
+        machine_motion,
+        "true: frames carry the machine's motion estimate, with the errors of machine_drift");
+    visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "number of frames per second");
     const ImuKind imu_before = imu;
-    visitor.enumeration("imu", imu, kImuNames, "its errors, below; where the rig has an IMU");
+    visitor.enumeration(
+        "imu",
+        imu,
+        kImuNames,
+        "model of the IMU; used if the rig has an IMU; imu_noise sets the errors of the IMU");
     if (imu != imu_before) imu_noise = imu_noise_of(imu);
-    visitor.enumeration("profile", profile, kCameraProfileNames, "added to the camera below");
+    visitor.enumeration("profile",
+                        profile,
+                        kCameraProfileNames,
+                        "errors of a real camera that are added to the simulated camera");
     visitor.number("noise", noise, 0.0, 20.0, "factor on the noise of images and depths");
     visitor.number("contrast", contrast, 0.0, 2.0, "factor on the contrast of every material");
     const DepthCameraKind depth_camera_before = depth_camera;
     visitor.enumeration(
-        "depth_camera", depth_camera, kDepthCameraNames, "its lens, and its errors, below");
+        "depth_camera",
+        depth_camera,
+        kDepthCameraNames,
+        "model of the depth camera, which defines its lens; depth_errors sets its errors");
     if (depth_camera != depth_camera_before)
         depth_errors = depth_camera_preset(depth_camera).config;
     visitor.group("imaging", camera.imaging);

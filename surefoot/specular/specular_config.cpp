@@ -6,36 +6,49 @@
 namespace surefoot::specular {
 
 void SpecularConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled", enabled, "search for mirrors and glass that stand on the floor");
+    visitor.boolean(
+        "enabled", enabled, "true: search for mirrors and glass that stand on the floor");
     visitor.number("cell_m", cell_m, 0.005, 0.02, "cell size of the floor picture");
-    visitor.number("range_m", range_m, 1.0, 5.0, "largest distance of floor in the picture");
+    visitor.number(
+        "range_m", range_m, 1.0, 5.0, "largest distance of the floor in the floor picture");
     visitor.number("mirror_correlation",
                    mirror_correlation,
                    0.1,
                    1.0,
-                   "floor and image: a mirror from this on");
+                   "smallest correlation between the floor and its image in a mirror; a line with "
+                   "less is not a mirror");
     visitor.number(
-        "mirror_score", mirror_score, 4.0, 50.0, "score from which a mirror is suspected");
-    visitor.number("glass_score", glass_score, 4.0, 50.0, "score from which glass is suspected");
-    visitor.number("keep_score", keep_score, 0.0, 50.0, "least score to keep a suspected line");
+        "mirror_score", mirror_score, 4.0, 50.0, "smallest score at which a mirror is suspected");
+    visitor.number(
+        "glass_score", glass_score, 4.0, 50.0, "smallest score at which glass is suspected");
+    visitor.number(
+        "keep_score", keep_score, 0.0, 50.0, "smallest score at which a suspected line is kept");
     visitor.integer("forget_observations",
                     forget_looks,
                     1,
                     100,
-                    "observations below keep_score before a line is removed");
+                    "number of observations below keep_score after which a line is removed");
     visitor.number("unique_ratio",
                    unique_ratio,
                    1.0,
                    10.0,
-                   "least ratio of the best score to the second best");
+                   "smallest ratio of the best score to the second best score");
     visitor.integer("directions_per_frame",
                     directions_per_frame,
                     1,
                     180,
-                    "directions searched ahead per frame, and as many all around");
-    visitor.number("margin_m", margin_m, 0.0, 0.5, "cells this far before the line become unknown");
-    visitor.number(
-        "side_margin_m", side_margin_m, 0.0, 1.0, "cells this far beside the line become unknown");
+                    "number of directions searched ahead in each frame; the same number is "
+                    "searched all around");
+    visitor.number("margin_m",
+                   margin_m,
+                   0.0,
+                   0.5,
+                   "distance before the line within which cells become unknown");
+    visitor.number("side_margin_m",
+                   side_margin_m,
+                   0.0,
+                   1.0,
+                   "distance beside the line within which cells become unknown");
 }
 
 std::optional<std::string> SpecularConfig::problem() const {

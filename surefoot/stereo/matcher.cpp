@@ -6,30 +6,38 @@
 namespace surefoot::stereo {
 
 void MatcherConfig::describe(ConfigVisitor& visitor) {
-    visitor.enumeration("algorithm", algorithm, kAlgorithmNames, "who searches");
+    visitor.enumeration("algorithm", algorithm, kAlgorithmNames, "stereo matching algorithm");
     visitor.integer("disparities",
                     disparities,
                     16,
                     512,
-                    "search range [px], a multiple of 16; KITTI-size images want 96-128");
-    visitor.integer("block_size", block_size, 1, 11, "sgbm: side of its window [px], odd");
-    visitor.enumeration("sgbm_mode", sgbm_mode, kSgbmModeNames, "sgbm: 3, 4 or 8 paths");
-    visitor.integer("bm_block_size", bm_block_size, 5, 51, "bm: side of its window [px], odd");
+                    "search range of the disparity [px], a multiple of 16; images of the KITTI "
+                    "size need 96-128");
+    visitor.integer(
+        "block_size", block_size, 1, 11, "sgbm: side length of the matching window [px], odd");
+    visitor.enumeration("sgbm_mode",
+                        sgbm_mode,
+                        kSgbmModeNames,
+                        "sgbm: number of paths: three_way = 3, hh4 = 4, hh = 8");
+    visitor.integer(
+        "bm_block_size", bm_block_size, 5, 51, "bm: side length of the matching window [px], odd");
     visitor.integer("bm_prefilter_cap",
                     bm_prefilter_cap,
                     1,
                     63,
                     "bm: limit of the grey slope along a row; steeper slopes count as this value");
-    visitor.integer("uniqueness_percent",
-                    uniqueness_percent,
-                    0,
-                    50,
-                    "a match must be better than the second best by this margin");
+    visitor.integer(
+        "uniqueness_percent",
+        uniqueness_percent,
+        0,
+        50,
+        "smallest margin in per cent by which a match must be better than the second best");
     visitor.number("left_right_tolerance_px",
                    left_right_tolerance_px,
                    0.0,
                    16.0,
-                   "a pixel is dropped if a nearer match hides it by more than this disparity");
+                   "largest disparity difference between a pixel and a nearer match that hides it; "
+                   "pixels with a larger difference are dropped");
 }
 
 std::optional<std::string> MatcherConfig::problem() const {

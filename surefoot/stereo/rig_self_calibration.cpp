@@ -52,26 +52,27 @@ std::vector<double> residuals_px(std::span<const Row> rows, const Eigen::Vector3
 }  // namespace
 
 void SelfCalibrationConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("enabled",
-                    enabled,
-                    "correct the right camera's calibration by the row errors of the first frames");
+    visitor.boolean(
+        "enabled",
+        enabled,
+        "true: correct the right camera's calibration by the row errors of the first frames");
     visitor.integer("min_corners",
                     min_corners,
                     20,
                     100000,
-                    "least number of matched corners; with fewer nothing is corrected");
-    visitor.number(
-        "max_turn_deg",
-        max_turn_deg,
-        0.0,
-        5.0,
-        "largest rotation that is corrected; beyond it nothing is: calibrate the rig again");
-    visitor.number(
-        "max_focal_share",
-        max_focal_share,
-        0.0,
-        0.1,
-        "largest relative change of the focal length that is corrected; see max_turn_deg");
+                    "smallest number of matched corners that a correction needs");
+    visitor.number("max_turn_deg",
+                   max_turn_deg,
+                   0.0,
+                   5.0,
+                   "largest rotation that is corrected. A larger rotation is not corrected: "
+                   "calibrate the rig again");
+    visitor.number("max_focal_share",
+                   max_focal_share,
+                   0.0,
+                   0.1,
+                   "largest relative change of the focal length that is corrected. A larger change "
+                   "is not corrected: calibrate the rig again");
 }
 
 std::optional<RigSelfCalibration> estimate_self_calibration(const SelfCalibrationConfig& config,

@@ -377,26 +377,37 @@ bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
 
 void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
-    visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "shorter side of a foot");
-    visitor.number("margin_m", margin_m, 0.0, 1.0, "position error of edges in the map");
-    visitor.number("band_m", band_m, 0.0, 1.0, "required solid ground beyond the foot");
+    visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "length of the shorter side of a foot");
+    visitor.number("margin_m", margin_m, 0.0, 1.0, "largest position error of edges in the map");
     visitor.number(
-        "corner_m", corner_m, 0.0, 1.0, "a drop may begin this far before its edge in the map");
-    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+        "band_m", band_m, 0.0, 1.0, "width of the solid ground that is required around the foot");
+    visitor.number("corner_m",
+                   corner_m,
+                   0.0,
+                   1.0,
+                   "largest distance by which a drop may begin before its edge in the map");
+    visitor.number("drop_m",
+                   drop_m,
+                   0.001,
+                   1.0,
+                   "largest height of the foot above lower ground that is not a drop");
     visitor.number("max_slope",
                    max_slope,
                    0.001,
                    10.0,
                    "largest slope of the plane under the foot, rise over run");
     visitor.number(
-        "patch_side_m", patch_side_m, 0.001, 1.0, "side of the square patches of a foot");
+        "patch_side_m", patch_side_m, 0.001, 1.0, "side length of the square patches under a foot");
     visitor.number("max_residual_m",
                    max_residual_m,
                    0.001,
                    1.0,
-                   "largest distance of a patch mean from that plane");
-    visitor.number(
-        "sigma_factor", sigma_factor, 0.0, 100.0, "sigmas by which every limit must be met");
+                   "largest distance of the mean of a patch from the plane under the foot");
+    visitor.number("sigma_factor",
+                   sigma_factor,
+                   0.0,
+                   100.0,
+                   "number of sigmas by which the ground must keep every limit");
     visitor.number("independent_cells",
                    independent_cells,
                    1.0,
@@ -409,7 +420,8 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "overhead objects smaller than a square of this side may be wrong matches");
+                   "side length of a square; an overhead object smaller than this square may be a "
+                   "wrong match");
 }
 
 std::optional<std::string> FootholdConfig::problem() const {

@@ -20,7 +20,7 @@ void TraversabilityConfig::Normals::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "cells within this distance form the surface patch of a normal");
+                   "radius of the surface patch around a cell whose normal is computed");
 }
 
 void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
@@ -29,22 +29,25 @@ void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
 }
 
 void TraversabilityConfig::Step::describe(ConfigVisitor& visitor) {
-    visitor.number("critical_m", critical_m, 0.0001, 10.0, "step at which the rating reaches 0");
+    visitor.number(
+        "critical_m", critical_m, 0.0001, 10.0, "step height at which the rating reaches 0");
     visitor.number("first_radius_m",
                    first_radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "height range of a cell is taken within this distance");
-    visitor.number("second_radius_m",
-                   second_radius_m,
-                   kMinRadius_m,
-                   kMaxRadius_m,
-                   "steps are gathered within this distance");
-    visitor.integer("critical_cells",
-                    critical_cells,
-                    1,
-                    100000,
-                    "cells with a critical step for the step to count in full");
+                   "radius around a cell within which its height range is taken");
+    visitor.number(
+        "second_radius_m",
+        second_radius_m,
+        kMinRadius_m,
+        kMaxRadius_m,
+        "radius around a cell within which height ranges are gathered for its step height");
+    visitor.integer(
+        "critical_cells",
+        critical_cells,
+        1,
+        100000,
+        "number of cells with a critical step from which the step height counts in full");
 }
 
 void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
@@ -54,24 +57,39 @@ void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "distances from the plane are taken within this distance");
+                   "radius around a cell within which distances from the plane are taken");
 }
 
 void TraversabilityConfig::Weights::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "slope", slope, 0.0, 1000.0, "share of the slope in the sum; the sum is normalised");
-    visitor.number("step", step, 0.0, 1000.0, "share of the step in the sum");
-    visitor.number("roughness", roughness, 0.0, 1000.0, "share of the roughness in the sum");
+    visitor.number("slope",
+                   slope,
+                   0.0,
+                   1000.0,
+                   "weight of the slope rating in the sum; the sum is divided by all weights");
+    visitor.number("step",
+                   step,
+                   0.0,
+                   1000.0,
+                   "weight of the step rating in the sum; the sum is divided by all weights");
+    visitor.number("roughness",
+                   roughness,
+                   0.0,
+                   1000.0,
+                   "weight of the roughness rating in the sum; the sum is divided by all weights");
 }
 
 void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "max_step_m", max_step_m, 0.0, 1.0, "ground beyond a higher step is not reachable");
+    visitor.number("max_step_m",
+                   max_step_m,
+                   0.0,
+                   1.0,
+                   "largest step height that the machine can take; ground behind a higher step is "
+                   "not reachable");
     visitor.number("stance_radius_m",
                    stance_radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "known cells this near to the body form the stance");
+                   "radius around the body within which known cells form the stance");
 }
 
 void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
@@ -79,8 +97,8 @@ void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
                    safe_threshold,
                    0.0,
                    1.0,
-                   "confidence: probability that the true rating is on the same side of this"
-                   " rating");
+                   "rating of a safe cell; the confidence is the probability that the true rating "
+                   "is on the same side of this value");
     visitor.integer("independent_cells",
                     independent_cells,
                     1,
@@ -89,13 +107,17 @@ void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
 }
 
 void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "step_m", step_m, 0.0001, 1.0, "smallest obstacle that matters: a sill to trip over");
+    visitor.number("step_m",
+                   step_m,
+                   0.0001,
+                   1.0,
+                   "height of the smallest obstacle that matters, for example a sill to trip over");
     visitor.number("radius_m",
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "radius of the patch whose mean height must resolve the obstacle");
+                   "radius of the patch whose mean height must be accurate enough to show an "
+                   "obstacle of step_m");
 }
 
 void TraversabilityConfig::describe(ConfigVisitor& visitor) {
@@ -107,7 +129,8 @@ void TraversabilityConfig::describe(ConfigVisitor& visitor) {
     visitor.enumeration("combine",
                         combine,
                         kCombineNames,
-                        "mean_nan: unknown if any layer is; zero_dominates: an exact 0 forces 0");
+                        "how the ratings are combined. mean_nan: unknown if any rating is unknown; "
+                        "zero_dominates: a rating of exactly 0 gives 0");
     visitor.group("reach", reach);
     visitor.group("confidence", confidence);
     visitor.group("resolve", resolve);

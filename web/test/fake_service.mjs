@@ -314,12 +314,12 @@ const setting = (key, value, unit, range, comment, changeable = false) => ({
 });
 export const kSettings = [
   setting("page.map_hz", "10", "Hz", "0.2 .. 10", "largest number of maps per second for one page", true),
-  setting("service.niceness", "10", "", "0 .. 19", "niceness of perception, so that the gate answers in time", true),
-  setting("mount.pitch_deg", "32", "deg", "-90 .. 90", "of the camera, where nothing else says it"),
-  setting("stereo.algorithm", "census", "", "census | sgbm | bm", "which matcher"),
-  setting("stereo.disparities", "64", "", "16 .. 256", "range of the search"),
-  setting("elevation.length_m", "6", "m", "0.1 .. 100", "side of the map"),
-  setting("elevation.pixels.reach_px", "5", "px", "0 .. 50", "from a jump of the depth"),
+  setting("service.niceness", "10", "", "0 .. 19", "niceness of perception, for fast answers of the gate", true),
+  setting("mount.pitch_deg", "32", "deg", "-90 .. 90", "pitch of base_link below the horizon, if not measured"),
+  setting("stereo.algorithm", "census", "", "census | sgbm | bm", "stereo matching algorithm"),
+  setting("stereo.disparities", "64", "", "16 .. 256", "search range of the disparity"),
+  setting("elevation.length_m", "6", "m", "0.1 .. 100", "side length of the square map around the machine"),
+  setting("elevation.pixels.reach_px", "5", "px", "0 .. 50", "distance of the pixels that show a disparity jump"),
   ...Array.from({ length: 30 }, (_, i) =>
     setting(`stairs.classes.limit_${i}_m`, String(i / 10), "m", "0 .. 10", "one of many"),
   ),

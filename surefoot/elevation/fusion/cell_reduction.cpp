@@ -83,48 +83,52 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                     min_points,
                     1,
                     10000,
-                    "fewer points on one surface of a cell are no measurement");
+                    "smallest number of points on one surface of a cell that give a measurement");
     visitor.number("upper_share",
                    upper_share,
                    0.0,
                    1.0,
-                   "share of a cell's points that its highest surface needs");
+                   "smallest share of a cell's points that its highest surface needs");
     visitor.number("window_sigma",
                    window_sigma,
                    0.1,
                    100.0,
-                   "points this close to a surface belong to it [sigma of a point] ...");
-    visitor.number("surface_relief_m",
-                   surface_relief_m,
-                   0.0,
-                   1.0,
-                   "... plus this, for the relief of the ground within a cell");
+                   "largest distance of a point from the surface to which it belongs [sigma of the "
+                   "point]; surface_relief_m is added");
+    visitor.number(
+        "surface_relief_m",
+        surface_relief_m,
+        0.0,
+        1.0,
+        "height range of the ground within one cell; added to the distance limit window_sigma");
     visitor.number("points_per_independent",
                    points_per_independent,
                    1.0,
                    1e6,
-                   "points of a cell and frame that share one error");
+                   "number of points of one cell and frame that share one error");
     visitor.number("max_independent",
                    max_independent,
                    1.0,
                    1e6,
-                   "largest number of independent errors in a cell and frame");
-    visitor.integer("min_face_points",
-                    min_face_points,
-                    1,
-                    1000000,
-                    "this many points of a cell without a common height are a vertical face");
-    visitor.number("systematic_sigma_m",
-                   systematic_sigma_m,
-                   0.0,
-                   1.0,
-                   "calibration and lattice errors in every measurement of a cell");
+                   "largest number of independent errors in one cell and frame");
+    visitor.integer(
+        "min_face_points",
+        min_face_points,
+        1,
+        1000000,
+        "smallest number of points without a common height that make a cell a vertical face");
+    visitor.number(
+        "systematic_sigma_m",
+        systematic_sigma_m,
+        0.0,
+        1.0,
+        "one sigma of the calibration and lattice errors in every measurement of a cell");
     visitor.number("border_share",
                    border_share,
                    0.0,
                    1.0,
-                   "a cell that reaches beyond the image needs this share of the points of level "
-                   "ground; 0 = min_points suffice");
+                   "smallest share of the points of level ground that a cell at the image border "
+                   "needs; 0 = min_points suffice");
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

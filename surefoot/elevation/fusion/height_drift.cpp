@@ -52,46 +52,50 @@ bool agrees(const HeightResidual& residual, double offset_m) {
 
 void HeightDriftConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
-        "enabled", enabled, "correct old parts of the map by the body's height drift (keys below)");
-    visitor.integer(
-        "min_motions",
-        min_motions,
-        1,
-        100000,
-        "cells are old when they were last aligned this many uncertain motions ago ...");
+        "enabled", enabled, "true: correct old parts of the map by the drift of the body's height");
+    visitor.integer("min_motions",
+                    min_motions,
+                    1,
+                    100000,
+                    "smallest number of uncertain motions since the last alignment of a cell that "
+                    "make the cell old; min_drift_m must be met too");
     visitor.number("min_drift_m",
                    min_drift_m,
                    0.0,
                    1.0,
-                   "... and the motions may have moved them by this (1 sigma)");
+                   "smallest height error (1 sigma) of the motions since the last alignment of a "
+                   "cell that makes the cell old");
     visitor.number("level_m",
                    level_m,
                    0.0,
                    1.0,
-                   "largest height difference to the map two cells aside of a cell that "
-                   "counts");
+                   "largest height difference between a cell and the map two cells beside it; "
+                   "cells with a larger difference are not used");
     visitor.integer("kept_motions",
                     kept_motions,
                     0,
                     100000,
-                    "residuals of old cells are kept for this many uncertain motions");
+                    "number of uncertain motions after which the residual of an old cell expires");
     visitor.integer("min_cells",
                     min_cells,
                     1,
                     4096,
-                    "old cells that an offset needs; one cell of four is used");
-    visitor.integer(
-        "min_tiles", min_tiles, 4, 1000000, "squares of 8 x 8 cells that an offset needs");
+                    "smallest number of old cells that an offset needs; one cell of four is used");
+    visitor.integer("min_tiles",
+                    min_tiles,
+                    4,
+                    1000000,
+                    "smallest number of squares of 8 x 8 cells that an offset needs");
     visitor.number("min_spread_m",
                    min_spread_m,
                    0.0,
                    100.0,
-                   "standard deviation of the cells' positions along the longer axis");
+                   "smallest standard deviation of the cell positions along the longer axis");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.5,
                    1.0,
-                   "share of the old cells that have the offset within their noise");
+                   "smallest share of the old cells that agree with the offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,
                    0.1,
@@ -101,12 +105,12 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                    motion_sigmas,
                    0.0,
                    100.0,
-                   "an offset beyond this is no drift [sigma of the motion since]");
+                   "largest offset that counts as drift [sigma of the motion since the alignment]");
     visitor.number("depth_scale_sigma",
                    depth_scale_sigma,
                    0.0,
                    1.0,
-                   "relative error that all depths of a frame share");
+                   "relative error that all depths of one frame share (1 sigma)");
 }
 
 std::string_view to_string(HeightDriftReason reason) noexcept {

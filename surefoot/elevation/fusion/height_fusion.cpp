@@ -36,37 +36,45 @@ FusionResult disagree(const FusionConfig& config,
 }  // namespace
 
 void FusionConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("gate_sigma",
+                   gate_sigma,
+                   0.1,
+                   100.0,
+                   "largest innovation that passes the Mahalanobis gate [sigma]");
     visitor.number(
-        "gate_sigma", gate_sigma, 0.1, 100.0, "Mahalanobis gate on the innovation [sigma]");
-    visitor.number("min_height_var_m2",
-                   min_height_var_m2,
-                   1e-12,
-                   1.0,
-                   "floor of a cell's variance: errors that no averaging removes");
-    visitor.number("max_height_var_m2",
-                   max_height_var_m2,
-                   1e-12,
-                   100.0,
-                   "a cell that is contradicted until its variance exceeds this is replaced");
-    visitor.number("multi_height_var_m2",
-                   multi_height_var_m2,
-                   0.0,
-                   100.0,
-                   "largest addition to a cell's variance when a measurement is gated out");
+        "min_height_var_m2",
+        min_height_var_m2,
+        1e-12,
+        1.0,
+        "smallest variance of a cell height; errors remain that averaging does not remove");
+    visitor.number(
+        "max_height_var_m2",
+        max_height_var_m2,
+        1e-12,
+        100.0,
+        "variance of a contradicted cell above which the new measurement replaces the cell");
+    visitor.number(
+        "multi_height_var_m2",
+        multi_height_var_m2,
+        0.0,
+        100.0,
+        "largest amount added to the variance of a cell when the gate rejects a measurement");
     visitor.number("contradiction_growth",
                    contradiction_growth,
                    1.0,
                    1e6,
-                   "largest factor on a cell's sigma when a measurement is gated out");
+                   "largest factor on the sigma of a cell when the gate rejects a measurement");
     visitor.number("scan_duration_s",
                    scan_duration_s,
                    0.0,
                    60.0,
-                   "measurements of one cell closer in time are one scan: the upper wins; 0 = off");
-    visitor.enumeration("gate_variance",
-                        gate_variance,
-                        kGateVarianceNames,
-                        "variance in the Mahalanobis gate; cell_alone is for comparison only");
+                   "time within which measurements of one cell belong to one scan; the upper "
+                   "measurement of a scan is kept; 0 = off");
+    visitor.enumeration(
+        "gate_variance",
+        gate_variance,
+        kGateVarianceNames,
+        "variances that the Mahalanobis gate uses; cell_alone is for comparison only");
 }
 
 std::optional<std::string> FusionConfig::problem() const {

@@ -17,37 +17,46 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 }  // namespace
 
 void AncestorConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("resolution_m", resolution_m, 0.001, 10.0, "edge of a cell");
-    visitor.number("length_m", length_m, 0.01, 1000.0, "edge of the square map");
-    visitor.number("start_x_m", start_x_m, -1e6, 1e6, "centre of the map before the first step");
-    visitor.number("start_y_m", start_y_m, -1e6, 1e6, "the same along y");
-    visitor.number("start_time_s", start_time_s, -1e12, 1e12, "the time layer counts from here");
-    visitor.number("min_variance_m2", min_variance_m2, 0.0, 100.0, "smaller variances become this");
+    visitor.number("resolution_m", resolution_m, 0.001, 10.0, "side length of a map cell");
+    visitor.number("length_m", length_m, 0.01, 1000.0, "side length of the square map");
+    visitor.number("start_x_m", start_x_m, -1e6, 1e6, "x of the map centre before the first step");
+    visitor.number("start_y_m", start_y_m, -1e6, 1e6, "y of the map centre before the first step");
+    visitor.number(
+        "start_time_s", start_time_s, -1e12, 1e12, "time from which the time layer counts");
+    visitor.number("min_variance_m2",
+                   min_variance_m2,
+                   0.0,
+                   100.0,
+                   "smallest variance of a cell; smaller variances are raised to this value");
     visitor.number("max_variance_m2",
                    max_variance_m2,
                    0.0,
                    100.0,
-                   "larger variances become infinite: the cell is overwritten");
+                   "largest variance of a cell; a larger variance becomes infinite, and the next "
+                   "point overwrites the cell");
     visitor.number("mahalanobis_threshold",
                    mahalanobis_threshold,
                    0.0,
                    100.0,
-                   "gate on the distance over the cell's standard deviation");
+                   "largest distance of a point from the cell height that passes the gate "
+                   "[standard deviations of the cell]");
     visitor.number("multi_height_noise_m2",
                    multi_height_noise_m2,
                    0.0,
                    100.0,
-                   "added to the variance when a point is gated out");
-    visitor.number("scanning_duration_s",
-                   scanning_duration_s,
-                   0.0,
-                   1000.0,
-                   "points closer in time belong to one scan: the upper wins");
-    visitor.number("increase_height_alpha",
-                   increase_height_alpha,
-                   0.0,
-                   1.0,
-                   "share of the old height when a higher point of one scan replaces it");
+                   "amount added to the variance of a cell when the gate rejects a point");
+    visitor.number(
+        "scanning_duration_s",
+        scanning_duration_s,
+        0.0,
+        1000.0,
+        "time within which points belong to one scan; the upper point of a scan is kept");
+    visitor.number(
+        "increase_height_alpha",
+        increase_height_alpha,
+        0.0,
+        1.0,
+        "share of the old height that remains when a higher point of the same scan replaces it");
 }
 
 AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {

@@ -55,50 +55,92 @@ RayVariance basic(const SensorConfig& config, const SensorReading& r) noexcept {
 
 void SensorConfig::describe(ConfigVisitor& visitor) {
     visitor.enumeration("model", model, kModelNames, "error model of a measured point");
-    visitor.number("min_var_m2", min_var_m2, 0.0, 1.0, "floor of both variances");
+    visitor.number("min_var_m2",
+                   min_var_m2,
+                   0.0,
+                   1.0,
+                   "smallest variance of a point along and across the line of sight");
     visitor.number("matcher_lateral_px",
                    matcher_lateral_px,
                    0.0,
                    50.0,
-                   "matcher: one sigma of a disparity's image position");
+                   "matcher: one sigma of the image position of a disparity");
     visitor.number(
-        "laser_min_radius_m", laser_min_radius_m, 0.0, 1.0, "laser: sigma along the beam");
+        "laser_min_radius_m", laser_min_radius_m, 0.0, 1.0, "laser: one sigma along the beam");
     visitor.number(
-        "laser_beam_constant_m", laser_beam_constant_m, 0.0, 1.0, "laser: beam radius at 0 m");
+        "laser_beam_constant_m", laser_beam_constant_m, 0.0, 1.0, "laser: beam radius at range 0");
+    visitor.number("laser_beam_angle_rad",
+                   laser_beam_angle_rad,
+                   0.0,
+                   1.0,
+                   "laser: growth of the beam radius per metre of range");
+    visitor.number("kinect_a_m",
+                   kinect_a_m,
+                   -1.0,
+                   1.0,
+                   "kinect: a in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+    visitor.number("kinect_b_per_m",
+                   kinect_b_per_m,
+                   -1.0,
+                   1.0,
+                   "kinect: b in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+    visitor.number("kinect_c_m",
+                   kinect_c_m,
+                   -10.0,
+                   10.0,
+                   "kinect: c in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+    visitor.number("kinect_d",
+                   kinect_d,
+                   -10.0,
+                   10.0,
+                   "kinect: d in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+    visitor.number("kinect_e",
+                   kinect_e,
+                   -10.0,
+                   10.0,
+                   "kinect: e in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+    visitor.number("kinect_lateral",
+                   kinect_lateral,
+                   0.0,
+                   1.0,
+                   "kinect: sigma across the line of sight per metre of depth");
     visitor.number(
-        "laser_beam_angle_rad", laser_beam_angle_rad, 0.0, 1.0, "laser: growth of that radius");
-    visitor.number("kinect_a_m", kinect_a_m, -1.0, 1.0, "kinect: sigma = a + b (z - c)^2 + d z^e");
-    visitor.number("kinect_b_per_m", kinect_b_per_m, -1.0, 1.0, "kinect: b");
-    visitor.number("kinect_c_m", kinect_c_m, -10.0, 10.0, "kinect: c");
-    visitor.number("kinect_d", kinect_d, -10.0, 10.0, "kinect: d");
-    visitor.number("kinect_e", kinect_e, -10.0, 10.0, "kinect: e");
+        "stereo_p1", stereo_p1, -1e3, 1e3, "stereo (Keller): parameter p1 of equation 6.2");
     visitor.number(
-        "kinect_lateral", kinect_lateral, 0.0, 1.0, "kinect: sigma across per metre of depth");
-    visitor.number("stereo_p1", stereo_p1, -1e3, 1e3, "stereo (Keller): p1 of equation 6.2");
-    visitor.number("stereo_p2", stereo_p2, -1e3, 1e3, "stereo (Keller): p2");
-    visitor.number("stereo_p3", stereo_p3, -1e3, 1e3, "stereo (Keller): p3");
-    visitor.number("stereo_p4", stereo_p4, -1e4, 1e4, "stereo (Keller): p4");
-    visitor.number("stereo_p5", stereo_p5, -1e3, 1e3, "stereo (Keller): p5");
+        "stereo_p2", stereo_p2, -1e3, 1e3, "stereo (Keller): parameter p2 of equation 6.2");
+    visitor.number(
+        "stereo_p3", stereo_p3, -1e3, 1e3, "stereo (Keller): parameter p3 of equation 6.2");
+    visitor.number(
+        "stereo_p4", stereo_p4, -1e4, 1e4, "stereo (Keller): parameter p4 of equation 6.2");
+    visitor.number(
+        "stereo_p5", stereo_p5, -1e3, 1e3, "stereo (Keller): parameter p5 of equation 6.2");
     visitor.number("stereo_depth_to_disparity_px_m",
                    stereo_depth_to_disparity_px_m,
                    1e-3,
                    1e5,
-                   "stereo (Keller): D, focal length times baseline");
-    visitor.number(
-        "stereo_lateral", stereo_lateral, 0.0, 1.0, "stereo (Keller): sigma across per metre");
+                   "stereo (Keller): factor D, focal length times baseline");
+    visitor.number("stereo_lateral",
+                   stereo_lateral,
+                   0.0,
+                   1.0,
+                   "stereo (Keller): sigma across the line of sight per metre of range");
     visitor.number("simplified_disparity_px",
                    simplified_disparity_px,
                    0.0,
                    100.0,
-                   "simplified stereo: matching error");
+                   "simplified stereo: matching error of a disparity");
     visitor.number("simplified_lateral",
                    simplified_lateral,
                    0.0,
                    1.0,
-                   "simplified stereo: sigma across per metre of range");
-    visitor.number("basic_constant_m2", basic_constant_m2, 0.0, 1.0, "basic: variance at range 0");
+                   "simplified stereo: sigma across the line of sight per metre of range");
     visitor.number(
-        "basic_per_m_m", basic_per_m_m, 0.0, 1.0, "basic: growth of the variance per metre");
+        "basic_constant_m2", basic_constant_m2, 0.0, 1.0, "basic: height variance at range 0");
+    visitor.number("basic_per_m_m",
+                   basic_per_m_m,
+                   0.0,
+                   1.0,
+                   "basic: growth of the height variance per metre of range");
 }
 
 RayVariance model_variance(const SensorConfig& config, const SensorReading& r) noexcept {

@@ -10,31 +10,43 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                    max_outlier_probability,
                    0.0,
                    1.0,
-                   "pixels with a larger outlier probability are not fused");
+                   "largest outlier probability of a pixel that is fused into the map");
     visitor.boolean("surface_check",
                     surface_check,
-                    "drop pixels at disparity jumps and at grazing incidence (keys below)");
-    visitor.integer(
-        "reach_px", reach_px, 1, 20, "distance of the neighbours that a pixel is compared with");
-    visitor.number("jump_px",
-                   jump_px,
+                    "true: drop pixels at disparity jumps and at grazing incidence");
+    visitor.integer("reach_px",
+                    reach_px,
+                    1,
+                    20,
+                    "distance in pixels of the four neighbours with which a pixel is compared");
+    visitor.number(
+        "jump_px",
+        jump_px,
+        0.0,
+        100.0,
+        "largest deviation from a linear disparity between two neighbours; jump_sigma is added");
+    visitor.number("jump_sigma",
+                   jump_sigma,
                    0.0,
                    100.0,
-                   "largest departure from a linear disparity between two neighbours ...");
+                   "sigmas of the disparity that are added to the deviation limit jump_px");
     visitor.number(
-        "jump_sigma", jump_sigma, 0.0, 100.0, "... plus this many sigma of the disparity");
-    visitor.number("max_incidence_deg",
-                   max_incidence_deg,
-                   1.0,
-                   90.0,
-                   "largest angle between line of sight and surface normal");
+        "max_incidence_deg",
+        max_incidence_deg,
+        1.0,
+        90.0,
+        "largest angle between line of sight and surface normal of a pixel that is used");
     visitor.number("max_incidence_level_deg",
                    max_incidence_level_deg,
                    1.0,
                    90.0,
-                   "the same for level surfaces: table tops seen from afar");
-    visitor.number(
-        "level_deg", level_deg, 0.0, 45.0, "surfaces with less tilt against gravity are level");
+                   "largest angle between line of sight and surface normal of a pixel on a level "
+                   "surface, for example a distant table top");
+    visitor.number("level_deg",
+                   level_deg,
+                   0.0,
+                   45.0,
+                   "largest tilt of a level surface against the horizontal");
 }
 
 namespace {

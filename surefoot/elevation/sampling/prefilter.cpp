@@ -39,19 +39,54 @@ std::size_t compact(std::span<GridPoint> points, std::span<const std::uint8_t> k
 }  // namespace
 
 void PrefilterConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean("range", range, "drop points nearer or farther than ...");
-    visitor.number("min_range_m", min_range_m, 0.0, 1000.0, "... this from the sensor ...");
-    visitor.number("max_range_m", max_range_m, 0.0, 1000.0, "... or this");
-    visitor.boolean("height", height, "drop points lower or higher than ...");
-    visitor.number("min_height_m", min_height_m, -100.0, 100.0, "... this over base_link ...");
-    visitor.number("max_height_m", max_height_m, -100.0, 100.0, "... or this");
-    visitor.boolean("down_sampling", down_sampling, "keep one point per cube of ...");
-    visitor.number("sampling_m", sampling_m, 0.001, 10.0, "... this edge");
-    visitor.boolean("outlier_removal", outlier_removal, "drop points that have, within ...");
+    visitor.boolean(
+        "range", range, "true: drop points nearer than min_range_m or farther than max_range_m");
+    visitor.number("min_range_m",
+                   min_range_m,
+                   0.0,
+                   1000.0,
+                   "smallest distance of a point from the sensor; used if range is true");
+    visitor.number("max_range_m",
+                   max_range_m,
+                   0.0,
+                   1000.0,
+                   "largest distance of a point from the sensor; used if range is true");
+    visitor.boolean(
+        "height", height, "true: drop points lower than min_height_m or higher than max_height_m");
+    visitor.number("min_height_m",
+                   min_height_m,
+                   -100.0,
+                   100.0,
+                   "smallest height of a point over base_link; used if height is true");
+    visitor.number("max_height_m",
+                   max_height_m,
+                   -100.0,
+                   100.0,
+                   "largest height of a point over base_link; used if height is true");
+    visitor.boolean(
+        "down_sampling", down_sampling, "true: keep one point per cube with sides of sampling_m");
     visitor.number(
-        "outlier_radius_m", outlier_radius_m, 0.001, 10.0, "... this radius, fewer than ...");
-    visitor.integer(
-        "outlier_min_neighbours", outlier_min_neighbours, 1, 10000, "... this many others");
+        "sampling_m",
+        sampling_m,
+        0.001,
+        10.0,
+        "side length of the cubes of which one point each is kept; used if down_sampling is true");
+    visitor.boolean("outlier_removal",
+                    outlier_removal,
+                    "true: drop points with fewer than outlier_min_neighbours other points within "
+                    "outlier_radius_m");
+    visitor.number("outlier_radius_m",
+                   outlier_radius_m,
+                   0.001,
+                   10.0,
+                   "radius around a point within which other points are counted; used if "
+                   "outlier_removal is true");
+    visitor.integer("outlier_min_neighbours",
+                    outlier_min_neighbours,
+                    1,
+                    10000,
+                    "smallest number of other points within outlier_radius_m that keep a point; "
+                    "used if outlier_removal is true");
 }
 
 CloudFilter::Cube CloudFilter::cube_of(const GridPoint& point, double edge_m) {

@@ -18,16 +18,20 @@ double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
 }  // namespace
 
 void ViewpointConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("min_translation_m",
-                   min_translation_m,
-                   0.0,
-                   10.0,
-                   "views of a cell closer than this and ...");
-    visitor.number("min_rotation_deg",
-                   min_rotation_deg,
-                   0.0,
-                   180.0,
-                   "... this repeat the same errors and do not lower its variance");
+    visitor.number(
+        "min_translation_m",
+        min_translation_m,
+        0.0,
+        10.0,
+        "smallest translation of the camera between two independent views of a cell; after a "
+        "smaller translation and rotation a view does not lower the variance of the cell");
+    visitor.number(
+        "min_rotation_deg",
+        min_rotation_deg,
+        0.0,
+        180.0,
+        "smallest rotation of the camera between two independent views of a cell; after a smaller "
+        "translation and rotation a view does not lower the variance of the cell");
 }
 
 ViewpointHistory::ViewpointHistory(const ViewpointConfig& config)

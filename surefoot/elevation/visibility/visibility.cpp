@@ -17,25 +17,33 @@ constexpr int kEndRings = 3;
 }  // namespace
 
 void VisibilityConfig::describe(ConfigVisitor& visitor) {
-    visitor.boolean(
-        "cleanup", cleanup, "remove surfaces that lines of sight pass through (keys below)");
-    visitor.boolean("drops", drops, "lines of sight over unknown ground bound its depth");
+    visitor.boolean("cleanup", cleanup, "true: remove surfaces that lines of sight pass through");
+    visitor.boolean("drops",
+                    drops,
+                    "true: lines of sight over unknown cells bound the depth of the ground there");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
                    10.0,
-                   "a line of sight this far below a cell's height contradicts it ...");
-    visitor.number("sigmas", sigmas, 0.0, 100.0, "... plus this many sigma of the height");
+                   "smallest distance of a line of sight below a cell height that contradicts the "
+                   "cell; sigmas of the height are added");
+    visitor.number("sigmas",
+                   sigmas,
+                   0.0,
+                   100.0,
+                   "sigmas of the height that are added to the contradiction limit margin_m");
     visitor.number("neighbour_s",
                    neighbour_s,
                    0.0,
                    60.0,
-                   "a neighbour of equal height, confirmed this recently, keeps a cell");
+                   "time since the last confirmation of a neighbour of equal height within which a "
+                   "cell is not removed");
     visitor.integer("frames",
                     frames,
                     1,
                     255,
-                    "frames with such a line that remove a height shown by every observation");
+                    "number of frames with a contradicting line of sight that remove a height "
+                    "confirmed by every observation");
 }
 
 void FreeSpaceRays::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {

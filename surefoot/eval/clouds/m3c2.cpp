@@ -89,33 +89,36 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
     visitor.enumeration("normals",
                         normals,
                         kM3c2NormalsNames,
-                        "along which the clouds are compared: upwards, or across the reference's "
-                        "surface");
+                        "direction along which the clouds are compared: upwards, or along the "
+                        "normal of the reference surface");
     visitor.number("normal_diameter_m",
                    normal_diameter_m,
                    1e-4,
                    100.0,
-                   "diameter of the ball whose points give the normal (pca)");
+                   "diameter of the ball whose points define the normal; used if normals is pca");
     visitor.number("projection_diameter_m",
                    projection_diameter_m,
                    1e-4,
                    100.0,
                    "diameter of the cylinder whose points are averaged");
-    visitor.number("half_length_m",
-                   half_length_m,
-                   1e-4,
-                   100.0,
-                   "half the length of the cylinder: the largest distance that is found");
-    visitor.number("registration_error_m",
-                   registration_error_m,
-                   0.0,
-                   10.0,
-                   "one sigma of the registration of the clouds; part of the level of detection");
-    visitor.integer("min_points",
-                    min_points,
-                    1,
-                    1000000,
-                    "with fewer points of a cloud in the cylinder no distance is significant");
+    visitor.number(
+        "half_length_m",
+        half_length_m,
+        1e-4,
+        100.0,
+        "half the length of the cylinder, which is the largest distance that can be found");
+    visitor.number(
+        "registration_error_m",
+        registration_error_m,
+        0.0,
+        10.0,
+        "one sigma of the registration of the two clouds; it is part of the level of detection");
+    visitor.integer(
+        "min_points",
+        min_points,
+        1,
+        1000000,
+        "smallest number of points of each cloud in the cylinder that give a significant distance");
 }
 
 std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,

@@ -74,26 +74,24 @@ Call call_of(float live, float truth, double safe_threshold) {
 }  // namespace
 
 void EvalMapsConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("safe_threshold",
-                   safe_threshold,
-                   0.0,
-                   1.0,
-                   "a cell is safe when its traversability is at least this");
+    visitor.number(
+        "safe_threshold", safe_threshold, 0.0, 1.0, "smallest traversability of a safe cell");
     visitor.number("edge_step_m",
                    edge_step_m,
                    0.0,
                    10.0,
-                   "neighbouring true heights that differ more are an edge");
-    visitor.integer("edge_margin_cells",
-                    edge_margin_cells,
-                    0,
-                    100,
-                    "cells at most this far from an edge are left out of the errors");
+                   "smallest difference between neighbouring true heights that counts as an edge");
+    visitor.integer(
+        "edge_margin_cells",
+        edge_margin_cells,
+        0,
+        100,
+        "largest distance from an edge, in cells, at which a cell is left out of the errors");
     visitor.number("large_error_m",
                    large_error_m,
                    0.0,
                    10.0,
-                   "errors above this are counted in share_over_50mm");
+                   "height error above which a cell counts in share_over_50mm");
 }
 
 grid::Layer resample_nearest(const grid::GridGeometry& from,

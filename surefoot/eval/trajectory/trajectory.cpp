@@ -192,14 +192,18 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
 void EvalTrajectoryConfig::describe(ConfigVisitor& visitor) {
     static constexpr std::array<const char*, 3> kNames = {"se3", "yaw", "none"};
     visitor.enumeration(
-        "align", align, kNames, "transformation removed before positions are compared");
-    visitor.number("tolerance_s", tolerance_s, 0.0, 10.0, "largest time between matched poses");
+        "align", align, kNames, "transformation that is removed before positions are compared");
+    visitor.number("tolerance_s",
+                   tolerance_s,
+                   0.0,
+                   10.0,
+                   "largest time between an estimated pose and its true pose");
     visitor.number(
         "rpe_interval_s",
         rpe_interval_s,
         0.0,
         3600.0,
-        "time over which relative errors are taken; 0 = from one matched pose to the next");
+        "time over which relative pose errors are computed; 0 = from one matched pose to the next");
 }
 
 std::vector<PosePair> associate(const Trajectory& estimate,

@@ -74,23 +74,48 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
                    exposure_ms,
                    0.0,
                    1000.0,
-                   "live cameras: exposure, switches automatic exposure off; 0 = as it is");
+                   "live cameras: exposure time; a value above 0 switches automatic exposure off; "
+                   "0 = unchanged");
     visitor.integer(
-        "gain", gain, -1, 1'000'000, "in the driver's numbers (surefoot info); -1 = as it is");
-    visitor.integer("white_balance_k", white_balance_k, 0, 20'000, "0 = as it is");
-    visitor.enumeration(
-        "auto", automatic, kAutoNames, "automatic exposure, gain and white balance");
-    visitor.enumeration("format", format, kFormatNames, "of the images; any prefers yuyv");
+        "gain",
+        gain,
+        -1,
+        1'000'000,
+        "live cameras: gain in the units of the driver (see surefoot info); -1 = unchanged");
+    visitor.integer("white_balance_k",
+                    white_balance_k,
+                    0,
+                    20'000,
+                    "live cameras: colour temperature of the white balance; 0 = unchanged");
+    visitor.enumeration("auto",
+                        automatic,
+                        kAutoNames,
+                        "live cameras: mode of automatic exposure, gain and white balance");
+    visitor.enumeration("format",
+                        format,
+                        kFormatNames,
+                        "live cameras: pixel format of the images; any prefers yuyv");
     visitor.number("readout_ms",
                    readout_ms,
                    0.0,
                    1000.0,
-                   "rolling shutter, first to last row: stamps are for the middle row");
-    visitor.number(
-        "timeout_s", timeout_s, 0.2, 60.0, "without a frame, then the device is opened again");
-    visitor.number("reconnect_s", reconnect_s, 0.0, 3600.0, "without a frame, then the run ends");
-    visitor.integer(
-        "max_damaged", max_damaged, 1, 100'000, "unusable frames in a row, then the run ends");
+                   "live cameras: time from the first to the last row of a rolling shutter; 0 = "
+                   "global shutter; time stamps refer to the middle row");
+    visitor.number("timeout_s",
+                   timeout_s,
+                   0.2,
+                   60.0,
+                   "live cameras: time without a frame after which the device is opened again");
+    visitor.number("reconnect_s",
+                   reconnect_s,
+                   0.0,
+                   3600.0,
+                   "live cameras: time without a frame after which the run ends");
+    visitor.integer("max_damaged",
+                    max_damaged,
+                    1,
+                    100'000,
+                    "live cameras: number of unusable frames in a row after which the run ends");
 }
 
 std::optional<std::string> CameraConfig::problem() const {

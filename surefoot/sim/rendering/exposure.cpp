@@ -15,16 +15,42 @@ constexpr double kWarmUpMax_s = 30.0;
 }  // namespace
 
 void ExposureConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("exposure_s", exposure_s, 1e-5, 0.1, "exposure time, fixed or at the start");
-    visitor.boolean("automatic", automatic, "keep the mean grey value");
-    visitor.number("target_dn", target_dn, 10.0, 240.0, "mean grey value of the left image");
-    visitor.number("min_exposure_s", min_exposure_s, 1e-6, 0.1, "limit of the control");
-    visitor.number("max_exposure_s", max_exposure_s, 1e-5, 0.1, "beyond it the gain rises");
-    visitor.number("max_gain", max_gain, 1.0, 64.0, "limit of the control");
-    visitor.number("lag_s", lag_s, 0.0, 10.0, "time constant of the control; 0 = at once");
-    visitor.boolean("sun_warm_up", sun_warm_up, "over-exposed for the first 10-30 s");
-    visitor.number("warm_up_factor", warm_up_factor, 1.0, 100.0, "too much light at first");
-    visitor.number("right_gain", right_gain, 0.5, 2.0, "right camera relative to the left");
+    visitor.number("exposure_s",
+                   exposure_s,
+                   1e-5,
+                   0.1,
+                   "exposure time; with automatic exposure, the value at the start");
+    visitor.boolean("automatic",
+                    automatic,
+                    "true: the exposure control keeps the mean grey value at target_dn");
+    visitor.number("target_dn",
+                   target_dn,
+                   10.0,
+                   240.0,
+                   "mean grey value of the left image that the exposure control keeps");
+    visitor.number("min_exposure_s",
+                   min_exposure_s,
+                   1e-6,
+                   0.1,
+                   "shortest exposure time of the exposure control");
+    visitor.number(
+        "max_exposure_s",
+        max_exposure_s,
+        1e-5,
+        0.1,
+        "longest exposure time of the exposure control; if it is not enough, the gain rises");
+    visitor.number("max_gain", max_gain, 1.0, 64.0, "largest gain of the exposure control");
+    visitor.number("lag_s", lag_s, 0.0, 10.0, "time constant of the exposure control; 0 = at once");
+    visitor.boolean("sun_warm_up",
+                    sun_warm_up,
+                    "true: the images are over-exposed in the first 10-30 s, as in the sun");
+    visitor.number("warm_up_factor",
+                   warm_up_factor,
+                   1.0,
+                   100.0,
+                   "factor of too much light at the first frame; used if sun_warm_up is true");
+    visitor.number(
+        "right_gain", right_gain, 0.5, 2.0, "gain of the right camera relative to the left camera");
 }
 
 double metered_mean_dn(const Image<float>& signal_dn, double factor) {

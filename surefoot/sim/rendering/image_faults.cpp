@@ -45,11 +45,28 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
 }  // namespace
 
 void ImageFaultConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("drop_probability", drop_probability, 0.0, 1.0, "a frame never arrives");
-    visitor.number("repeat_probability", repeat_probability, 0.0, 1.0, "the previous images again");
-    visitor.number("tear_probability", tear_probability, 0.0, 1.0, "bottom of the frame before");
-    visitor.number("freeze_probability", freeze_probability, 0.0, 1.0, "images stop changing");
-    visitor.integer("freeze_frames", freeze_frames, 1, kMaxFreezeFrames, "length of a freeze");
+    visitor.number("drop_probability",
+                   drop_probability,
+                   0.0,
+                   1.0,
+                   "probability per frame that the frame never arrives");
+    visitor.number("repeat_probability",
+                   repeat_probability,
+                   0.0,
+                   1.0,
+                   "probability per frame that the previous images arrive again");
+    visitor.number("tear_probability",
+                   tear_probability,
+                   0.0,
+                   1.0,
+                   "probability per frame that the lower rows come from the previous frame");
+    visitor.number("freeze_probability",
+                   freeze_probability,
+                   0.0,
+                   1.0,
+                   "probability per frame that the images stop changing for freeze_frames");
+    visitor.integer(
+        "freeze_frames", freeze_frames, 1, kMaxFreezeFrames, "number of frames in one freeze");
 }
 
 std::optional<std::string> ImageFaultConfig::problem(int frames, int height) const {

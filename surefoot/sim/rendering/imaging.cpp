@@ -41,13 +41,22 @@ float as_grey(float value_dn) {
 }  // namespace
 
 void ImagingConfig::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "exposure", exposure, 0.01, 10.0, "grey value of a white lit surface, units of 255");
+    visitor.number("exposure",
+                   exposure,
+                   0.01,
+                   10.0,
+                   "grey value of a white surface that faces the lamp, in units of 255");
     visitor.number("vignetting", vignetting, 0.0, 0.9, "share of light lost in the image corner");
-    visitor.number("read_noise_dn", read_noise_dn, 0.0, 50.0, "noise in the dark, one sigma");
-    visitor.number("shot_noise_dn", shot_noise_dn, 0.0, 5.0, "noise variance per grey value");
     visitor.number(
-        "noise_size_px", noise_size_px, 0.0, 10.0, "smoothed over; 0 = each pixel's own");
+        "read_noise_dn", read_noise_dn, 0.0, 50.0, "one sigma of the image noise without light");
+    visitor.number(
+        "shot_noise_dn", shot_noise_dn, 0.0, 5.0, "variance of the shot noise per grey value");
+    visitor.number(
+        "noise_size_px",
+        noise_size_px,
+        0.0,
+        10.0,
+        "one sigma of the Gaussian that smooths the noise; 0 = independent noise in each pixel");
 }
 
 PixelNoise::PixelNoise() : quantiles_(kQuantiles) {

@@ -66,13 +66,33 @@ float smudge_share(double distance, double radius) {
 }  // namespace
 
 void OpticsConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("smear_sigma_px", smear_sigma_px, 0.0, kMaxSigma_px, "spot; 0 = ideal lens");
-    visitor.number(
-        "smudge_sigma_px", smudge_sigma_px, 0.0, kMaxSigma_px, "under a finger mark; 0 = clean");
-    visitor.number("smudge_x", smudge_x, 0.0, 1.0, "middle of the mark, share of the width");
-    visitor.number("smudge_y", smudge_y, 0.0, 1.0, "share of the height");
-    visitor.number("smudge_radius", smudge_radius, 0.01, 2.0, "share of the height");
-    visitor.enumeration("smudge_camera", smudge_camera, kCameraSideNames, "which lens has the mark");
+    visitor.number("smear_sigma_px",
+                   smear_sigma_px,
+                   0.0,
+                   kMaxSigma_px,
+                   "one sigma of the lens blur; 0 = ideal lens");
+    visitor.number("smudge_sigma_px",
+                   smudge_sigma_px,
+                   0.0,
+                   kMaxSigma_px,
+                   "one sigma of the blur under a finger mark; 0 = clean lens");
+    visitor.number("smudge_x",
+                   smudge_x,
+                   0.0,
+                   1.0,
+                   "x of the centre of the finger mark, as a share of the image width");
+    visitor.number("smudge_y",
+                   smudge_y,
+                   0.0,
+                   1.0,
+                   "y of the centre of the finger mark, as a share of the image height");
+    visitor.number("smudge_radius",
+                   smudge_radius,
+                   0.01,
+                   2.0,
+                   "radius of the finger mark, as a share of the image height");
+    visitor.enumeration(
+        "smudge_camera", smudge_camera, kCameraSideNames, "camera whose lens has the finger mark");
 }
 
 std::vector<float> smear_kernel(double sigma_px) {

@@ -54,14 +54,21 @@ float pattern_strength(Pattern pattern) noexcept {
 }
 
 void Material::describe(ConfigVisitor& visitor) {
-    visitor.enumeration("pattern", pattern, kPatternNames, "kind of surface");
-    visitor.number("albedo", albedo, 0.0, 1.0, "mean reflectance");
-    visitor.number("contrast", contrast, 0.0, 1.0, "of the pattern; 0 = uniform");
-    visitor.number("texel_m", texel_m, 1e-4, 0.1, "size of the finest detail");
-    visitor.number("yaw_rad", yaw_rad, -10.0, 10.0, "turn of the pattern on the surface");
-    visitor.enumeration("finish", finish, kFinishNames, "what happens to light");
-    visitor.number("gloss", gloss, 0.0, 1.0, "mirror: share reflected; glass: share let through");
-    visitor.boolean("same_look", same_look, "all solids of this material get one pattern");
+    visitor.enumeration("pattern", pattern, kPatternNames, "pattern of the surface");
+    visitor.number("albedo", albedo, 0.0, 1.0, "mean reflectance of the surface");
+    visitor.number("contrast", contrast, 0.0, 1.0, "contrast of the pattern; 0 = uniform");
+    visitor.number("texel_m", texel_m, 1e-4, 0.1, "size of the finest detail of the pattern");
+    visitor.number("yaw_rad", yaw_rad, -10.0, 10.0, "rotation of the pattern on the surface");
+    visitor.enumeration(
+        "finish", finish, kFinishNames, "how the surface reflects or transmits light");
+    visitor.number("gloss",
+                   gloss,
+                   0.0,
+                   1.0,
+                   "mirror: share of light reflected; glass: share of light transmitted");
+    visitor.boolean("same_look",
+                    same_look,
+                    "true: all solids of this material and of one shape have the same pattern");
 }
 
 TextureTable::TextureTable(Pattern pattern, std::uint64_t seed) {

@@ -16,7 +16,8 @@ constexpr int kMaxPits = 16;
 struct RepeatSpec {
     int count = 1;
     void describe(ConfigVisitor& visitor) {
-        visitor.integer("count", count, 0, kMaxPrimitives, "copies; 0 = none");
+        visitor.integer(
+            "count", count, 0, kMaxPrimitives, "number of copies of the object; 0 = none");
     }
 };
 

@@ -41,8 +41,17 @@ struct MotionModelSpec {
     void describe(ConfigVisitor& visitor) {
         visitor.enumeration(
             "carrier", motion_model, kMotionModelNames, "motion model of the camera");
-        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = default of the motion model");
-        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = default");
+        visitor.number("speed_m_s",
+                       speed_m_s,
+                       0.0,
+                       2.0,
+                       "speed of the motion; 0 = default of the motion model");
+        visitor.number(
+            "height_m",
+            height_m,
+            0.0,
+            3.0,
+            "height of base_link if the camera is hand-held; 0 = default of the motion model");
     }
 };
 
@@ -54,12 +63,18 @@ struct WaypointSpec {
     double ground_z_m = 0.0;
     Move move = Move::automatic;
     void describe(ConfigVisitor& visitor) {
-        visitor.number("x_m", x_m, -kReach_m, kReach_m, "ahead");
-        visitor.number("y_m", y_m, -kReach_m, kReach_m, "left");
-        visitor.number("yaw_deg", yaw_deg, -3600.0, 3600.0, "from +x towards +y");
-        visitor.number("pause_s", pause_s, 0.0, 600.0, "wait there");
-        visitor.number("ground_z_m", ground_z_m, -kReach_m, kReach_m, "height of the ground there");
-        visitor.enumeration("move", move, kMoveNames, "how a walking machine goes there");
+        visitor.number("x_m", x_m, -kReach_m, kReach_m, "position of the waypoint along x (ahead)");
+        visitor.number("y_m", y_m, -kReach_m, kReach_m, "position of the waypoint along y (left)");
+        visitor.number("yaw_deg",
+                       yaw_deg,
+                       -3600.0,
+                       3600.0,
+                       "direction of base_link at the waypoint, from +x towards +y");
+        visitor.number("pause_s", pause_s, 0.0, 600.0, "waiting time at the waypoint");
+        visitor.number(
+            "ground_z_m", ground_z_m, -kReach_m, kReach_m, "height of the ground at the waypoint");
+        visitor.enumeration(
+            "move", move, kMoveNames, "how a walking machine moves to the waypoint");
     }
 };
 
@@ -79,7 +94,7 @@ struct ScriptSpec {
 
     void describe(ConfigVisitor& visitor) {
         carried.describe(visitor);
-        visitor.choice("script", script, kScriptNames, "the way");
+        visitor.choice("script", script, kScriptNames, "name of the motion script");
         if (script != kRequiredChoice) describe_script(visitor);
     }
     [[nodiscard]] std::optional<std::string> problem() const;
@@ -93,23 +108,43 @@ void ScriptSpec::describe_script(ConfigVisitor& visitor) {
     switch (static_cast<Script>(script)) {
         case Script::approach:
         case Script::pivot_and_reverse:
-            visitor.number("distance_m", distance_m, 0.1, kReach_m, "how far it goes");
+            visitor.number("distance_m", distance_m, 0.1, kReach_m, "length of the path");
             return;
         case Script::turn_round:
-            visitor.number("turn_deg", turn_deg, -360.0, 360.0, "to the left, then back again");
+            visitor.number("turn_deg",
+                           turn_deg,
+                           -360.0,
+                           360.0,
+                           "angle of the turn to the left; afterwards the machine turns back by "
+                           "the same angle");
             return;
         case Script::back_to_table:
-            visitor.number("table_x_m", table_x_m, 0.5, kReach_m, "border of the table");
-            visitor.number("left_m", left_m, 0.5, kReach_m, "still to go when it turns round");
+            visitor.number("table_x_m", table_x_m, 0.5, kReach_m, "x of the border of the table");
+            visitor.number("left_m",
+                           left_m,
+                           0.5,
+                           kReach_m,
+                           "distance to the table at which the machine turns round");
             return;
         case Script::sidestep_through_door:
-            visitor.number("door_x_m", door_x_m, 0.6, kReach_m, "middle of the wall");
-            visitor.number("door_y_m", door_y_m, -kReach_m, kReach_m, "middle of the opening");
-            visitor.number("beyond_m", beyond_m, 0.0, kReach_m, "how far behind the wall it ends");
+            visitor.number(
+                "door_x_m", door_x_m, 0.6, kReach_m, "x of the middle of the wall with the door");
+            visitor.number(
+                "door_y_m", door_y_m, -kReach_m, kReach_m, "y of the middle of the door opening");
+            visitor.number("beyond_m",
+                           beyond_m,
+                           0.0,
+                           kReach_m,
+                           "distance behind the wall at which the path ends");
             return;
         case Script::descend_backwards:
-            visitor.integer("steps_ahead", steps_ahead, 1, 100, "before it turns round");
-            visitor.number("riser_m", riser_m, 0.0, 0.2, "of the flight that goes down");
+            visitor.integer("steps_ahead",
+                            steps_ahead,
+                            1,
+                            100,
+                            "number of steps ahead before the machine turns round");
+            visitor.number(
+                "riser_m", riser_m, 0.0, 0.2, "height of each step of the descending flight");
             return;
     }
 }

@@ -16,9 +16,13 @@ struct StationSpec {
     double y_m = kRequired;
     double above_m = kTripod_m;
     void describe(ConfigVisitor& visitor) {
-        visitor.number("x_m", x_m, -kReach_m, kReach_m, "ahead");
-        visitor.number("y_m", y_m, -kReach_m, kReach_m, "left");
-        visitor.number("above_m", above_m, 0.2, 10.0, "height over the highest surface there");
+        visitor.number("x_m", x_m, -kReach_m, kReach_m, "position of the scanner along x (ahead)");
+        visitor.number("y_m", y_m, -kReach_m, kReach_m, "position of the scanner along y (left)");
+        visitor.number("above_m",
+                       above_m,
+                       0.2,
+                       10.0,
+                       "height of the scanner over the highest surface below it");
     }
 };
 

@@ -17,20 +17,30 @@ constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 
 void describe_position(ConfigVisitor& visitor, double& x_m, double& y_m) {
-    visitor.number("x_m", x_m, -kReach_m, kReach_m, "ahead");
-    visitor.number("y_m", y_m, -kReach_m, kReach_m, "left");
+    visitor.number(
+        "x_m", x_m, -kReach_m, kReach_m, "position along x (ahead) in the group or scene");
+    visitor.number(
+        "y_m", y_m, -kReach_m, kReach_m, "position along y (left) in the group or scene");
 }
 
 void describe_heading(ConfigVisitor& visitor, double& heading_deg) {
-    visitor.number("heading_deg", heading_deg, -360.0, 360.0, "from +x towards +y");
+    visitor.number("heading_deg",
+                   heading_deg,
+                   -360.0,
+                   360.0,
+                   "direction of the object, from +x towards +y of the group or scene");
 }
 
 void describe_size(ConfigVisitor& visitor, const char* key, double& size_m) {
-    visitor.number(key, size_m, kMinSize_m, kReach_m, "size");
+    visitor.number(key, size_m, kMinSize_m, kReach_m, "dimension of the object that the key names");
 }
 
 void describe_height(ConfigVisitor& visitor, const char* key, double& z_m) {
-    visitor.number(key, z_m, -kReach_m, kReach_m, "height");
+    visitor.number(key,
+                   z_m,
+                   -kReach_m,
+                   kReach_m,
+                   "height that the key names, above the origin of the group or scene");
 }
 
 std::optional<std::string> not_above(double bottom_m, double top_m) {
@@ -79,8 +89,8 @@ void GroupSpec::describe(ConfigVisitor& visitor) {
 }
 
 void BoxSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
+    visitor.choice("material", material, materials, "material of the box");
+    visitor.enumeration("label", label, kLabelNames, "class of the box in the ground truth");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
     describe_size(visitor, "length_m", length_m);
@@ -100,8 +110,8 @@ void BoxSpec::add(Site& site) const {
 }
 
 void RampSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
+    visitor.choice("material", material, materials, "material of the ramp");
+    visitor.enumeration("label", label, kLabelNames, "class of the ramp in the ground truth");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
     describe_size(visitor, "length_m", length_m);
@@ -118,8 +128,8 @@ void RampSpec::add(Site& site) const {
 }
 
 void CylinderSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
+    visitor.choice("material", material, materials, "material of the cylinder");
+    visitor.enumeration("label", label, kLabelNames, "class of the cylinder in the ground truth");
     describe_position(visitor, x_m, y_m);
     describe_size(visitor, "radius_m", radius_m);
     describe_height(visitor, "bottom_m", bottom_m);
@@ -139,10 +149,10 @@ void CylinderSpec::add(Site& site) const {
 }
 
 void AreaSpec::describe(ConfigVisitor& visitor) {
-    visitor.number("min_x_m", min_x_m, -kReach_m, kReach_m, "rear border");
-    visitor.number("min_y_m", min_y_m, -kReach_m, kReach_m, "right border");
-    visitor.number("max_x_m", max_x_m, -kReach_m, kReach_m, "front border");
-    visitor.number("max_y_m", max_y_m, -kReach_m, kReach_m, "left border");
+    visitor.number("min_x_m", min_x_m, -kReach_m, kReach_m, "x of the rear border of the area");
+    visitor.number("min_y_m", min_y_m, -kReach_m, kReach_m, "y of the right border of the area");
+    visitor.number("max_x_m", max_x_m, -kReach_m, kReach_m, "x of the front border of the area");
+    visitor.number("max_y_m", max_y_m, -kReach_m, kReach_m, "y of the left border of the area");
 }
 
 std::optional<std::string> AreaSpec::problem() const {
@@ -161,9 +171,9 @@ void PitSpec::describe(ConfigVisitor& visitor) {
 }
 
 void FloorSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.choice("pit_material", pit_material, materials, "material of its pits");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
+    visitor.choice("material", material, materials, "material of the floor");
+    visitor.choice("pit_material", pit_material, materials, "material of the pits in the floor");
+    visitor.enumeration("label", label, kLabelNames, "class of the floor in the ground truth");
     area.describe(visitor);
     describe_height(visitor, "z_m", z_m);
 }
@@ -189,7 +199,10 @@ void FloorSpec::add(Site& site) const {
 void WallsSpec::describe(ConfigVisitor& visitor) {
     visitor.choice(
         "material", material, materials, "material of the walls in front and on the right");
-    visitor.choice("other_material", other_material, materials, "material of the other two");
+    visitor.choice("other_material",
+                   other_material,
+                   materials,
+                   "material of the walls behind and on the left");
     area.describe(visitor);
     describe_size(visitor, "thickness_m", thickness_m);
     describe_height(visitor, "bottom_m", bottom_m);
@@ -218,9 +231,9 @@ void WallsSpec::add(Site& site) const {
 }
 
 void TableSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.choice("leg_material", leg_material, materials, "material of its legs");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
+    visitor.choice("material", material, materials, "material of the table");
+    visitor.choice("leg_material", leg_material, materials, "material of the legs of the table");
+    visitor.enumeration("label", label, kLabelNames, "class of the table in the ground truth");
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
     describe_size(visitor, "length_m", length_m);
@@ -228,7 +241,11 @@ void TableSpec::describe(ConfigVisitor& visitor) {
     describe_height(visitor, "top_m", top_m);
     describe_size(visitor, "thickness_m", thickness_m);
     describe_size(visitor, "leg_radius_m", leg_radius_m);
-    visitor.number("leg_inset_m", leg_inset_m, 0.0, 1.0, "from the borders to a leg's middle");
+    visitor.number("leg_inset_m",
+                   leg_inset_m,
+                   0.0,
+                   1.0,
+                   "distance from the borders of the table to the middle of a leg");
 }
 
 std::optional<std::string> TableSpec::problem() const {
@@ -270,14 +287,24 @@ void DoorSpec::describe(ConfigVisitor& visitor) {
     describe_position(visitor, x_m, y_m);
     describe_heading(visitor, heading_deg);
     describe_height(visitor, "z_m", z_m);
-    visitor.number("width_m", width_m, 0.1, 10.0, "clear width between the posts");
-    visitor.number("thickness_m", thickness_m, 0.01, 2.0, "of the wall");
-    visitor.number("post_width_m", post_width_m, 0.005, 1.0, "of each post, across the way");
-    visitor.number("sill_m", sill_m, 0.0, 0.5, "height; 0 = none");
-    visitor.number("wall_left_m", wall_left_m, 0.0, kReach_m, "wall beside the left post");
-    visitor.number("wall_right_m", wall_right_m, 0.0, kReach_m, "wall beside the right post");
-    visitor.number("wall_height_m", wall_height_m, 0.1, 10.0, "of the whole wall");
-    visitor.number("opening_height_m", opening_height_m, 0.0, 10.0, "lintel above; 0 = none");
+    visitor.number("width_m", width_m, 0.1, 10.0, "clear width between the posts of the door");
+    visitor.number("thickness_m", thickness_m, 0.01, 2.0, "thickness of the wall");
+    visitor.number("post_width_m",
+                   post_width_m,
+                   0.005,
+                   1.0,
+                   "width of each post, across the direction of travel");
+    visitor.number("sill_m", sill_m, 0.0, 0.5, "height of the sill; 0 = no sill");
+    visitor.number(
+        "wall_left_m", wall_left_m, 0.0, kReach_m, "length of the wall beside the left post");
+    visitor.number(
+        "wall_right_m", wall_right_m, 0.0, kReach_m, "length of the wall beside the right post");
+    visitor.number("wall_height_m", wall_height_m, 0.1, 10.0, "height of the whole wall");
+    visitor.number("opening_height_m",
+                   opening_height_m,
+                   0.0,
+                   10.0,
+                   "height of the opening below the lintel; 0 = no lintel");
 }
 
 std::optional<std::string> DoorSpec::problem() const {

@@ -93,24 +93,44 @@ Prism wedge(const Vector2d& axis_m,
 }  // namespace
 
 void FlightSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
-    visitor.number("x_m", x_m, -kReach_m, kReach_m, "its first edge");
-    visitor.number("y_m", y_m, -kReach_m, kReach_m, "its middle");
-    visitor.number("z_m", z_m, -kReach_m, kReach_m, "floor where it begins");
-    visitor.number("heading_deg", heading_deg, -360.0, 360.0, "the way along it");
-    visitor.enumeration("direction", direction, kStairDirectionNames, "along its heading");
-    visitor.integer("steps", steps, 1, kMaxSteps, "rises");
-    visitor.number("rise_m", rise_m, kMinRise_m, kMaxRise_m, "of each step");
-    visitor.number("going_m", going_m, 0.05, 5.0, "from nose to nose");
-    visitor.number("width_m", width_m, 0.1, kReach_m, "across");
-    visitor.number("landing_m", landing_m, 0.0, kReach_m, "depth of the landing at its end");
-    visitor.number("base_m", base_m, 0.0, kReach_m, "solid this far below its lower end");
-    visitor.number("nosing_m", nosing_m, 0.0, 0.1, "overhang of a tread over its riser");
-    visitor.number("tread_thickness_m", tread_thickness_m, 0.005, 0.3, "with nosing or open");
-    visitor.boolean("open", open, "without risers");
+    visitor.choice("material", material, materials, "material of the flight");
+    visitor.enumeration("label", label, kLabelNames, "class of the flight in the ground truth");
+    visitor.number("x_m", x_m, -kReach_m, kReach_m, "x of the middle of the first edge");
+    visitor.number("y_m", y_m, -kReach_m, kReach_m, "y of the middle of the first edge");
+    visitor.number("z_m", z_m, -kReach_m, kReach_m, "height of the floor where the flight begins");
+    visitor.number("heading_deg",
+                   heading_deg,
+                   -360.0,
+                   360.0,
+                   "direction of travel along the flight, from +x towards +y");
+    visitor.enumeration("direction",
+                        direction,
+                        kStairDirectionNames,
+                        "whether the flight leads up or down along heading_deg");
+    visitor.integer("steps", steps, 1, kMaxSteps, "number of rises of the flight");
+    visitor.number("rise_m", rise_m, kMinRise_m, kMaxRise_m, "height of each rise");
+    visitor.number("going_m", going_m, 0.05, 5.0, "depth of each tread, from nosing to nosing");
     visitor.number(
-        "rise_variation_m", rise_variation_m, 0.0, kMaxVariation_m, "difference of each rise");
+        "width_m", width_m, 0.1, kReach_m, "width of the flight, across the direction of travel");
+    visitor.number("landing_m",
+                   landing_m,
+                   0.0,
+                   kReach_m,
+                   "depth of the landing at the end of the flight; 0 = no landing");
+    visitor.number(
+        "base_m", base_m, 0.0, kReach_m, "depth of the solid below the lower end of the flight");
+    visitor.number("nosing_m", nosing_m, 0.0, 0.1, "overhang of a tread over its riser");
+    visitor.number("tread_thickness_m",
+                   tread_thickness_m,
+                   0.005,
+                   0.3,
+                   "thickness of a tread; used if the flight has a nosing or no risers");
+    visitor.boolean("open", open, "true: the flight has no risers");
+    visitor.number("rise_variation_m",
+                   rise_variation_m,
+                   0.0,
+                   kMaxVariation_m,
+                   "largest deviation of a rise from rise_m");
 }
 
 std::optional<std::string> FlightSpec::problem() const {
@@ -153,21 +173,44 @@ void FlightSpec::add(Site& site) const {
 }
 
 void SpiralSpec::describe(ConfigVisitor& visitor) {
-    visitor.choice("material", material, materials, "its material");
+    visitor.choice("material", material, materials, "material of the spiral flight");
     visitor.choice("pole_material", pole_material, materials, "material of the pole");
-    visitor.enumeration("label", label, kLabelNames, "what it is");
-    visitor.number("x_m", x_m, -kReach_m, kReach_m, "its axis");
-    visitor.number("y_m", y_m, -kReach_m, kReach_m, "its axis");
-    visitor.number("z_m", z_m, -kReach_m, kReach_m, "floor where it begins");
-    visitor.number("start_deg", start_deg, -360.0, 360.0, "direction of its first edge");
-    visitor.number("turn_deg", turn_deg, -60.0, 60.0, "of one step, positive to the left");
-    visitor.enumeration("direction", direction, kStairDirectionNames, "along the turn");
-    visitor.integer("steps", steps, 1, kMaxSteps, "rises");
-    visitor.number("rise_m", rise_m, kMinRise_m, kMaxRise_m, "of each step");
-    visitor.number("inner_radius_m", inner_radius_m, 0.01, 20.0, "where the steps begin");
-    visitor.number("outer_radius_m", outer_radius_m, 0.1, 20.0, "where they end");
-    visitor.number("thickness_m", thickness_m, 0.0, 0.5, "of a step; 0 = solid");
-    visitor.number("pole_height_m", pole_height_m, 0.0, 10.0, "above z_m; 0 = no pole");
+    visitor.enumeration(
+        "label", label, kLabelNames, "class of the spiral flight in the ground truth");
+    visitor.number("x_m", x_m, -kReach_m, kReach_m, "x of the axis of the spiral flight");
+    visitor.number("y_m", y_m, -kReach_m, kReach_m, "y of the axis of the spiral flight");
+    visitor.number(
+        "z_m", z_m, -kReach_m, kReach_m, "height of the floor where the spiral flight begins");
+    visitor.number("start_deg",
+                   start_deg,
+                   -360.0,
+                   360.0,
+                   "direction from the axis to the first edge, from +x towards +y");
+    visitor.number("turn_deg",
+                   turn_deg,
+                   -60.0,
+                   60.0,
+                   "angle of one step about the axis, positive to the left");
+    visitor.enumeration("direction",
+                        direction,
+                        kStairDirectionNames,
+                        "whether the spiral flight leads up or down along turn_deg");
+    visitor.integer("steps", steps, 1, kMaxSteps, "number of rises of the spiral flight");
+    visitor.number("rise_m", rise_m, kMinRise_m, kMaxRise_m, "height of each rise");
+    visitor.number("inner_radius_m",
+                   inner_radius_m,
+                   0.01,
+                   20.0,
+                   "distance from the axis to the inner end of the steps");
+    visitor.number("outer_radius_m",
+                   outer_radius_m,
+                   0.1,
+                   20.0,
+                   "distance from the axis to the outer end of the steps");
+    visitor.number(
+        "thickness_m", thickness_m, 0.0, 0.5, "thickness of a step; 0 = solid down to the floor");
+    visitor.number(
+        "pole_height_m", pole_height_m, 0.0, 10.0, "height of the pole above z_m; 0 = no pole");
 }
 
 std::optional<std::string> SpiralSpec::problem() const {

@@ -91,27 +91,97 @@ struct Scales {
 }  // namespace
 
 void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
-    visitor.integer("stride", stride, 1, 16, "every n-th row and column");
-    visitor.number("sigma_px", sigma_px, 0.0, 10.0, "white and correlated noise together");
-    visitor.number("correlated_share", correlated_share, 0.0, 1.0, "share of its variance");
-    visitor.number("correlation_px", correlation_px, 1.0, 500.0, "correlation falls to 1/e here");
-    visitor.number("fixed_share", fixed_share, 0.0, 1.0, "of that: sticks to the surface");
-    visitor.number("fixed_size_m", fixed_size_m, 0.001, 10.0, "scale of that on the surface");
-    visitor.number("locking_px", locking_px, 0.0, 0.5, "pull towards whole disparities");
-    visitor.number("sigma_factor", sigma_factor, 0.01, 100.0, "reported over true sigma");
-    visitor.number("jump_px", shadow.jump_px, 0.0, 100.0, "smallest jump of disparity");
-    visitor.number("fattening_px", shadow.fattening_px, 0.0, 100.0, "width of the seam");
-    visitor.number("ramp_px", shadow.ramp_px, 0.0, 250.0, "reach of bridges behind a jump");
-    visitor.number("invented_share", invented_share, 0.0, 1.0, "of what no window can decide");
+    visitor.integer(
+        "stride",
+        stride,
+        1,
+        16,
+        "distance between the rows and columns that are used; 1 = every row and column");
+    visitor.number("sigma_px",
+                   sigma_px,
+                   0.0,
+                   10.0,
+                   "one sigma of the white and correlated disparity noise together");
+    visitor.number("correlated_share",
+                   correlated_share,
+                   0.0,
+                   1.0,
+                   "share of the noise variance that is correlated between pixels");
+    visitor.number("correlation_px",
+                   correlation_px,
+                   1.0,
+                   500.0,
+                   "distance at which the correlation of the noise has fallen to 1/e");
+    visitor.number("fixed_share",
+                   fixed_share,
+                   0.0,
+                   1.0,
+                   "share of the correlated variance that is attached to the surface and repeats "
+                   "in every frame");
+    visitor.number("fixed_size_m",
+                   fixed_size_m,
+                   0.001,
+                   10.0,
+                   "size of the pattern on a surface of the noise that is attached to the surface");
     visitor.number(
-        "edge_suspicion", edge_suspicion, 0.0, 1.0, "outlier probability reported there");
-    visitor.number("plain_suspicion", plain_suspicion, 0.0, 1.0, "and elsewhere");
-    visitor.number("max_disparity_px", max_disparity_px, 1.0, 4096.0, "search range");
-    visitor.number("missing_share", missing_share, 0.0, 1.0, "unknown without a reason");
-    visitor.number("patch_px", patch_px, 1.0, 500.0, "size of such patches");
-    visitor.number("fade_incidence_deg", fade_incidence_deg, 0.0, 90.0, "begin to get lost");
-    visitor.number("max_incidence_deg", max_incidence_deg, 0.0, 90.0, "nothing beyond it");
-    visitor.number("least_contrast", least_contrast, 0.0, 1.0, "weaker textures get lost");
+        "locking_px", locking_px, 0.0, 0.5, "amplitude of the pull towards whole disparities");
+    visitor.number(
+        "sigma_factor", sigma_factor, 0.01, 100.0, "reported sigma divided by true sigma");
+    visitor.number("jump_px",
+                   shadow.jump_px,
+                   0.0,
+                   100.0,
+                   "smallest disparity jump between neighbouring pixels that counts as an edge");
+    visitor.number("fattening_px",
+                   shadow.fattening_px,
+                   0.0,
+                   100.0,
+                   "width of the seam by which the nearer surface grows at an edge");
+    visitor.number(
+        "ramp_px", shadow.ramp_px, 0.0, 250.0, "largest width of the ramps that bridge an edge");
+    visitor.number("invented_share",
+                   invented_share,
+                   0.0,
+                   1.0,
+                   "share of the shadowed and occluded pixels that a ramp bridges");
+    visitor.number("edge_suspicion",
+                   edge_suspicion,
+                   0.0,
+                   1.0,
+                   "outlier probability reported in seams and ramps");
+    visitor.number("plain_suspicion",
+                   plain_suspicion,
+                   0.0,
+                   1.0,
+                   "outlier probability reported outside seams and ramps");
+    visitor.number(
+        "max_disparity_px", max_disparity_px, 1.0, 4096.0, "largest disparity of the search range");
+    visitor.number(
+        "missing_share",
+        missing_share,
+        0.0,
+        1.0,
+        "share of all other pixels that are lost in patches, without a cause in the scene");
+    visitor.number("patch_px",
+                   patch_px,
+                   1.0,
+                   500.0,
+                   "size of the patches that are lost without a cause in the scene");
+    visitor.number("fade_incidence_deg",
+                   fade_incidence_deg,
+                   0.0,
+                   90.0,
+                   "angle of incidence from which pixels begin to be lost");
+    visitor.number("max_incidence_deg",
+                   max_incidence_deg,
+                   0.0,
+                   90.0,
+                   "angle of incidence from which all pixels are lost");
+    visitor.number("least_contrast",
+                   least_contrast,
+                   0.0,
+                   1.0,
+                   "contrast of a texture below which pixels are lost, in proportion");
 }
 
 Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,

@@ -57,18 +57,54 @@ bool near_edge(const Image<Seen>& seen, int u, int v) {
 }  // namespace
 
 void DepthCameraConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("axial_offset_m", axial_offset_m, 0.0, 1.0, "axial noise at its smallest");
-    visitor.number("axial_slope_1_m", axial_slope_1_m, 0.0, 1.0, "growth with depth squared");
-    visitor.number("axial_center_m", axial_center_m, 0.0, 10.0, "depth of the smallest noise");
-    visitor.number("axial_angle", axial_angle, 0.0, 1.0, "growth towards grazing incidence");
-    visitor.number("lateral_share", lateral_share, 0.0, 0.1, "lateral noise, share of depth");
-    visitor.number("min_range_m", min_range_m, 0.0, 100.0, "nearest depth");
-    visitor.number("max_range_m", max_range_m, 0.0, 1000.0, "farthest depth");
-    visitor.number("projector_x_m", projector_x_m, -1.0, 1.0, "projector beside the camera");
-    visitor.number("disparity_step_px", disparity_step_px, 0.0, 2.0, "steps of structured light");
-    visitor.number("max_incidence_deg", max_incidence_deg, 0.0, 90.0, "nothing beyond it");
-    visitor.number("least_return", least_return, 0.0, 1.0, "darker surfaces get lost");
-    visitor.boolean("mixes_edges", mixes_edges, "time of flight: pixels between two surfaces");
+    visitor.number("axial_offset_m",
+                   axial_offset_m,
+                   0.0,
+                   1.0,
+                   "smallest sigma of the axial noise, at depth axial_center_m");
+    visitor.number("axial_slope_1_m",
+                   axial_slope_1_m,
+                   0.0,
+                   1.0,
+                   "growth of the axial noise with the squared distance from axial_center_m");
+    visitor.number(
+        "axial_center_m", axial_center_m, 0.0, 10.0, "depth at which the axial noise is smallest");
+    visitor.number("axial_angle",
+                   axial_angle,
+                   0.0,
+                   1.0,
+                   "growth of the axial noise towards grazing incidence");
+    visitor.number("lateral_share",
+                   lateral_share,
+                   0.0,
+                   0.1,
+                   "one sigma of the lateral noise, as a share of the depth");
+    visitor.number("min_range_m", min_range_m, 0.0, 100.0, "smallest depth that is measured");
+    visitor.number("max_range_m", max_range_m, 0.0, 1000.0, "largest depth that is measured");
+    visitor.number(
+        "projector_x_m",
+        projector_x_m,
+        -1.0,
+        1.0,
+        "offset of the projector along the x axis of the camera; 0 = light from the camera itself");
+    visitor.number("disparity_step_px",
+                   disparity_step_px,
+                   0.0,
+                   2.0,
+                   "step of the quantised disparities of structured light; 0 = no quantisation");
+    visitor.number("max_incidence_deg",
+                   max_incidence_deg,
+                   0.0,
+                   90.0,
+                   "largest angle of incidence that is measured");
+    visitor.number("least_return",
+                   least_return,
+                   0.0,
+                   1.0,
+                   "share of returned light below which pixels are lost, in proportion");
+    visitor.boolean("mixes_edges",
+                    mixes_edges,
+                    "true: pixels on an edge lie between the two surfaces, as with time of flight");
 }
 
 DepthCameraConfig DepthCameraConfig::with_noise(double factor) const {

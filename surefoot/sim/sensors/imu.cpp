@@ -143,12 +143,12 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_bias_sigma_rad_s,
                    0.0,
                    1.0,
-                   "bias at the start, drawn per seed");
+                   "one sigma of the gyroscope's bias at the start, drawn per seed");
     visitor.number("accel_bias_sigma_m_s2",
                    accel_bias_sigma_m_s2,
                    0.0,
                    10.0,
-                   "bias at the start, drawn per seed");
+                   "one sigma of the accelerometer's bias at the start, drawn per seed");
     visitor.number("gyro_walk_rad_s2_sqrt_hz",
                    gyro_walk_rad_s2_sqrt_hz,
                    0.0,
@@ -159,10 +159,26 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    10.0,
                    "random walk of the accelerometer's bias");
-    visitor.number("gyro_range_rad_s", gyro_range_rad_s, 0.0, 1e3, "saturation; 0 = none");
-    visitor.number("accel_range_m_s2", accel_range_m_s2, 0.0, 1e4, "saturation; 0 = none");
-    visitor.number("gyro_step_rad_s", gyro_step_rad_s, 0.0, 1.0, "one count; 0 = none");
-    visitor.number("accel_step_m_s2", accel_step_m_s2, 0.0, 10.0, "one count; 0 = none");
+    visitor.number("gyro_range_rad_s",
+                   gyro_range_rad_s,
+                   0.0,
+                   1e3,
+                   "range limit at which the gyroscope saturates; 0 = no limit");
+    visitor.number("accel_range_m_s2",
+                   accel_range_m_s2,
+                   0.0,
+                   1e4,
+                   "range limit at which the accelerometer saturates; 0 = no limit");
+    visitor.number("gyro_step_rad_s",
+                   gyro_step_rad_s,
+                   0.0,
+                   1.0,
+                   "turn rate of one count of the gyroscope; 0 = no quantisation");
+    visitor.number("accel_step_m_s2",
+                   accel_step_m_s2,
+                   0.0,
+                   10.0,
+                   "acceleration of one count of the accelerometer; 0 = no quantisation");
 }
 
 ImuModel::ImuModel(std::shared_ptr<const Motion> motion,

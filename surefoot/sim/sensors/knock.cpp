@@ -30,10 +30,15 @@ Blend blend(double s) {
 }  // namespace
 
 void KnockConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("at_s", at_s, 0.0, 1e5, "the camera is knocked so long after the first frame");
-    visitor.number("roll_deg", roll_deg, -45.0, 45.0, "turn of the camera on its mount");
-    visitor.number("pitch_deg", pitch_deg, -45.0, 45.0, "likewise; positive = down");
-    visitor.number("yaw_deg", yaw_deg, -45.0, 45.0, "likewise");
+    visitor.number("at_s", at_s, 0.0, 1e5, "time of the knock after the first frame");
+    visitor.number(
+        "roll_deg", roll_deg, -45.0, 45.0, "roll of the camera on its mount by the knock");
+    visitor.number("pitch_deg",
+                   pitch_deg,
+                   -45.0,
+                   45.0,
+                   "pitch of the camera on its mount by the knock; positive = down");
+    visitor.number("yaw_deg", yaw_deg, -45.0, 45.0, "yaw of the camera on its mount by the knock");
 }
 
 KnockedMotion::KnockedMotion(std::shared_ptr<const Motion> machine,

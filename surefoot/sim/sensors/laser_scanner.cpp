@@ -36,17 +36,41 @@ int steps_in(double span_deg, double step_deg) {
 }  // namespace
 
 void LaserScannerConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("azimuth_min_deg", azimuth_min_deg, -360.0, 360.0, "first column");
-    visitor.number("azimuth_max_deg", azimuth_max_deg, -360.0, 360.0, "not reached");
-    visitor.number("elevation_min_deg", elevation_min_deg, -90.0, 90.0, "first row");
-    visitor.number("elevation_max_deg", elevation_max_deg, -90.0, 90.0, "last row");
-    visitor.number("step_deg", step_deg, 0.001, 90.0, "between columns and between rows");
-    visitor.number("min_range_m", min_range_m, 0.0, 100.0, "nearest range");
-    visitor.number("max_range_m", max_range_m, 0.0, 1e4, "farthest range on 90 % reflectance");
-    visitor.number("noise_floor_m", noise_floor_m, 0.0, 1.0, "range noise close by");
-    visitor.number("noise_growth", noise_growth, 0.0, 0.1, "range noise per range, white surface");
+    visitor.number(
+        "azimuth_min_deg", azimuth_min_deg, -360.0, 360.0, "azimuth of the first column");
+    visitor.number("azimuth_max_deg",
+                   azimuth_max_deg,
+                   -360.0,
+                   360.0,
+                   "azimuth at which the scan ends; this azimuth itself is excluded");
+    visitor.number(
+        "elevation_min_deg", elevation_min_deg, -90.0, 90.0, "elevation of the first row");
+    visitor.number(
+        "elevation_max_deg", elevation_max_deg, -90.0, 90.0, "elevation of the last row");
+    visitor.number("step_deg",
+                   step_deg,
+                   0.001,
+                   90.0,
+                   "angle between neighbouring columns and between neighbouring rows");
+    visitor.number("min_range_m", min_range_m, 0.0, 100.0, "smallest range that is measured");
+    visitor.number("max_range_m",
+                   max_range_m,
+                   0.0,
+                   1e4,
+                   "largest range that is measured on a surface of 90 % reflectance");
+    visitor.number(
+        "noise_floor_m", noise_floor_m, 0.0, 1.0, "one sigma of the range noise at range 0");
+    visitor.number("noise_growth",
+                   noise_growth,
+                   0.0,
+                   0.1,
+                   "growth of the range noise per metre of range, on a white surface");
     visitor.number("beam_exit_m", beam_exit_m, 0.0, 0.1, "diameter of the beam at the scanner");
-    visitor.number("beam_divergence_rad", beam_divergence_rad, 0.0, 0.1, "growth of the diameter");
+    visitor.number("beam_divergence_rad",
+                   beam_divergence_rad,
+                   0.0,
+                   0.1,
+                   "growth of the beam diameter per metre of range");
 }
 
 Result<LaserScanner> LaserScanner::make(const Scene& scene,

@@ -10,8 +10,16 @@ namespace surefoot::sim {
 namespace {}  // namespace
 
 void DriftConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("position_m_sqrt_m", position_m_sqrt_m, 0.0, 1.0, "of each axis after 1 m");
-    visitor.number("turn_deg_sqrt_m", turn_deg_sqrt_m, 0.0, 30.0, "of each axis after 1 m");
+    visitor.number("position_m_sqrt_m",
+                   position_m_sqrt_m,
+                   0.0,
+                   1.0,
+                   "one sigma of the position along each axis after 1 m of motion");
+    visitor.number("turn_deg_sqrt_m",
+                   turn_deg_sqrt_m,
+                   0.0,
+                   30.0,
+                   "one sigma of the rotation about each axis after 1 m of motion");
 }
 
 ModelledOdometry::ModelledOdometry(const DriftConfig& config,

@@ -6,20 +6,41 @@
 namespace surefoot::stairs {
 
 void ClassConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("headroom_m",
+                   headroom_m,
+                   0.0,
+                   10.0,
+                   "smallest free height above ground; ground with less free height is a tunnel");
     visitor.number(
-        "headroom_m", headroom_m, 0.0, 10.0, "ground with less free height above it is a tunnel");
-    visitor.number("max_step_m", max_step_m, 0.01, 1.0, "highest step up or down onto ground");
-    visitor.number("level_deg", level_deg, 0.1, 45.0, "steeper ground is a ramp");
-    visitor.number("ramp_deg", ramp_deg, 0.1, 60.0, "steeper ground is not walked on");
-    visitor.number("min_table_m", min_table_m, 0.0, 5.0, "narrower raised objects are walls");
-    visitor.number("max_table_m", max_table_m, 0.1, 10.0, "higher raised objects are walls");
+        "max_step_m",
+        max_step_m,
+        0.01,
+        1.0,
+        "largest height difference between two surfaces that one step can reach, up or down");
+    visitor.number("level_deg",
+                   level_deg,
+                   0.1,
+                   45.0,
+                   "largest slope of level ground; steeper ground is a ramp");
     visitor.number(
-        "max_sigma_m", max_sigma_m, 0.001, 1.0, "cells with a larger sigma have no class");
+        "ramp_deg", ramp_deg, 0.1, 60.0, "largest slope of a ramp; steeper ground is not walkable");
+    visitor.number("min_table_m",
+                   min_table_m,
+                   0.0,
+                   5.0,
+                   "smallest width of a table; narrower raised objects are walls");
+    visitor.number("max_table_m",
+                   max_table_m,
+                   0.1,
+                   10.0,
+                   "largest height of a table; higher raised objects are walls");
+    visitor.number(
+        "max_sigma_m", max_sigma_m, 0.001, 1.0, "largest sigma of a cell that has a class");
     visitor.number("reach_m",
                    reach_m,
                    0.1,
                    10.0,
-                   "high and low cells are compared with ground within this distance");
+                   "largest distance of the ground with which high and low cells are compared");
 }
 
 std::optional<std::string> ClassConfig::problem() const {

@@ -30,14 +30,29 @@ double square(double value) {
 }  // namespace
 
 void PatchConfig::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "block_m", block_m, 0.005, 1.0, "side of the blocks of cells that planes are fitted to");
-    visitor.number(
-        "tolerance_m", tolerance_m, 0.001, 0.2, "largest distance of a cell from its plane");
-    visitor.number(
-        "sigma_factor", sigma_factor, 0.0, 10.0, "or this many of the cell's own sigmas");
-    visitor.number("max_tolerance_m", max_tolerance_m, 0.001, 0.5, "but never more than this");
-    visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest patch");
+    visitor.number("block_m",
+                   block_m,
+                   0.005,
+                   1.0,
+                   "side length of the blocks of cells to which planes are fitted");
+    visitor.number("tolerance_m",
+                   tolerance_m,
+                   0.001,
+                   0.2,
+                   "largest distance of a cell from its plane, unless sigma_factor allows more");
+    visitor.number("sigma_factor",
+                   sigma_factor,
+                   0.0,
+                   10.0,
+                   "largest distance of a cell from its plane [sigma of the cell], if this is more "
+                   "than tolerance_m");
+    visitor.number("max_tolerance_m",
+                   max_tolerance_m,
+                   0.001,
+                   0.5,
+                   "upper limit of the distance of a cell from its plane that tolerance_m and "
+                   "sigma_factor allow");
+    visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest area of a planar patch");
 }
 
 std::optional<std::string> PatchConfig::problem() const {

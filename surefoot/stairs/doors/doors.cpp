@@ -532,24 +532,36 @@ double DoorFinder::clearance_m(const Opening& opening) {
 }
 
 void DoorConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("min_width_m", min_width_m, 0.1, 10.0, "narrower openings are no doors");
-    visitor.number("max_width_m", max_width_m, 0.1, 10.0, "wider openings are no doors");
-    visitor.number("max_depth_m", max_depth_m, 0.05, 10.0, "deeper openings are corridors");
-    visitor.number("rise_m",
-                   rise_m,
-                   0.01,
-                   2.0,
-                   "anything higher than this above the ground beside it is a wall");
+    visitor.number("min_width_m", min_width_m, 0.1, 10.0, "smallest width of a door opening");
+    visitor.number("max_width_m", max_width_m, 0.1, 10.0, "largest width of a door opening");
+    visitor.number("max_depth_m",
+                   max_depth_m,
+                   0.05,
+                   10.0,
+                   "largest depth of a door; deeper passages are corridors");
     visitor.number(
-        "wall_height_m", wall_height_m, 0.01, 3.0, "visible height of a wall above the ground");
+        "rise_m",
+        rise_m,
+        0.01,
+        2.0,
+        "smallest height of a wall above the ground beside the wall; lower objects are not walls");
+    visitor.number("wall_height_m",
+                   wall_height_m,
+                   0.01,
+                   3.0,
+                   "smallest visible height of a wall above the ground");
     visitor.number("wall_length_m",
                    wall_length_m,
                    0.01,
                    10.0,
-                   "least length of wall on either side of a door");
-    visitor.number("min_sill_m", min_sill_m, 0.0, 1.0, "lower sills are not reported");
+                   "smallest length of the wall on either side of a door");
     visitor.number(
-        "sigma_factor", sigma_factor, 0.0, 100.0, "a sill exceeds the floor by this many");
+        "min_sill_m", min_sill_m, 0.0, 1.0, "smallest height of a sill that is reported");
+    visitor.number("sigma_factor",
+                   sigma_factor,
+                   0.0,
+                   100.0,
+                   "smallest height of a sill above the floor [sigma]");
     visitor.number(
         "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
     visitor.number("jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "one sigma of the position of a jamb");
@@ -557,7 +569,8 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "an overhead object smaller than a square of this side may be a wrong match");
+                   "side length of a square; an overhead object smaller than this square may be a "
+                   "wrong match");
 }
 
 std::optional<std::string> DoorConfig::problem() const {

@@ -8,33 +8,35 @@ void TrackingConfig::describe(ConfigVisitor& visitor) {
                    mean_observations,
                    1.0,
                    100.0,
-                   "a position is the mean of at most so many observations");
+                   "largest number of observations in the mean position of a feature");
     visitor.integer("going_observations",
                     going_observations,
                     1,
                     RobustMean::kMostObservations,
-                    "a going is the mean of at most so many observations");
+                    "largest number of observations in the mean going of a flight");
     visitor.integer("level_observations",
                     level_observations,
                     1,
                     1000,
-                    "consecutive observations of level ground that end a drop");
+                    "number of consecutive observations of level ground that end a drop");
     visitor.integer("missed_observations",
                     missed_observations,
                     1,
                     1000,
-                    "consecutive observations that see the place of a feature but not the feature, "
-                    "until it ends (drops excepted)");
+                    "number of consecutive observations that see the location of a feature but not "
+                    "the feature, after which the feature ends (drops excepted)");
     visitor.integer("first_observations",
                     first_observations,
                     1,
                     1000,
-                    "the same for a feature that was found only once");
-    visitor.number("steps_observations",
-                   steps_observations,
-                   1.0,
-                   1000.0,
-                   "the number of steps is the one found most often in about so many observations");
+                    "number of consecutive observations that see the location of a feature but not "
+                    "the feature, after which a feature ends that was found only once");
+    visitor.number(
+        "steps_observations",
+        steps_observations,
+        1.0,
+        1000.0,
+        "number of observations over which the most frequent number of steps of a flight is taken");
 }
 
 }  // namespace surefoot::stairs
