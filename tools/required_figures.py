@@ -6,7 +6,7 @@ requirement. The names in the first column are unique within a page.
 import pathlib
 import sys
 
-HEADER = "| what | found | required | met |"
+HEADER = "| case | result | required | met |"
 KNOWN_MISSES = pathlib.Path(__file__).resolve().parent.parent / "state" / "known_misses.txt"
 
 

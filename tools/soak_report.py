@@ -291,9 +291,9 @@ def lines_of(found):
     for text, field, digits in (
             ("number of processes, one after the other", "processes", 0),
             ("longest life of a process without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
-            ("its resident memory at the beginning [MB]", "mb_first", 1), ("its resident memory at the end [MB]", "mb_last", 1),
-            ("**slope of its resident memory [MB per hour]**", "mb_per_h", 2), ("slope of its memory that is not shared [MB per hour]", "own_mb_per_h", 2),
-            ("the same over all lives beyond 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
+            ("resident memory at the beginning of this life [MB]", "mb_first", 1), ("resident memory at the end of this life [MB]", "mb_last", 1),
+            ("**slope of the resident memory in this life [MB per hour]**", "mb_per_h", 2), ("slope of the memory that is not shared in this life [MB per hour]", "own_mb_per_h", 2),
+            ("slope of the memory that is not shared over all lives beyond 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
             ("largest resident memory of any process [MB]", "mb_most", 1),
             ("**slope of handles [per hour]** (fewest in each 5 minutes)", "handles_per_h", 2),
             ("smallest and largest number of handles", None, 0), ("slope of threads [per hour]", "threads_per_h", 2)):

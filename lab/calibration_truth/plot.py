@@ -70,15 +70,16 @@ def calibration_real(lab):
                                    "--json"], check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
             answer.write_text(said.stdout)
         if not answer.exists():
-            body.append([name, model, "not measured yet", "-", "-", "-", "-"])
+            body.append([name, model, "not measured yet", "-", "-", "-", "-", "-"])
             continue
         found = json.loads(answer.read_text())
         left_out = [r["view"] for r in found["rejected"]]
         met = found["used"] >= pairs and found["rms_px"] <= rms and found["row_rms_px"] <= rows
         body.append([name, model, f"{found['used']} of {found['views']} ({pairs})", f"{found['rms_px']:.4f} ({rms})",
-                     f"{found['row_rms_px']:.4f} ({rows}) at f {found['row_focal_px']:.0f}", ", ".join(map(str, left_out)) or "none",
+                     f"{found['row_rms_px']:.4f} ({rows})", f"{found['row_focal_px']:.0f}", ", ".join(map(str, left_out)) or "none",
                      "yes" if met else "**no**"])
-    return table(["set", "model", "pairs used (at least)", "joint rms (at most) [px]", "row rms (at most) [px]", "views left out", "met"], body)
+    return table(["set", "model", "pairs used (at least)", "joint rms (at most) [px]", "row rms (at most) [px]", "focal length of the row rms [px]",
+                  "views left out", "met"], body)
 
 
 def calibration_held_out(lab):

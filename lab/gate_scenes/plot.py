@@ -72,7 +72,8 @@ def gate_runs(lab):
         lines += gate_runs_table(counts)
         reasons = gate_reasons_table(counts, "noise 1")
         if len(reasons) > 2:  # more than the heading
-            lines += ["", "Reasons of the refusals:", ""] + reasons
+            lines += ["", "Reasons of the refused safe movements above (movement of the scene, without `unseen`). "
+                      "One refusal may have several reasons:", ""] + reasons
     if GATE_KEPT_MISSES.exists():
         misses = [(row["tier"], *(row[name] for name in MISS)) for row in read(GATE_KEPT_MISSES)]
     fill("gate_scenes", lines[1:], "runs")

@@ -180,7 +180,7 @@ std::vector<Fault> faults_of_light() {
     for (const int n : {10, 0})
         for (const bool left : {true, false})
             faults.push_back(
-                {"one_eye_black",
+                {"one_camera_black",
                  fmt::format("{}, {}", left ? "left" : "right", n > 0 ? "1 s" : "for good"),
                  kOnset,
                  n,
@@ -322,8 +322,8 @@ std::vector<Fault> faults_of_imu() {
 std::vector<Fault> faults_of_rig() {
     const auto exchange = [](Shown& s, int, Bench&) { std::swap(s.frame.left, s.frame.right); };
     std::vector<Fault> faults;
-    faults.push_back({"eyes_exchanged", "1 s", kOnset, 10, exchange});
-    faults.push_back({"eyes_exchanged", "from the start", kFirst, 0, exchange});
+    faults.push_back({"cameras_swapped", "1 s", kOnset, 10, exchange});
+    faults.push_back({"cameras_swapped", "from the start", kFirst, 0, exchange});
     const auto put = [&](const char* name, const char* severity, auto change) {
         faults.push_back({name, severity, kFirst, 0, {}, change});
     };

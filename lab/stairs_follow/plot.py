@@ -34,7 +34,8 @@ def stairs_follow(lab):
                 errors.append([scene, WAYS[way], *(follow_errors(mine, name) for name in ("riser", "going", "across"))])
     fill("stairs", table(["scene", "runs", "features", "edges that appear or vanish per second", "drops", "kerbs", "flights", "doors",
                           "changes of the number of steps", "drops found, but not reported", "call [us]"], changes)
-         + [""] + table(["scene", "features", "riser: mean error / change between observations, rms / error of the last observation [mm]", "going: the same [mm]", "first edge: the same [mm]"], errors), "followed")
+         + [""] + table(["scene", "features", *(f"{size}: mean error / change between observations, rms / error of the last observation [mm]"
+                                                 for size in ("riser", "going", "first edge"))], errors), "followed")
 
 
 def follow_errors(rows, name):

@@ -254,7 +254,7 @@ std::span<const ThesisRow> thesis_rows() {
          "door_rex",
          "door_width_m",
          length_m,
-         "the same",
+         "950 +- 100",
          "door_width_m"},
         {kDoor,
          "floor behind the door minus floor before it, trolley",
