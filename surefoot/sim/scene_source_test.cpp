@@ -369,7 +369,7 @@ TEST(SceneSourceTest, APathOfMoreFramesThanASourceCountsIsRefused) {
     options.rate_hz = 1000.0;
     const auto source = open_scene(options);
     ASSERT_FALSE(source);
-    EXPECT_NE(source.error().message.find("at most 1000000 are possible"), std::string::npos)
+    EXPECT_NE(source.error().message.find("at most 1000000 are allowed"), std::string::npos)
         << source.error().message;
     options.frames = 3;
     EXPECT_TRUE(open_scene(options));

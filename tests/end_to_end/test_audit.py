@@ -59,7 +59,7 @@ class AuditLog(CliTest):
         files = self.fill()
         files[-1].write_bytes(files[-1].read_bytes()[:-5])
         process = self.run_ok("audit", "verify", self.log)
-        self.assertIn("writing ended there", process.stderr)
+        self.assertIn("the writer stopped there", process.stderr)
 
     def test_a_log_that_cannot_be_written_changes_no_verdict(self):
         plain = self.ask(9, "--json")

@@ -214,7 +214,8 @@ TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     const auto size = static_cast<std::uint32_t>(record.size());
     const FrameEncoding plain = FrameEncoding::plain;
     EXPECT_EQ(read(FrameKind::verdict, plain, record, size), "");
-    EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1), "two lengths"));
+    EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1),
+                         "the stored and the plain length"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, FrameEncoding::zstd, record, size), "unpacked"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, static_cast<FrameEncoding>(9), record, size),
                          "encoding of the frame is unknown"));

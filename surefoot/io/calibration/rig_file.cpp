@@ -241,9 +241,10 @@ Result<std::vector<std::string>> write_rig(const std::string& path,
         format == RigFormat::surefoot ? Result<std::string>(format_rig_yaml(rig))
         : format == RigFormat::opencv ? format_opencv_rig(rig)
         : format == RigFormat::kalibr ? format_kalibr_rig(rig)
-        : format == RigFormat::zed    ? format_zed_rig(rig)
-                                      : Result<std::string>(output_error(fmt::format(
-                                         "{} files are read, not written", name_of(format))));
+        : format == RigFormat::zed
+            ? format_zed_rig(rig)
+            : Result<std::string>(output_error(fmt::format(
+                  "{} files can be read but not written; choose another format", name_of(format))));
     if (!text) return output_error(fmt::format("{}: {}", path, text.error().message));
     if (Status status = write_file(path, *text); !status) return status.error();
     return Files{path};

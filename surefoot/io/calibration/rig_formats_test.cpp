@@ -447,7 +447,7 @@ TEST(RigZed, NewFilesKeepTheLensApart) {
     ASSERT_TRUE(file.ok()) << message(file);
     EXPECT_EQ(std::get<camera::PinholeRational>(file->rig.left.model).k6, 0.012);
     EXPECT_EQ(std::get<camera::PinholeRadTan>(file->rig.right->model).k1, -0.172795);
-    EXPECT_EQ(file->notes[0], "[RIGHT_DISTO] is not complete and left out");
+    EXPECT_EQ(file->notes[0], "[RIGHT_DISTO] is incomplete and is left out");
 }
 
 TEST(RigZed, NamesInAnyCaseCommentsAndTheOtherSpelling) {
@@ -498,7 +498,8 @@ TEST(RigZed, BadValuesNameFileAndKey) {
     EXPECT_TRUE(contains(message(parse_zed_rig(std::string(2 << 20, ' '), "z.conf")), "at most"));
     camera::StereoRig other = rig_with(Lens::radtan5);
     other.left.width = other.right->width = 640;
-    EXPECT_TRUE(contains(message(format_zed_rig(other)), "knows no images of 640x376 px"));
+    EXPECT_TRUE(contains(message(format_zed_rig(other)),
+                         "cannot store a calibration for images of 640x376 px"));
 }
 
 /// Decimal commas, as a German locale has them (which may not be installed).

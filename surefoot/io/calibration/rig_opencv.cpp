@@ -69,10 +69,10 @@ void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& 
     const std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
     const auto is_zero = [](double value) { return value == 0.0; };
     if (D.size() != 4 || std::all_of(D.begin(), D.end(), is_zero)) return;
-    out.notes.push_back(fmt::format(
-        "{}: four coefficients without the name of a lens model are taken as k1 k2 p1 p2 of a "
-        "pinhole; if cv::fisheye made them, add 'fisheye: 1' to the file",
-        distortion.key));
+    out.notes.push_back(
+        fmt::format("{}: four coefficients without the name of a lens model are read as k1 k2 p1 "
+                    "p2 of a pinhole; if cv::fisheye made them, add 'fisheye: 1' to the file",
+                    distortion.key));
 }
 
 /// Reads a rotation matrix or a rotation vector (cv::Rodrigues) and returns 9 numbers.
@@ -80,7 +80,7 @@ std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigF
     std::vector<double> R = read_matrix(yaml, *named.node, named.key, 3, 9);
     if (R.size() == 3) {
         out.notes.push_back(
-            fmt::format("{}: three numbers are taken as a rotation vector", named.key));
+            fmt::format("{}: the three numbers are read as a rotation vector", named.key));
         return row_major(exp_so3({R[0], R[1], R[2]}).toRotationMatrix());
     }
     if (R.size() != 9) {

@@ -138,7 +138,7 @@ TEST(RigVariants, RosModelsAreWhatTheirCoefficientsSay) {
     const auto rational = with("plumb_bob", "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0]");
     ASSERT_TRUE(rational.ok()) << message(rational);
     EXPECT_EQ(std::get<camera::PinholeRational>(rational->rig.left.model).k5, 0.2);
-    EXPECT_TRUE(has_note(rational, "taken as rational_polynomial"));
+    EXPECT_TRUE(has_note(rational, "read as rational_polynomial"));
     const std::string rational_8 = "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0.05";
     EXPECT_TRUE(with("rational_polynomial", rational_8 + ", 0, 0, 0, 0, 0, 0]").ok());
     EXPECT_TRUE(contains(message(with("rational_polynomial", rational_8 + ", 0.001, 0, 0, 0]")),
@@ -365,7 +365,7 @@ TEST(RigVariants, OpenCvSizeRotationAndLens) {
     ASSERT_TRUE(turned.ok()) << message(turned);
     const auto matrix = opencv(opencv_file(kUsualNames));
     EXPECT_LT(difference(turned->rig.T_left_right, matrix->rig.T_left_right).norm(), 1e-12);
-    EXPECT_TRUE(has_note(turned, "taken as a rotation vector"));
+    EXPECT_TRUE(has_note(turned, "read as a rotation vector"));
     EXPECT_TRUE(contains(message(opencv(replaced(opencv_file(kUsualNames), kR, "[0, 1, 0, 0]"))),
                          "R: 4 numbers; a rotation matrix has 9, a rotation vector 3"));
 
@@ -677,7 +677,7 @@ TEST(RigVariants, ZedFilesOfAnyAge) {
                                "SN.conf")
                     .ok());
     EXPECT_TRUE(contains(message(file(replaced(stereo, "TY=-0.08\n", ""))),
-                         "[STEREO] has no 'TY_HD'. Older files leave it out"));
+                         "[STEREO] has no 'TY_HD'. Older files have no such key"));
     EXPECT_TRUE(contains(message(file(replaced(stereo, "RX_HD=0.001\n", ""))),
                          "or add the line 'RX_HD = 0'"));
 }

@@ -203,7 +203,7 @@ Status V4l2Device::set_control(std::uint32_t id, const std::string& name, int va
     if (system_->request(VIDIOC_G_CTRL, &now) == 0 && std::abs(now.value - value) >= known->step &&
         now.value != value) {
         return input_error(fmt::format(
-            "{}: {} was set to {}, but the camera says {}", path_, name, value, now.value));
+            "{}: {} was set to {}, but the camera reports {}", path_, name, value, now.value));
     }
     return {};
 }
@@ -221,8 +221,8 @@ Status V4l2Device::set_mode(const VideoMode& mode) {
     if (static_cast<int>(got.width) != mode.width || static_cast<int>(got.height) != mode.height ||
         format_of(got.pixelformat) != mode.format) {
         return input_error(
-            fmt::format("{}: asked for {} x {} {}, the camera gives {} x {} {}; see surefoot info "
-                        "v4l2:{} for what it can do",
+            fmt::format("{}: asked for {} x {} {}, but the camera gives {} x {} {}; run 'surefoot "
+                        "info v4l2:{}' to list its modes",
                         path_,
                         mode.width,
                         mode.height,
@@ -248,8 +248,8 @@ Status V4l2Device::set_rate(double rate_hz) {
     const double got_hz = rate_of(parameters.parm.capture.timeperframe);
     if (std::abs(got_hz - rate_hz) <= kRateTolerance * rate_hz) return {};
     return input_error(
-        fmt::format("{}: asked for {:g} Hz, the camera gives {:g} Hz at this size; see surefoot "
-                    "info v4l2:{} for what it can do",
+        fmt::format("{}: asked for {:g} Hz, but the camera gives {:g} Hz at this size; run "
+                    "'surefoot info v4l2:{}' to list its modes",
                     path_,
                     rate_hz,
                     got_hz,
@@ -305,7 +305,8 @@ Result<std::optional<VideoBuffer>> V4l2Device::dequeue(int timeout_ms) {
         return failed("stopped to deliver", error);
     }
     if (raw.index >= mappings_.size())
-        return input_error(fmt::format("{}: the driver names buffer {}", path_, raw.index));
+        return input_error(fmt::format(
+            "{}: the driver returned buffer {}, which does not exist", path_, raw.index));
     VideoBuffer buffer;
     const Mapping& mapping = mappings_[raw.index];
     buffer.bytes = {mapping.address, std::min<std::size_t>(raw.bytesused, mapping.length)};

@@ -171,7 +171,7 @@ TEST(SixteenBits, AValueBeyondTheGuessIsAnErrorNotASaturatedPixel) {
     write_image(folder / ("r/mav0/cam1/data/" + stamp(1) + ".png"), deep(image(1), 8));
     const Played played = play(folder / "r", options);
     EXPECT_EQ(played.frames.size(), 4U);
-    EXPECT_TRUE(contains(played.errors, "needs more than 12 bits; give --image-bits 16"))
+    EXPECT_TRUE(contains(played.errors, "needs more than 12 bits; give the number of bits"))
         << played.errors;
     options.image_bits = 16;
     EXPECT_EQ(play(folder / "r", options).errors, "");
@@ -311,7 +311,7 @@ TEST(RgbdOfOthers, MillimetresAreGuessedWithASentence) {
     const Played guessed = play(folder.path());
     ASSERT_EQ(guessed.frames.size(), 1U) << guessed.errors;
     EXPECT_EQ(guessed.frames[0].depth_m.at(3, 3), 2.0F);
-    EXPECT_TRUE(contains(guessed.notes(), "depth is taken as millimetres")) << guessed.notes();
+    EXPECT_TRUE(contains(guessed.notes(), "depth is read as millimetres")) << guessed.notes();
     OpenOptions options;
     options.depth_codes_per_m = 5000.0;
     EXPECT_EQ(play(folder.path(), options).frames.at(0).depth_m.at(3, 3), 0.4F);

@@ -79,7 +79,7 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
         if (!is_folder(join_path(folder, layout.left))) continue;
         if (!is_folder(join_path(folder, layout.right))) {
             return input_error(
-                fmt::format("{}: {} is there but {} is missing; a stereo recording has both",
+                fmt::format("{}: {} exists but {} is missing; a stereo recording needs both",
                             folder,
                             layout.left,
                             layout.right));

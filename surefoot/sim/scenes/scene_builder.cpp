@@ -55,10 +55,10 @@ void SceneBuilder::place_one(const SceneNode& node, const Spec& spec, const Plac
     ++solids_;
     lines_.resize(static_cast<std::size_t>(scene_.primitives()), node.line);
     if (scene_.primitives() > kMaxPrimitives) {
-        reader_.fail(
-            node,
-            fmt::format(
-                "makes {} primitives, a scene may have {}", scene_.primitives(), kMaxPrimitives));
+        reader_.fail(node,
+                     fmt::format("makes {} primitives; a scene may have at most {}",
+                                 scene_.primitives(),
+                                 kMaxPrimitives));
     }
 }
 
