@@ -398,7 +398,7 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
     SceneOptions fault = small("floor");
     fault.frames = 5;
     fault.faults.planned = {{5, ImageFault::dropped, 0}};
-    EXPECT_NE(message(fault).find("allowed are 1 to 4"), std::string::npos);
+    EXPECT_NE(message(fault).find("give a frame from 1 to 4"), std::string::npos);
     SceneOptions no_image = small("floor");
     no_image.sensor = Sensor::analytic;
     no_image.faults.tear_probability = 0.1;

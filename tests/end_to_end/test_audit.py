@@ -52,7 +52,7 @@ class AuditLog(CliTest):
         files[2].unlink()
         process = surefoot("audit", "verify", self.log)
         self.assertEqual(process.returncode, 1)
-        self.assertIn("1 files are missing", process.stderr)
+        self.assertIn("1 log files are missing", process.stderr)
         self.assertIn("DAMAGED", process.stdout)
 
     def test_an_end_that_was_cut_is_a_warning(self):

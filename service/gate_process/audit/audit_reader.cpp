@@ -162,11 +162,12 @@ bool AuditReader::take_file_head(const Frame& frame) {
     const std::string own_name = audit_file_name(head.run_id, head.number);
     std::uint64_t number = 0;
     if (parse_audit_file_name(name, number) && name != own_name)
-        return damaged("this is " + own_name + " under another name", frame.header.sequence);
+        return damaged("the file has a wrong name: it is " + own_name + "; rename it back",
+                       frame.header.sequence);
     if (head_ && head.number > head_->number + 1)
-        return damaged(
-            fmt::format("{} files are missing before this one", head.number - head_->number - 1),
-            frame.header.sequence);
+        return damaged(fmt::format("{} log files are missing before this file",
+                                   head.number - head_->number - 1),
+                       frame.header.sequence);
     const bool same_run = head_ && head.run_id == head_->run_id;
     if (same_run && !follows(frame.header, link_)) return false;
     if (head_ && !same_run && !follows(frame.header, Link{})) return false;

@@ -60,8 +60,8 @@ std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, 
     if (zero) return "none";
     yaml.fail(list,
               key,
-              fmt::format("coefficients of distortion_model {}; name their model (plumb_bob, "
-                          "rational_polynomial, equidistant)",
+              fmt::format("the coefficients have distortion_model {}; give plumb_bob, "
+                          "rational_polynomial or equidistant",
                           quoted(model)));
     return "none";
 }

@@ -98,15 +98,15 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
         return input_error(
-            fmt::format("{}: has no section for {} px; it holds {}. A ZED crops its sensor "
-                        "differently for each resolution, so that no section can be scaled",
+            fmt::format("{}: the file has no section for {} px, only {}. A ZED crops its sensor "
+                        "differently for each resolution, so no section can be scaled",
                         ini.name,
                         size_text(*size),
                         fmt::join(found, ", ")));
     }
     return input_error(
-        fmt::format("{}: holds {}; use it with its images, or take one out with 'surefoot rig "
-                    "FILE --resolution WxH --out rig.yaml'",
+        fmt::format("{}: the file has several resolutions: {}; use it with its images, or select "
+                    "one with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
                     ini.name,
                     fmt::join(found, ", ")));
 }

@@ -116,7 +116,7 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
         const bool same = head_ && head_->line == content;
         if (same || (!head_ && *axes == axes_)) return {};
         if (comment && head_ && columns.size() != columns_) return {};
-        return input_error("other columns than before; put each part in a file of its own");
+        return input_error("the columns change here; put each part into a separate file");
     }
     for (const std::size_t axis : *axes) {
         if (is_metre(columns[axis].unit)) continue;

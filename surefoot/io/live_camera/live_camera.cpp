@@ -187,8 +187,8 @@ Result<std::optional<StereoFrame>> LiveCamera::next() {
 Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffer) {
     if (!buffer.monotonic) {
         return input_error(info_.path +
-                           ": the driver's time stamps are not of CLOCK_MONOTONIC: the age of a "
-                           "frame would not be known");
+                           ": the driver's time stamps do not use CLOCK_MONOTONIC, so the age of a "
+                           "frame is unknown; use another camera or driver");
     }
     StereoFrame frame;
     frame.time_ns = middle_of_exposure_ns(buffer);

@@ -65,7 +65,8 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
     if (const int error = system.open(path); error != 0) {
         if (error == EACCES) {
             return input_error(fmt::format(
-                "{}: may not be opened; add the user to the group 'video' and log in again", path));
+                "{}: no permission to open it; add the user to the group 'video' and log in again",
+                path));
         }
         if (error == ENOTTY) return input_error(path + ": not a device");
         return device.failed("cannot be opened (surefoot doctor lists the cameras)", error);
@@ -77,9 +78,10 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                                   ? capability.device_caps
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
-        return input_error(fmt::format(
-            "{}: delivers no streamed video (a camera has several nodes; use the first one)",
-            path));
+        return input_error(
+            fmt::format("{}: this device delivers no video stream; a camera has several devices: "
+                        "use the first one",
+                        path));
     }
     device.card_ = text_of(capability.card);
     device.driver_ = text_of(capability.driver);
@@ -286,7 +288,7 @@ Status V4l2Device::start() {
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     if (const int error = system_->request(VIDIOC_STREAMON, &type); error != 0) {
         return failed(error == ENOSPC ? "not enough USB bandwidth (choose a smaller or slower mode)"
-                                      : "cannot start to stream",
+                                      : "cannot start the video stream",
                       error);
     }
     return {};
@@ -295,14 +297,14 @@ Status V4l2Device::start() {
 Result<std::optional<VideoBuffer>> V4l2Device::dequeue(int timeout_ms) {
     if (const int error = system_->wait(timeout_ms); error != 0) {
         if (error == ETIMEDOUT || error == EINTR) return std::optional<VideoBuffer>();
-        return failed("stopped to deliver", error);
+        return failed("stopped delivering images", error);
     }
     v4l2_buffer raw = {};
     raw.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     raw.memory = V4L2_MEMORY_MMAP;
     if (const int error = system_->request(VIDIOC_DQBUF, &raw); error != 0) {
         if (error == EAGAIN) return std::optional<VideoBuffer>();
-        return failed("stopped to deliver", error);
+        return failed("stopped delivering images", error);
     }
     if (raw.index >= mappings_.size())
         return input_error(fmt::format(

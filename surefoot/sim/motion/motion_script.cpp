@@ -73,18 +73,18 @@ Status check_waypoint(std::size_t i, const Waypoint& stop) {
                         std::abs(stop.ground_z_m) <= kFarthest_m &&
                         std::abs(stop.yaw_rad) <= kFarthest_m;  // false for NaN too
     if (!usable) {
-        return usage_error(fmt::format(
-            "simulator: waypoint {} is at x {} y {} z {} yaw {} rad, allowed are finite numbers "
-            "up to {:.0f}",
-            i,
-            stop.x_m,
-            stop.y_m,
-            stop.ground_z_m,
-            stop.yaw_rad,
-            kFarthest_m));
+        return usage_error(
+            fmt::format("simulator: waypoint {} is at x {} y {} z {} yaw {} rad; give finite "
+                        "numbers up to {:.0f}",
+                        i,
+                        stop.x_m,
+                        stop.y_m,
+                        stop.ground_z_m,
+                        stop.yaw_rad,
+                        kFarthest_m));
     }
     if (!(stop.pause_s >= 0.0 && stop.pause_s <= kLongestPause_s)) {
-        return usage_error(fmt::format("simulator: waypoint {} has pause_s {}, allowed are 0 to {}",
+        return usage_error(fmt::format("simulator: waypoint {} has pause_s {}; it must be 0 to {}",
                                        i,
                                        stop.pause_s,
                                        kLongestPause_s));

@@ -79,8 +79,8 @@ void SceneBuilder::add_floor(const SceneNode& node, const Place& place) {
         const SceneNode* pits = reader_.required(node, "pits", SceneNode::Kind::list);
         if (pits == nullptr) return;
         if (pits->items.size() > kMaxPits) {
-            reader_.fail(*pits,
-                         fmt::format("are {}, allowed are {}", pits->items.size(), kMaxPits));
+            reader_.fail(
+                *pits, fmt::format("are {}; at most {} are allowed", pits->items.size(), kMaxPits));
         }
         for (const SceneNode& item : pits->items) {
             PitSpec pit;

@@ -270,7 +270,7 @@ TEST(SceneFileTest, AScannerStandsOverTheGround) {
     };
     EXPECT_NE(error_of("scan: {stations: [{x_m: 7, y_m: 0}]}\n").find("there is no ground"),
               std::string::npos);
-    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0, allowed are 1 to 100"),
+    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0; 1 to 100 are allowed"),
               std::string::npos);
     EXPECT_NE(error_of("scan: {from: 3}\n").find("unknown key 'from'"), std::string::npos);
 }
@@ -456,7 +456,7 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
         {replaced("waypoints:", "carrier: horse\n  waypoints:"),
          "test.yaml:8: 'carrier' 'horse' is not one of trolley, rex, hand"},
         {replaced("[{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]", "[]"),
-         "test.yaml:8: 'waypoints' are 0, allowed are 1 to 1000"},
+         "test.yaml:8: 'waypoints' are 0; 1 to 1000 are allowed"},
         {replaced("pause_s: 1", "pause_s: -1"), "test.yaml:8: 'pause_s' is -1"},
     };
     for (const BadFile& file : files) {
