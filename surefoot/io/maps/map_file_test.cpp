@@ -209,7 +209,7 @@ TEST(MapFile, SaysWhatIsImpossible) {
     }
     std::string twice = bytes;
     twice.replace(kTableAt + kEntryBytes, kEntryBytes, bytes, kTableAt, kEntryBytes);
-    EXPECT_TRUE(contains(message(parse_map(resealed(twice), "m")), "'elevation' is there twice"));
+    EXPECT_TRUE(contains(message(parse_map(resealed(twice), "m")), "'elevation' appears twice"));
 }
 
 TEST(MapFile, ANewerMinorVersionMayHaveMoreHeaderAndMoreLayers) {

@@ -296,7 +296,7 @@ TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
         const auto bad = read_scene({"test.yaml", text_with(motion)}, "", 1);
         return bad ? std::string("accepted") : bad.error().message;
     };
-    EXPECT_NE(error_of(way).find("a trolley takes 1:2 at most"), std::string::npos)
+    EXPECT_NE(error_of(way).find("a trolley climbs 1:2 at most"), std::string::npos)
         << error_of(way);
     EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is allowed for a hand only"),
               std::string::npos);
@@ -397,7 +397,7 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
          "test.yaml:10: 'box' makes 2001 primitives; a scene may have at most 2000"},
         {file_with("  - repeat: {count: 2, name: k, solids: [{repeat: {count: 2, name: k, solids: "
                    "[]}}]}\n"),
-         "parameter 'k' is there already"},
+         "parameter 'k' is defined twice"},
         {file_with("  - box: {x_m: 0, y_m: 0, length_m: 1, width_m: 1, top_m: 2, material: "
                    "stone}\n"),
          "test.yaml:7: 'motion' brings the camera or base_link into the solid of line 10 after "
