@@ -104,7 +104,7 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     switch (found.outcome) {
         case AlignmentOutcome::converged: return;
         case AlignmentOutcome::no_pairs:
-            log_warning("no pair of points counts: give a better --guess or a larger --reach");
+            log_warning("no pair of points can be used: give a better --guess or a larger --reach");
             return;
         case AlignmentOutcome::too_few_points:
             log_warning(
@@ -130,20 +130,20 @@ void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {
         log_warning(
-            fmt::format("the clouds do not determine {} of 6 directions; in these the initial "
-                        "guess stays unchanged",
+            fmt::format("the clouds do not determine {} of 6 directions; in these directions the "
+                        "initial guess stays unchanged",
                         found.free_directions));
     }
     if (found.edge_directions > 0) {
         log_info(
-            fmt::format("only edges determine {} of 6 directions; an edge ends somewhere between "
-                        "two points, so sigma there is the spacing of the points",
+            fmt::format("only edges determine {} of 6 directions. An edge ends somewhere between "
+                        "two points, so sigma in these directions is the spacing of the points",
                         found.edge_directions));
     }
     if (found.border_directions > 0) {
-        log_info(
-            fmt::format("no surface determines {} of 6 directions; the borders of both clouds do",
-                        found.border_directions));
+        log_info(fmt::format(
+            "no surface determines {} of 6 directions; the borders of both clouds determine them",
+            found.border_directions));
     }
 }
 

@@ -257,12 +257,12 @@ Status Gatekeeper::check_radius(double radius_m) const {
     const std::int64_t least_tenth_mm = least_radius_tenth_mm();
     const bool is_number = radius_m > 0.0 && radius_m <= most_m;
     if (is_number && tenth_mm(radius_m) >= least_tenth_mm) return {};
-    return refuse_attestation(fmt::format(
-        "the radius of {} m is not within {:.4f} m, which holds both soles, and {} m, which the "
-        "machine file allows (vouch_radius_m)",
-        radius_m,
-        static_cast<double>(least_tenth_mm) * 1e-4,
-        most_m));
+    return refuse_attestation(
+        fmt::format("the radius of {} m must be from {:.4f} m (the smallest circle that contains "
+                    "both soles) to {} m (vouch_radius_m of the machine file)",
+                    radius_m,
+                    static_cast<double>(least_tenth_mm) * 1e-4,
+                    most_m));
 }
 
 std::int64_t Gatekeeper::least_radius_tenth_mm() const {
@@ -276,7 +276,7 @@ Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::in
         return refuse_attestation(
             "the pose of the machine is unknown; wait until the odometry is healthy");
     if (readiness_.state() == gate::GateState::fault)
-        return refuse_attestation("the gate is in a fault");
+        return refuse_attestation("the gate is in FAULT; re-arm it first");
     if (auto status = check_radius(radius_m); !status) return status;
     if (!attestation_.attest(machine_, *map_, tenth_mm(radius_m), now_ns))
         return refuse_attestation("the newest map is damaged; try again");

@@ -81,8 +81,7 @@ Result<gate_process::ChecksumKey> channel_key(const Options& options) {
     if (!options.key_file.empty()) return gate_process::read_checksum_key(options.key_file);
     fmt::print(stderr,
                "surefoot-gate: warning: without the key of the channel no map is trusted and every "
-               "answer is ERROR; name the file that `surefoot serve --channel-key` got "
-               "(--channel-key)\n");
+               "answer is ERROR; give the key file of `surefoot serve` with --channel-key\n");
     return gate_process::new_checksum_key();
 }
 

@@ -338,13 +338,14 @@ std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
         const bool is_friend =
             is_foxglove && std::find(foxglove.begin(), foxglove.end(), origin) != foxglove.end();
         if (!is_friend && !is_own_origin(sockets_.address(), host_, origin))
-            return Refusal{
-                http::status::forbidden,
-                "only the page itself may connect, not a page of another host or port\n"};
+            return Refusal{http::status::forbidden,
+                           "a web page of another host or port may not connect; open the page that "
+                           "this service serves\n"};
     }
     if (gate_process::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
         gate_process::Admission::welcome)
-        return Refusal{http::status::unauthorized, "the URL needs the token: ?token=...\n"};
+        return Refusal{http::status::unauthorized,
+                       "the address needs the token; add ?token=TOKEN to it\n"};
     return std::nullopt;
 }
 

@@ -124,10 +124,10 @@ Status read_verdict(const Json& values, Answer& answer) {
 Status read_question(const Json& values, Answer& answer) {
     const Json* sequence = find(values, "sequence");
     if (sequence == nullptr || !sequence->is_number_unsigned() || *sequence != answer.sequence)
-        return missing("sequence", "the one of the id");
+        return missing("sequence", "the number in the id of the answer");
     const Json* command = find(values, "command");
     if (command == nullptr || !command->is_number_unsigned() || *command != answer.command)
-        return missing("command", "the one of the id");
+        return missing("command", "the number in the id of the answer");
     const Json* connection = find(values, "connection");
     if (connection == nullptr || !connection->is_number_unsigned() || *connection == 0)
         return missing("connection", "a whole number from 1 on");

@@ -134,7 +134,8 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
     if (!density) return density.error();
     map.density_ratio = std::move(density).value();
     map.assumed.emplace_back(
-        "the viewing directions are not saved, so ground that only ends is not a drop");
+        "the viewing directions are not saved, so the end of the known ground does not count as a "
+        "drop");
     const auto count = read("count.asc", "every cell was observed more than once");
     if (!count) return count.error();
     if (!count->empty()) map.observations = observations_of(*count);

@@ -68,7 +68,7 @@ std::string doubt(const MonoCalibration& result,
     const double share = std::sqrt(result.covariance(0, 0)) / result.parameters[0];
     if (!(share <= options.most_focal_sigma)) {
         return fmt::format(
-            "the focal length of {:.1f} px is uncertain by {:.1f} % (one sigma), allowed are "
+            "the focal length of {:.1f} px is uncertain by {:.1f} % (one sigma); the limit is "
             "{:.1f} %",
             result.parameters[0],
             100.0 * share,
@@ -129,12 +129,11 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     const std::vector<std::size_t> kept =
         usable_views(board, views, size, options, result.rejected);
     if (kept.size() < least) {
-        return input_error(
-            fmt::format("calibration: {} usable and different views of the board, at least {} are "
-                        "needed ({})",
-                        kept.size(),
-                        least,
-                        summary_of(result.rejected, views.size())));
+        return input_error(fmt::format(
+            "calibration: only {} usable and different views of the board; take at least {} ({})",
+            kept.size(),
+            least,
+            summary_of(result.rejected, views.size())));
     }
 
     BoardBundle bundle = mono_bundle(board, views, kept, size, kind);

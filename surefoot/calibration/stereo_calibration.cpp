@@ -201,8 +201,8 @@ void reject_dropped(const RobustFit& fit,
         const Pair& pair = pairs[static_cast<std::size_t>(dropped.view)];
         reject(rejected,
                pair.index,
-               fmt::format("rms {:.2f} px for the pair, {:.2f} px for single images, allowed are "
-                           "{:.2f}; {}: check that its images are from the same moment",
+               fmt::format("rms {:.2f} px for the pair and {:.2f} px for its single images; the "
+                           "limit is {:.2f} px; {}: check that its images are from the same moment",
                            dropped.rms_px,
                            pair.alone_rms_px,
                            dropped.limit_px,
@@ -299,7 +299,7 @@ Result<std::vector<Pair>> agreeing_pairs(const MonoCalibration& left,
     if (!pairs.empty()) drop_gross(pairs, median_pose(relative), rejected);
     if (static_cast<int>(pairs.size()) >= least) return pairs;
     return input_error(
-        fmt::format("stereo calibration: {} usable pairs, at least {} are needed ({})",
+        fmt::format("stereo calibration: only {} usable pairs; take at least {} ({})",
                     pairs.size(),
                     least,
                     summary_of(rejected, views)));
@@ -314,9 +314,11 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
                                            LensKind kind,
                                            const StereoOptions& options) {
     if (left_views.size() != right_views.size()) {
-        return usage_error(fmt::format("stereo calibration: {} left views for {} right ones",
-                                       left_views.size(),
-                                       right_views.size()));
+        return usage_error(
+            fmt::format("stereo calibration: {} left views, but {} right views; give one right "
+                        "view for each left view",
+                        left_views.size(),
+                        right_views.size()));
     }
     StereoCalibration result;
     result.kind = kind;

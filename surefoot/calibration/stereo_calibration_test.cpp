@@ -152,7 +152,7 @@ TEST(StereoCalibration, RefusesWhatIsNoPair) {
         const auto result = calibrate_stereo(kBoard, left, right, size_of(rig), LensKind::pinhole4);
         return result ? "" : result.error().message;
     };
-    EXPECT_NE(refusal(views.left, {}).find("6 left views for 0 right ones"), std::string::npos);
+    EXPECT_NE(refusal(views.left, {}).find("6 left views, but 0 right views"), std::string::npos);
     EXPECT_NE(refusal({}, {}).find("at least 3"), std::string::npos);
     EXPECT_NE(refusal(views.right, views.left).find("swap the cameras"), std::string::npos);
     const std::vector<BoardView> none(6);

@@ -34,8 +34,8 @@ Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height) {
     if (const auto problem = rig.problem()) return input_error(*problem);
     if (width < 1 || height < 1 || !same_shape(rig.left, width, height)) {
         return input_error(
-            fmt::format("a calibration for {} x {} px cannot be scaled to {} x {} px: the sides "
-                        "change by {:.4f} and {:.4f}; calibrate at this resolution",
+            fmt::format("a calibration for {} x {} px cannot be scaled to {} x {} px: the width "
+                        "changes by {:.4f}, the height by {:.4f}; calibrate at this resolution",
                         rig.left.width,
                         rig.left.height,
                         width,

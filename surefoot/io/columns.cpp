@@ -65,8 +65,8 @@ std::optional<std::string> separator_problem(std::string_view line) {
         }
         const std::size_t next = line.find_first_not_of(kBlanks, i);
         if (before != ',' && line[next] != ',') {
-            return "commas and blanks both separate numbers: with decimal commas, write decimal "
-                   "points (1.5, not 1,5); else separate by one of the two";
+            return "commas and blanks both separate numbers. If the commas are decimal commas, "
+                   "write decimal points (1.5, not 1,5); otherwise use only one kind of separator";
         }
         i = next - 1;
     }

@@ -66,7 +66,7 @@ std::string without_plane(ground::CalibrationReason reason, const GroundView& lo
 }
 
 std::string sightings(const ground::GroundAlignment& ground) {
-    return fmt::format("{} sightings agree, {} do not", ground.agreeing, ground.rejected);
+    return fmt::format("{} observations agree, {} do not", ground.agreeing, ground.rejected);
 }
 
 /// Finds the up direction from the available sources; sets the source, the uncertainty and the

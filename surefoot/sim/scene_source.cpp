@@ -34,14 +34,14 @@ constexpr std::uint64_t kMachineStream = 8;
 
 std::optional<Error> problem(const SceneOptions& options) {
     if (!(options.rate_hz >= kMinRate_hz && options.rate_hz <= kMaxRate_hz)) {
-        return usage_error(fmt::format("simulator: rate_hz is {}, allowed are {} to {}",
+        return usage_error(fmt::format("simulator: rate_hz is {}; it must be {} to {}",
                                        options.rate_hz,
                                        kMinRate_hz,
                                        kMaxRate_hz));
     }
     if (options.frames < 0 || options.frames > kMaxFrames) {
         return usage_error(
-            fmt::format("simulator: frames is {}, allowed are 0 (to the end of the path) to {}",
+            fmt::format("simulator: frames is {}; it must be 0 (to the end of the path) to {}",
                         options.frames,
                         kMaxFrames));
     }
@@ -59,8 +59,8 @@ Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, doubl
     const int count = frames > 0 ? frames : saturated_integer<int>(last_frame + 1.0);
     if (count > kMaxFrames) {
         return usage_error(
-            fmt::format("simulator: the path takes {:g} s, {:g} frames at {:g} Hz; at most {} are "
-                        "possible: raise its speed_m_s, or set frames",
+            fmt::format("simulator: the path takes {:g} s, which is {:g} frames at {:g} Hz; at "
+                        "most {} are allowed: raise speed_m_s of the path, or set frames",
                         motion.duration_s(),
                         last_frame + 1.0,
                         rate_hz,

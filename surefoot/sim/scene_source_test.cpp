@@ -369,7 +369,7 @@ TEST(SceneSourceTest, APathOfMoreFramesThanASourceCountsIsRefused) {
     options.rate_hz = 1000.0;
     const auto source = open_scene(options);
     ASSERT_FALSE(source);
-    EXPECT_NE(source.error().message.find("at most 1000000 are possible"), std::string::npos)
+    EXPECT_NE(source.error().message.find("at most 1000000 are allowed"), std::string::npos)
         << source.error().message;
     options.frames = 3;
     EXPECT_TRUE(open_scene(options));
@@ -398,7 +398,7 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
     SceneOptions fault = small("floor");
     fault.frames = 5;
     fault.faults.planned = {{5, ImageFault::dropped, 0}};
-    EXPECT_NE(message(fault).find("allowed are 1 to 4"), std::string::npos);
+    EXPECT_NE(message(fault).find("give a frame from 1 to 4"), std::string::npos);
     SceneOptions no_image = small("floor");
     no_image.sensor = Sensor::analytic;
     no_image.faults.tear_probability = 0.1;

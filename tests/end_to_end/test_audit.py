@@ -52,14 +52,14 @@ class AuditLog(CliTest):
         files[2].unlink()
         process = surefoot("audit", "verify", self.log)
         self.assertEqual(process.returncode, 1)
-        self.assertIn("1 files are missing", process.stderr)
+        self.assertIn("1 log files are missing", process.stderr)
         self.assertIn("DAMAGED", process.stdout)
 
     def test_an_end_that_was_cut_is_a_warning(self):
         files = self.fill()
         files[-1].write_bytes(files[-1].read_bytes()[:-5])
         process = self.run_ok("audit", "verify", self.log)
-        self.assertIn("writing ended there", process.stderr)
+        self.assertIn("the writer stopped there", process.stderr)
 
     def test_a_log_that_cannot_be_written_changes_no_verdict(self):
         plain = self.ask(9, "--json")

@@ -402,7 +402,7 @@ class BadBoards(CliTest):
         self.refused("1 usable and different views", "mono", {"a.png": "left000.png"})
         self.refused("the same as view 0", "mono", {f"{i}.png": "left000.png" for i in range(5)})
         self.refused("no chessboard of 9 x 9 inner corners", "mono", {"a.png": "left000.png"}, "chessboard:9x9:0.03")
-        self.refused("left camera: calibration: 1 usable", "stereo",
+        self.refused("left camera: calibration: only 1 usable", "stereo",
                      {"left0.png": "left000.png", "right0.png": "right000.png"})
 
     def test_exchanged_cameras_are_said(self):

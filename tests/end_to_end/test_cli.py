@@ -522,7 +522,7 @@ class Measures(CliTest):
                                  (int(name == "dup.tum"), int(name == "nan.tum"), name == "unsorted.tum"), pair)
         said = surefoot("eval", "trajectory", self.dir / "dup.tum", self.dir / "euroc.csv")
         self.assertIn("estimate: TUM, stamps: s, 40 poses\ntruth: EuRoC csv, stamps: ns, 40 poses\n", said.stdout)
-        self.assertIn("1 rows left out", said.stderr)
+        self.assertIn("1 rows with a repeated time stamp are left out", said.stderr)
         (self.dir / "times.txt").write_text("".join(f"{ns}\n" for ns in stamps))
         answer = self.json_of("eval", "trajectory", self.dir / "kitti.txt", self.dir / "truth.tum", "--times",
                               self.dir / "times.txt")

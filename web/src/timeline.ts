@@ -52,7 +52,7 @@ export class Timeline {
     if (document.activeElement === this.#speed) return;
     const value = String(speed);
     if (![...this.#speed.options].some((option) => option.value === value)) {
-      const option = new Option(speed === 0 ? "as it comes" : `${speed} times`, value);
+      const option = new Option(speed === 0 ? "as fast as possible" : `${speed} times`, value);
       option.disabled = speed === 0;
       this.#speed.add(option);
     }

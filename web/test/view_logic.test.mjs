@@ -521,7 +521,7 @@ test("the gate's refusal of the role is told from other refusals", () => {
   assert.ok(session.includes("this needs the role "), "the words that the page looks for");
   assert.ok(needsOperator("not done: this needs the role operator, and this client is rider. Connect with"));
   assert.ok(!needsOperator("not done: this needs the role rider, and this client is observer"));
-  assert.ok(!needsOperator("the ground is not attested: the gate is in a fault"));
+  assert.ok(!needsOperator("the ground cannot be attested: the gate is in FAULT; re-arm it first"));
 });
 
 /// A socket that the test plays the gate on.

@@ -119,7 +119,7 @@ Status parse_file_head(std::string_view bytes, FileHead& head) {
     if (!reader.ok()) return input_error("the head of the file is too short");
     if (auto status = parse_machine(reader.rest(), head.machine); !status) return status;
     if (fnv1a(reader.rest()) != head.machine_hash)
-        return input_error("the machine does not have the hash that is stated for it");
+        return input_error("the hash of the machine description is wrong");
     return {};
 }
 

@@ -30,13 +30,13 @@ EntryHead head_of(std::string_view entry) noexcept {
 std::optional<std::string> AuditConfig::problem() const {
     constexpr std::size_t kLeast = 2 * (kMaxRecordBytes + 64);
     if (memory_bytes < kLeast)
-        return fmt::format("memory of {} bytes: the largest record needs {}", memory_bytes, kLeast);
+        return fmt::format("memory_bytes = {} must be at least {}", memory_bytes, kLeast);
     if (files.file_bytes == 0 || files.total_bytes < files.file_bytes)
-        return fmt::format("files of {} bytes in a folder of {}: all must have room for one",
+        return fmt::format("file_bytes = {} must be above 0 and at most total_bytes = {}",
                            files.file_bytes,
                            files.total_bytes);
     if (behind_after_ns <= 0 || poll_ns <= 0 || retry_ns <= 0 || sync_ns <= 0)
-        return "every time must be positive";
+        return "behind_after_ns, poll_ns, retry_ns and sync_ns must be above 0";
     return std::nullopt;
 }
 

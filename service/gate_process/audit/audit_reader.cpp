@@ -51,7 +51,7 @@ void AuditReader::read(std::string_view bytes, const std::string& file) {
     summary_.bytes += bytes.size();
     file_ = file;
     offset_ = 0;
-    if (bytes.empty()) end_unfinished(0, "are all there is");
+    if (bytes.empty()) end_unfinished(0, "are the whole file");
     while (offset_ < bytes.size()) {
         const std::string_view rest = bytes.substr(offset_);
         const std::optional<Frame> frame = next_frame(rest);
@@ -79,13 +79,14 @@ std::optional<AuditReader::Frame> AuditReader::next_frame(std::string_view rest)
         case HeaderState::sound: break;
         case HeaderState::no_frame: damaged("no frame begins here"); return std::nullopt;
         case HeaderState::damaged:
-            damaged("the header of the frame does not match its check");
+            damaged("the header of the frame does not match its checksum");
             return std::nullopt;
         case HeaderState::other_version:
-            damaged(fmt::format("version {} of the format; this program reads versions {} to {}",
-                                static_cast<unsigned char>(rest[3]),
-                                kOldestFrameVersion,
-                                kFrameVersion));
+            damaged(fmt::format(
+                "the frame has version {} of the format; this program reads versions {} to {}",
+                static_cast<unsigned char>(rest[3]),
+                kOldestFrameVersion,
+                kFrameVersion));
             return std::nullopt;
     }
     const std::size_t hashed = kFrameHeaderBytes + frame.header.stored_bytes;
@@ -107,7 +108,8 @@ bool AuditReader::unpack(const FrameHeader& header, std::string_view stored, Fra
     if (header.encoding == FrameEncoding::plain) {
         frame.payload = stored;
         return stored.size() == header.plain_bytes ||
-               damaged("the two lengths of a plain frame differ", header.sequence);
+               damaged("the stored and the plain length of an uncompressed frame differ",
+                       header.sequence);
     }
     if (header.encoding != FrameEncoding::zstd)
         return damaged(
@@ -127,7 +129,7 @@ bool AuditReader::take(const Frame& frame) {
     const bool is_first = offset_ == 0;
     if (is_first != (frame.header.kind == FrameKind::file))
         return damaged(
-            is_first ? "the file does not begin with its head" : "a second head within a file",
+            is_first ? "the file does not begin with its head" : "the file has a second head",
             frame.header.sequence);
     switch (frame.header.kind) {
         case FrameKind::file: return take_file_head(frame);
@@ -142,10 +144,10 @@ bool AuditReader::take(const Frame& frame) {
 
 bool AuditReader::follows(const FrameHeader& header, const Link& link) {
     if (header.sequence != link.sequence)
-        return damaged(fmt::format("frame {} is expected here: frames were taken out, added or "
-                                   "exchanged",
-                                   link.sequence),
-                       header.sequence);
+        return damaged(
+            fmt::format("frame {} is expected here: frames were removed, added or exchanged",
+                        link.sequence),
+            header.sequence);
     if (header.previous_hash != link.previous_hash)
         return damaged("its stored hash of the previous frame is wrong", header.sequence);
     return true;
@@ -160,11 +162,12 @@ bool AuditReader::take_file_head(const Frame& frame) {
     const std::string own_name = audit_file_name(head.run_id, head.number);
     std::uint64_t number = 0;
     if (parse_audit_file_name(name, number) && name != own_name)
-        return damaged("this is " + own_name + " under another name", frame.header.sequence);
+        return damaged("the file has a wrong name: it is " + own_name + "; rename it back",
+                       frame.header.sequence);
     if (head_ && head.number > head_->number + 1)
-        return damaged(
-            fmt::format("{} files are missing before this one", head.number - head_->number - 1),
-            frame.header.sequence);
+        return damaged(fmt::format("{} log files are missing before this file",
+                                   head.number - head_->number - 1),
+                       frame.header.sequence);
     const bool same_run = head_ && head.run_id == head_->run_id;
     if (same_run && !follows(frame.header, link_)) return false;
     if (head_ && !same_run && !follows(frame.header, Link{})) return false;
@@ -177,7 +180,7 @@ bool AuditReader::take_verdict(const Frame& frame) {
     if (const Status status = parse_record(frame.payload, record_, frame.header.version); !status)
         return damaged(status.error().message, frame.header.sequence);
     if (record_.machine_hash != head_->machine_hash)
-        return damaged("the verdict belongs to another machine than the file",
+        return damaged("the verdict is for another machine than the head of the file states",
                        frame.header.sequence);
     ++summary_.verdicts;
     if (on_verdict_) on_verdict_({file_, offset_, frame.header.sequence, head_->machine, record_});
@@ -204,7 +207,7 @@ bool AuditReader::take_act(const Frame& frame) {
 
 void AuditReader::end_unfinished(std::size_t bytes, const char* how) {
     summary_.unfinished.push_back(
-        fmt::format("{}: its last {} bytes {}: writing ended there", file_, bytes, how));
+        fmt::format("{}: the last {} bytes {}: the writer stopped there", file_, bytes, how));
     // A file without a head still has a number.
     std::uint64_t number = 0;
     if (offset_ == 0 && head_ && parse_audit_file_name(fs::path(file_).filename().string(), number))

@@ -160,7 +160,7 @@ TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
     {
         Log log;
         log.platter->files.erase(log.names[1]);
-        EXPECT_TRUE(contains(log.damage(), "1 files are missing")) << log.damage();
+        EXPECT_TRUE(contains(log.damage(), "1 log files are missing")) << log.damage();
     }
     {
         Log log;
@@ -170,14 +170,14 @@ TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
     {
         Log log;
         log.platter->files[audit_file_name(11, 99)] = log.file(0);
-        EXPECT_TRUE(contains(log.damage(), "under another name")) << log.damage();
+        EXPECT_TRUE(contains(log.damage(), "the file has a wrong name")) << log.damage();
     }
     {
         Log log;
         const std::string second = log.file(1);
         log.platter->files.erase(log.names[1]);
         log.platter->files[audit_file_name(12, 1)] = second;  // another run's name
-        EXPECT_TRUE(contains(log.damage(), "under another name")) << log.damage();
+        EXPECT_TRUE(contains(log.damage(), "the file has a wrong name")) << log.damage();
     }
 }
 
@@ -214,7 +214,8 @@ TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     const auto size = static_cast<std::uint32_t>(record.size());
     const FrameEncoding plain = FrameEncoding::plain;
     EXPECT_EQ(read(FrameKind::verdict, plain, record, size), "");
-    EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1), "two lengths"));
+    EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size - 1),
+                         "the stored and the plain length"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, FrameEncoding::zstd, record, size), "unpacked"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, static_cast<FrameEncoding>(9), record, size),
                          "encoding of the frame is unknown"));

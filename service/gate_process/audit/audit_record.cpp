@@ -194,19 +194,21 @@ Status parse_record(std::string_view bytes, AuditRecord& record, std::uint32_t v
         return input_error("the record is too short, or a yes/no value is neither 0 nor 1");
     const CellBox& zone = record.zone;
     if (zone != CellBox{} && !is_inside(zone, map))
-        return input_error(fmt::format("a zone of {} x {} cells from ({}, {}) in a map of {} x {}",
-                                       zone.nx,
-                                       zone.ny,
-                                       zone.x,
-                                       zone.y,
-                                       map.nx,
-                                       map.ny));
+        return input_error(fmt::format(
+            "a zone of {} x {} cells from cell ({}, {}) does not fit into a map of {} x {} cells",
+            zone.nx,
+            zone.ny,
+            zone.x,
+            zone.y,
+            map.nx,
+            map.ny));
     if (reader.rest().size() != bytes_of_ground(map, zone))
-        return input_error(fmt::format("{} bytes do not fit {} edges and a zone of {} x {} cells",
-                                       reader.rest().size(),
-                                       edges_of(map),
-                                       zone.nx,
-                                       zone.ny));
+        return input_error(fmt::format(
+            "{} bytes of ground are too many or too few for {} edges and a zone of {} x {} cells",
+            reader.rest().size(),
+            edges_of(map),
+            zone.nx,
+            zone.ny));
     forget_ground(map);
     reader.copy(map.edges.data(), edges_of(map) * sizeof(SnapshotEdge));
     grid::for_each_snapshot_layer(map, [&](auto& layer) {
@@ -252,7 +254,7 @@ Status parse_machine(std::string_view bytes, Machine& machine) {
     ByteReader reader(bytes);
     for_each_machine_field(machine, reader);
     if (!reader.ok() || !reader.rest().empty())
-        return input_error(fmt::format("{} bytes are no machine", bytes.size()));
+        return input_error(fmt::format("{} bytes do not form a machine description", bytes.size()));
     return {};
 }
 

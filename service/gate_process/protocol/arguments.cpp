@@ -59,21 +59,23 @@ StepRequest read_step_request(const Json& args) {
     if (const Json* sequence = argument(args, "sequence", 1)) {
         request.sequence = whole_number(*sequence, 1, kMaxExact);
         if (!request.sequence)
-            return refuse(request, gate::Reason::bad_number, "sequence: a whole number from 1");
+            return refuse(
+                request, gate::Reason::bad_number, "sequence: give a whole number from 1 on");
     }
     const Json* direction = argument(args, "direction", 0);
     if (direction == nullptr)
         return refuse(request, gate::Reason::bad_message, "the argument direction is missing");
     const auto command = whole_number(*direction, 0, kMaxCommand);
     if (!command)
-        return refuse(request, gate::Reason::bad_number, "direction: a whole number from 0 to 255");
+        return refuse(
+            request, gate::Reason::bad_number, "direction: give a whole number from 0 to 255");
     request.command = static_cast<std::uint8_t>(*command);
     return request;
 }
 
 Result<double> read_radius(const Json& args) {
     const Json* value = argument(args, "radius_m", 0);
-    if (value == nullptr || !value->is_number()) return input_error("radius_m: a number in m");
+    if (value == nullptr || !value->is_number()) return input_error("radius_m: give a number in m");
     return value->get<double>();
 }
 

@@ -81,7 +81,7 @@ Reaction RosbridgeSession::on_message(std::string_view text, std::int64_t now_ns
     if (!message) {
         fault(call, message.error().message);
     } else if (!message->is_object() || text_member(*message, "op").empty()) {
-        fault(call, "a message is an object with a member 'op'");
+        fault(call, "a message must be an object with a member 'op'");
     } else {
         handle(call);
     }
@@ -101,7 +101,10 @@ void RosbridgeSession::handle(const Call& call) {
     const std::string op = text_member(call.message, "op");
     if (op == "call_service") return call_service(call);
     if (call.overloaded)
-        return status(call, Level::error, "too many messages a second: request not executed");
+        return status(
+            call,
+            Level::error,
+            "too many messages in a second: the request was not executed; send fewer messages");
     if (op == "subscribe") return subscribe(call);
     if (op == "unsubscribe") return unsubscribe(call);
     if (op == "advertise") return advertise(call);
@@ -155,7 +158,8 @@ void RosbridgeSession::subscribe(const Call& call) {
     const auto throttle_ms = limited_member(call.message, "throttle_rate", kMaxThrottleMs);
     const auto queue_length = limited_member(call.message, "queue_length", kMaxQueue);
     if (!throttle_ms || !queue_length)
-        return status(call, Level::error, "throttle_rate, queue_length: whole numbers from 0");
+        return status(
+            call, Level::error, "throttle_rate and queue_length must be whole numbers from 0 on");
     const std::string compression = text_member(call.message, "compression");
     if (!compression.empty() && compression != "none")
         status(call, Level::warning, "no compression '" + compression + "': sent as plain JSON");
@@ -221,7 +225,7 @@ void RosbridgeSession::set_level(const Call& call) {
     } else if (level == "info") {
         level_ = Level::info;
     } else {
-        status(call, Level::error, "set_level: none, error, warning or info");
+        status(call, Level::error, "set_level: give none, error, warning or info");
     }
 }
 
@@ -240,7 +244,10 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
         default: break;
     }
     if (call.overloaded)
-        return respond(call, "too many messages a second: request not executed", false);
+        return respond(
+            call,
+            "too many messages in a second: the request was not executed; send fewer messages",
+            false);
     switch (entry.service) {
         case Service::authenticate: return authenticate_by_service(call, args);
         case Service::rearm: return rearm(call);

@@ -25,7 +25,7 @@ std::optional<std::string> problem_of_token(Role role, const std::string& token)
     }
     if (!std::all_of(token.begin(), token.end(), is_plain))
         return std::string("token of the ") + to_string(role) +
-               ": use letters, digits and - _ . ~ alone, because the token stands in a URL";
+               ": use only letters, digits and - _ . ~, because the token is part of a URL";
     return std::nullopt;
 }
 
@@ -47,7 +47,7 @@ std::optional<std::string> read_line(std::string_view line, Access& access) {
     const auto role = role_named(line.substr(0, blank));
     const std::string_view token = blank == line.npos ? "" : trimmed(line.substr(blank));
     if (!role || *role == Role::none || token.empty())
-        return "a line is 'ROLE TOKEN', and ROLE is observer, rider or operator";
+        return "a line must be 'ROLE TOKEN'; ROLE is observer, rider or operator";
     std::string& kept = token_in(access, *role);
     if (!kept.empty())
         return std::string("the ") + to_string(*role) + " has a token already: delete one line";
@@ -133,9 +133,8 @@ Result<Access> parse_tokens(std::string_view text, const std::string& file) {
             return usage_error(file + " line " + std::to_string(number) + ": " + *problem);
     }
     if (!access.has_tokens())
-        return usage_error(file +
-                           ": there is no token in it; delete the file, and the next start "
-                           "makes a new one");
+        return usage_error(
+            file + ": the file has no token; delete it and restart the service to make new tokens");
     if (const auto problem = access.problem()) return usage_error(file + ": " + *problem);
     return access;
 }

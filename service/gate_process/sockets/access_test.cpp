@@ -41,8 +41,8 @@ TEST(Access, AMistakeIsNamedWithItsLine) {
     for (const auto& [text, said] :
          {Case{"", "no token"},
           Case{"# nothing\n", "no token"},
-          Case{"0123456789abcdef\n", "line 1: a line is 'ROLE TOKEN'"},
-          Case{"# a\nrider\n", "line 2: a line is 'ROLE TOKEN'"},
+          Case{"0123456789abcdef\n", "line 1: a line must be 'ROLE TOKEN'"},
+          Case{"# a\nrider\n", "line 2: a line must be 'ROLE TOKEN'"},
           Case{"king 0123456789abcdef\n", "line 1"},
           Case{"none 0123456789abcdef\n", "line 1"},
           Case{"rider 0123456789abcde\n", "it has 15 characters"},

@@ -79,7 +79,7 @@ TEST(ServerConfig, OutsideNeedsATokenOfEverybodyAndTls) {
     for (const char* address : {"0.0.0.0", "192.168.1.5", "::", "::ffff:127.0.0.1", "128.0.0.1"}) {
         config = {};
         config.bind_address = address;
-        EXPECT_NE(said(config).find("everybody needs a token"), std::string::npos) << address;
+        EXPECT_NE(said(config).find("every client needs a token"), std::string::npos) << address;
         config.access = testing::three_tokens(Role::observer);
         EXPECT_NE(said(config).find("--guests none"), std::string::npos) << said(config);
         config.access.guest = Role::none;

@@ -46,18 +46,21 @@ std::optional<std::string> problem_of_exposure(const std::string& bind_address,
     if (!insecure.empty() && insecure != kInsecureSentence)
         return std::string("--insecure: the sentence must be \"") + kInsecureSentence + '"';
     if (is_loopback_address(bind_address)) return std::nullopt;
-    const std::string reached = "bind_address " + bind_address + " is reached from outside: ";
+    const std::string reached =
+        "bind_address " + bind_address + " can be reached from other computers: ";
     if (!access.has_tokens() || access.guest != Role::none)
-        return reached + "everybody needs a token (--token-file FILE, --guests none)";
+        return reached + "every client needs a token; give --token-file FILE and --guests none";
     if (!has_tls && insecure.empty())
-        return reached + "TLS is needed (--certificate FILE --key FILE); without it, give " +
+        return reached +
+               "TLS is needed; give --certificate FILE and --key FILE. To run without TLS, give " +
                "--insecure \"" + kInsecureSentence + '"';
     return std::nullopt;
 }
 
 std::optional<std::string> ServerConfig::problem_of_address() const {
     if (!is_address(bind_address))
-        return "bind_address '" + bind_address + "': an IP address is needed, as 127.0.0.1 or ::1";
+        return "bind_address '" + bind_address +
+               "': give an IP address, for example 127.0.0.1 or ::1";
     if (auto problem = access.problem()) return problem;
     if (tls.certificate_file.empty() != tls.key_file.empty())
         return "TLS needs both files: --certificate FILE and --key FILE";
@@ -67,17 +70,17 @@ std::optional<std::string> ServerConfig::problem_of_address() const {
 std::optional<std::string> ServerConfig::problem() const {
     if (auto problem = problem_of_address()) return problem;
     if (first_connection == 0 || first_connection > kMaxExact / 2)
-        return "first_connection: from 1 to 2^52";
+        return "first_connection must be from 1 to 2^52";
     if (const char* slots_problem = slots.problem()) return slots_problem;
     if (accepts_per_tick <= 0 || guest_work_us <= 0 || door_work_us <= 0)
-        return "accepts_per_tick, guest_work_us, door_work_us: above 0";
+        return "accepts_per_tick, guest_work_us and door_work_us must be above 0";
     if (tick_ms <= 0 || handshake_ms <= 0 || idle_ms <= 0 || message_ms <= 0 || write_ms <= 0)
-        return "times: above 0 ms; none of them can be switched off";
+        return "tick_ms, handshake_ms, idle_ms, message_ms and write_ms must be above 0";
     if (max_queue_bytes == 0 || max_read_bytes_per_s == 0)
-        return "max_queue_bytes, max_read_bytes_per_s: above 0";
+        return "max_queue_bytes and max_read_bytes_per_s must be above 0";
     if (!positive(control_frames) || !positive(session.messages) || !positive(session.refusals) ||
         !positive(session.faults))
-        return "rates and bursts: from 1 to 1000000";
+        return "rates and bursts must be from 1 to 1000000";
     return std::nullopt;
 }
 

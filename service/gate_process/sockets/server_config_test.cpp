@@ -23,7 +23,7 @@ TEST(ServerAddress, AnAddressIsTheWholeText) {
     EXPECT_FALSE(config.problem()) << *config.problem();
     config.bind_address = more;
     ASSERT_TRUE(config.problem());
-    EXPECT_NE(config.problem()->find("an IP address is needed"), std::string::npos);
+    EXPECT_NE(config.problem()->find("give an IP address"), std::string::npos);
 }
 
 }  // namespace

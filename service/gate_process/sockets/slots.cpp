@@ -24,9 +24,9 @@ enum Order : int { order_silent, order_idle, order_heavy, order_listener, order_
 
 const char* SlotLimits::problem() const noexcept {
     if (max_clients == 0 || max_handshakes == 0 || per_peer == 0)
-        return "max_clients, max_handshakes, per_peer: above 0";
-    if (reserved >= max_clients) return "reserved: fewer than max_clients";
-    if (useful_ns <= 0) return "useful_ns: above 0";
+        return "max_clients, max_handshakes and per_peer must be above 0";
+    if (reserved >= max_clients) return "reserved must be below max_clients";
+    if (useful_ns <= 0) return "useful_ns must be above 0";
     return nullptr;
 }
 

@@ -278,7 +278,8 @@ void Connection::answer_request() {
             http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
     }
     if (path_of(target) == "/")
-        return refuse(http::status::upgrade_required, "this path is a WebSocket");
+        return refuse(http::status::upgrade_required,
+                      "this path is a WebSocket; connect with ws:// or wss://");
     refuse(http::status::not_found, "this port serves a WebSocket and /health");
 }
 
@@ -495,7 +496,7 @@ void Connection::dismiss() {
 void Connection::close_politely() {
     if (leaves_at_ns_) return;
     constexpr std::int64_t kLinger_ns = 100'000'000;
-    say_goodbye("\x88\x13\x03\xf0this was too much");
+    say_goodbye("\x88\x13\x03\xf0too many messages");
     error_code ignored;
     beast::get_lowest_layer(ws_).socket().shutdown(tcp::socket::shutdown_send, ignored);
     leaves_at_ns_ = steady_ns() + kLinger_ns;
@@ -517,7 +518,7 @@ void Connection::drop() {
 /// Closes a client that loses its slot without waiting for it.
 void Connection::end_for_another() {
     if (session_) ++server_.totals.dropped;
-    if (session_ && !write_since_ns_) say_goodbye("\x88\x1f\x03\xf0this slot went to another one");
+    if (session_ && !write_since_ns_) say_goodbye("\x88\x1f\x03\xf0the slot went to a new client");
     end();
 }
 

@@ -35,14 +35,20 @@ std::optional<std::string> Board::problem() const {
     constexpr int kLeast = 3;
     constexpr int kMost = 200;
     if (columns < kLeast || rows < kLeast || columns > kMost || rows > kMost) {
-        return fmt::format(
-            "board: {} x {} points, allowed are {} to {} each", columns, rows, kLeast, kMost);
+        return fmt::format("board: {} x {} points; give {} to {} points on each side",
+                           columns,
+                           rows,
+                           kLeast,
+                           kMost);
     }
     if (!(spacing_m > 0.0 && spacing_m <= 10.0))
-        return fmt::format("board: points are {} m apart, allowed are 0 to 10", spacing_m);
+        return fmt::format("board: the point spacing of {} m must be above 0 and at most 10 m",
+                           spacing_m);
     if (kind == BoardKind::charuco && !(marker_m > 0.0 && marker_m < spacing_m)) {
         return fmt::format(
-            "board: markers of {} m do not fit into squares of {} m", marker_m, spacing_m);
+            "board: markers of {} m must be larger than 0 and smaller than the squares of {} m",
+            marker_m,
+            spacing_m);
     }
     return std::nullopt;
 }

@@ -45,8 +45,8 @@ Result<cv::Ptr<cv::aruco::Dictionary>> dictionary_of(const Board& board) {
         const int needed = squares(board.columns) * squares(board.rows) / 2;
         if (dictionary->bytesList.rows < needed) {
             return usage_error(
-                fmt::format("board: {} has {} markers, {} x {} squares need {}; take a larger "
-                            "dictionary",
+                fmt::format("board: the dictionary {} has {} markers, but {} x {} squares need {}; "
+                            "choose a larger dictionary",
                             named.name,
                             dictionary->bytesList.rows,
                             squares(board.columns),

@@ -292,7 +292,8 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
                                      board.rows));
     }
     if (shorter < kFewestPixelsPerPoint * 2)
-        return not_found(fmt::format("an image of {} x {} px", image.width, image.height));
+        return not_found(
+            fmt::format("an image of {} x {} px is too small", image.width, image.height));
     const cv::Mat pixels(image.height,
                          image.width,
                          CV_8UC1,

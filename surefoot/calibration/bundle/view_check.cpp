@@ -49,9 +49,11 @@ std::optional<std::string> view_problem(const Board& board,
         return fmt::format("it has {} ids but {} pixels", view.ids.size(), view.pixels.size());
     }
     if (!(view.disc_radius_m >= 0.0 && view.disc_radius_m <= board.spacing_m))
-        return fmt::format("its circles have radius {} m and are {} m apart; this is impossible",
-                           view.disc_radius_m,
-                           board.spacing_m);
+        return fmt::format(
+            "its circles have radius {} m and are {} m apart; the radius must be from 0 to this "
+            "distance",
+            view.disc_radius_m,
+            board.spacing_m);
     if (view.ids.empty()) return "the board was not found";
     const std::vector<Eigen::Vector3d> all = board.points_m();
     std::vector<Eigen::Vector3d> points;

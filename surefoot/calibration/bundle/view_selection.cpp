@@ -24,14 +24,13 @@ std::vector<std::size_t> without_repeats(std::span<const std::size_t> candidates
             kept.push_back(i);
             continue;
         }
-        reject(
-            rejected,
-            i,
-            fmt::format("the same as view {}: its corners moved by {:.2f} px, at least {:.2f} are "
-                        "needed",
-                        *twin,
-                        motion_px(*twin, i),
-                        least_px));
+        reject(rejected,
+               i,
+               fmt::format("almost the same as view {}: its corners moved by {:.2f} px; at least "
+                           "{:.2f} px are needed",
+                           *twin,
+                           motion_px(*twin, i),
+                           least_px));
     }
     return kept;
 }

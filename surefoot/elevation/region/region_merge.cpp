@@ -146,10 +146,14 @@ std::optional<std::string> problem_of(const MapRegion& into,
     if (auto problem = from.problem()) return problem;
     if (into.resolution_m != from.resolution_m) {
         return fmt::format(
-            "cells of {} m and of {} m cannot be merged", into.resolution_m, from.resolution_m);
+            "maps with cells of {} m and of {} m cannot be merged; give maps of one cell size",
+            into.resolution_m,
+            from.resolution_m);
     }
     if (into.frame != from.frame) {
-        return fmt::format("one map lies in frame {}, the other in {}", into.frame, from.frame);
+        return fmt::format("one map is in frame {}, the other in frame {}; give maps in one frame",
+                           into.frame,
+                           from.frame);
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(

@@ -18,8 +18,8 @@ template <typename T>
 Status check_size(const char* name, ImageView<T> image, ImageView<const float> truth_px) {
     if (image.width == truth_px.width && image.height == truth_px.height) return {};
     return input_error(
-        fmt::format("eval depth: the {} has {} x {} pixels, the truth {} x {}: they must belong to "
-                    "the same image",
+        fmt::format("eval depth: the {} has {} x {} pixels, but the truth has {} x {}; give files "
+                    "of the same image",
                     name,
                     image.width,
                     image.height,

@@ -43,8 +43,8 @@ Result<RigFile> parse_kitti(const std::string& text,
                             std::optional<ImageSize> size) {
     if (!size) {
         return input_error(fmt::format(
-            "{}: a KITTI calibration does not hold the image size; use it with its images, or take "
-            "it into a rig.yaml with 'surefoot rig FILE --resolution WIDTHxHEIGHT --out rig.yaml'",
+            "{}: a KITTI calibration has no image size; use it with its images, or convert it to a "
+            "rig.yaml with 'surefoot rig FILE --resolution WIDTHxHEIGHT --out rig.yaml'",
             path));
     }
     const Result<KittiCalibration> calibration = parse_kitti_calibration(text, path);
@@ -73,8 +73,9 @@ Result<RigFile> read_ros(const std::string& left_file) {
     const std::optional<std::string> right_file = ros_partner(left_file);
     if (!right_file) {
         return input_error(
-            fmt::format("{}: a ROS calibration has one file for each camera; give the left one, "
-                        "with 'left' in its name, and put the same name with 'right' beside it",
+            fmt::format("{}: a ROS calibration has one file for each camera; give the file of the "
+                        "left camera, with 'left' in its name, and put the other file, with "
+                        "'right' in its name, into the same folder",
                         left_file));
     }
     Result<std::string> left = read_ros_text(left_file);
@@ -117,7 +118,8 @@ Result<RigFile> parse_document(const YamlNode& root,
         case CalibrationKind::surefoot:
             return with_format(parse_rig_yaml(text, file), RigFormat::surefoot, file);
         case CalibrationKind::ros:
-            return input_error(file + ": ROS has a file for each camera; both are needed");
+            return input_error(file +
+                               ": ROS has a file for each camera; give the folder with both files");
         default: return input_error(fmt::format("{}: {}", file, why_no_rig(kind, &root)));
     }
 }
@@ -241,9 +243,10 @@ Result<std::vector<std::string>> write_rig(const std::string& path,
         format == RigFormat::surefoot ? Result<std::string>(format_rig_yaml(rig))
         : format == RigFormat::opencv ? format_opencv_rig(rig)
         : format == RigFormat::kalibr ? format_kalibr_rig(rig)
-        : format == RigFormat::zed    ? format_zed_rig(rig)
-                                      : Result<std::string>(output_error(fmt::format(
-                                         "{} files are read, not written", name_of(format))));
+        : format == RigFormat::zed
+            ? format_zed_rig(rig)
+            : Result<std::string>(output_error(fmt::format(
+                  "{} files can be read but not written; choose another format", name_of(format))));
     if (!text) return output_error(fmt::format("{}: {}", path, text.error().message));
     if (Status status = write_file(path, *text); !status) return status.error();
     return Files{path};

@@ -130,7 +130,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     EXPECT_TRUE(
         contains(bad("[672, 376]", "[672, 0]"), "rig.yaml:2: resolution: 0 is not an image side"));
     EXPECT_TRUE(contains(bad("side_by_side", "stacked"), "is not one of side_by_side"));
-    EXPECT_TRUE(contains(bad("none", "radtan"), "only 'none' here"));
+    EXPECT_TRUE(contains(bad("none", "radtan"), "must be 'none' here"));
     EXPECT_TRUE(contains(message(parse_rig_yaml("", "rig.yaml")), "this one nothing"));
     const std::string full = format_rig_yaml(random_rig(6, false));
     const auto bad_full = [&](const std::string& from, const std::string& to) {
@@ -187,7 +187,7 @@ TEST(RigEuroc, ReadsTheRealRig) {
 TEST(RigKitti, BaselineComesFromTheProjection) {
     const std::string path = data_path("sequences/kitti_city/calib.txt");
     if (path.empty()) return;
-    EXPECT_TRUE(contains(message(read_rig(path)), "does not hold the image size"));
+    EXPECT_TRUE(contains(message(read_rig(path)), "has no image size"));
     const auto rig = read_rig(path, ImageSize{1226, 370});
     ASSERT_TRUE(rig.ok()) << message(rig);
     EXPECT_NEAR(rig->T_left_right.translation_m.x(), 379.8145 / 707.0912, 1e-12);
@@ -250,7 +250,7 @@ TEST(RigOpenCv, WhatIsMissingOrWrongIsNamed) {
     EXPECT_TRUE(contains(bad("0.8, 0., 0.6, 0.", "0.8, 0., 0.9, 0."), "R: not a rigid motion"));
     EXPECT_TRUE(contains(bad("-0.2, 0., 0., 0.3", "-0.2, 0., 0., 0.3, 0., 0., 0., 0.5"),
                          "coefficient 9 is 0.5"));
-    EXPECT_TRUE(contains(bad("image_width: 640\n", ""), "does not hold the image size"));
+    EXPECT_TRUE(contains(bad("image_width: 640\n", ""), "has no image size"));
 }
 
 TEST(RigOpenCv, ReadsRealIntrinsicsWithExtrinsicsBeside) {

@@ -357,7 +357,9 @@ TEST(RigRos, BadValuesNameFileAndKey) {
         {"410.", "'410,5'", "'410,5' is not a number"},
         {"plumb_bob", "thin_prism", "'thin_prism' is not one of plumb_bob"},
         {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 5"},
-        {"distortion_model: plumb_bob\n", "distortion_model: ''\n", "name their model"},
+        {"distortion_model: plumb_bob\n",
+         "distortion_model: ''\n",
+         "the coefficients have distortion_model"},
         {"plumb_bob", "rational_polynomial", "5 numbers; rational_polynomial has 8"},
         {"[0.8, 0., 0.6", "[0.8, 0., 0.7", "rectification_matrix: not a rigid motion"},
         {"[400., 0., 322.", "[0., 0., 322.", "projection_matrix: focal lengths 0 and 400"},
@@ -383,7 +385,8 @@ TEST(RigRos, ThePartnerStandsBesideIt) {
     const testing::TemporaryFolder folder;
     ASSERT_TRUE(write_rig(folder / "rig", rig_with(Lens::radtan5), RigFormat::ros).ok());
     EXPECT_TRUE(read_rig(folder / "rig").ok());
-    EXPECT_TRUE(contains(message(read_rig(folder / "rig/right.yaml")), "give the left one"));
+    EXPECT_TRUE(
+        contains(message(read_rig(folder / "rig/right.yaml")), "give the file of the left camera"));
     ASSERT_TRUE(remove_file(folder / "rig/right.yaml").ok());
     EXPECT_TRUE(contains(message(read_rig(folder / "rig")), "rig/right.yaml: cannot read"));
     EXPECT_TRUE(
@@ -431,11 +434,13 @@ TEST(RigZed, TheSizePicksTheSection) {
     EXPECT_EQ(std::get<camera::PinholeRadTan>(vga->rig.left.model).fx_px, 350.94);
     EXPECT_EQ(std::get<camera::PinholeRadTan>(vga->rig.left.model).p1, 0.0);
     EXPECT_EQ(vga->rig.left.width, 672);
-    EXPECT_EQ(message(parse_zed_rig(kZed, "SN1.conf")),
-              "SN1.conf: holds HD (1280x720), VGA (672x376); use it with its images, or take "
-              "one out with 'surefoot rig FILE --resolution WxH --out rig.yaml'");
-    EXPECT_TRUE(contains(message(parse_zed_rig(kZed, "SN1.conf", ImageSize{1920, 1080})),
-                         "SN1.conf: nothing for 1920x1080 px; it holds HD (1280x720), VGA"));
+    EXPECT_EQ(
+        message(parse_zed_rig(kZed, "SN1.conf")),
+        "SN1.conf: the file has several resolutions: HD (1280x720), VGA (672x376); use it "
+        "with its images, or select one with 'surefoot rig FILE --resolution WxH --out rig.yaml'");
+    EXPECT_TRUE(
+        contains(message(parse_zed_rig(kZed, "SN1.conf", ImageSize{1920, 1080})),
+                 "SN1.conf: the file has no section for 1920x1080 px, only HD (1280x720), VGA"));
 }
 
 TEST(RigZed, NewFilesKeepTheLensApart) {
@@ -447,7 +452,7 @@ TEST(RigZed, NewFilesKeepTheLensApart) {
     ASSERT_TRUE(file.ok()) << message(file);
     EXPECT_EQ(std::get<camera::PinholeRational>(file->rig.left.model).k6, 0.012);
     EXPECT_EQ(std::get<camera::PinholeRadTan>(file->rig.right->model).k1, -0.172795);
-    EXPECT_EQ(file->notes[0], "[RIGHT_DISTO] is not complete and left out");
+    EXPECT_EQ(file->notes[0], "[RIGHT_DISTO] is incomplete and is left out");
 }
 
 TEST(RigZed, NamesInAnyCaseCommentsAndTheOtherSpelling) {
@@ -498,7 +503,8 @@ TEST(RigZed, BadValuesNameFileAndKey) {
     EXPECT_TRUE(contains(message(parse_zed_rig(std::string(2 << 20, ' '), "z.conf")), "at most"));
     camera::StereoRig other = rig_with(Lens::radtan5);
     other.left.width = other.right->width = 640;
-    EXPECT_TRUE(contains(message(format_zed_rig(other)), "knows no images of 640x376 px"));
+    EXPECT_TRUE(contains(message(format_zed_rig(other)),
+                         "cannot store a calibration for images of 640x376 px"));
 }
 
 /// Decimal commas, as a German locale has them (which may not be installed).

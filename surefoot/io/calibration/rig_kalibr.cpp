@@ -106,9 +106,10 @@ void read_imu(YamlReader& yaml, const std::optional<Pose>& T_left_imu, RigFile& 
     if (shift == nullptr) return;
     const double shift_s = yaml.number(*shift, "cam0.timeshift_cam_imu", -10.0, 10.0);
     if (shift_s == 0.0) return;
-    out.notes.push_back(fmt::format(
-        "cam0.timeshift_cam_imu {} s is left out: a rig takes camera and IMU stamps as they are",
-        shift_s));
+    out.notes.push_back(
+        fmt::format("cam0.timeshift_cam_imu {} s is left out: a rig uses the time stamps of camera "
+                    "and IMU without correction",
+                    shift_s));
 }
 
 std::string format_camera(const char* name,
@@ -179,7 +180,7 @@ Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file)
     out.rig.T_left_right = read_extrinsics(yaml, T_left_imu, T_right_imu, out);
     read_imu(yaml, T_left_imu, out);
     if (root->find("cam2") != nullptr) {
-        out.notes.emplace_back("more than two cameras; cam0 and cam1 are taken");
+        out.notes.emplace_back("the file has more than two cameras; cam0 and cam1 are used");
     }
     if (yaml.error()) return *yaml.error();
     return checked_file(std::move(out), file);

@@ -111,7 +111,7 @@ Result<RigFile> raw_rig(RawLines& raw, const std::string& left, const std::strin
     out.rig.right = read_raw_camera(raw, right);
     out.rig.T_left_right = read_raw_pose(raw, left) * read_raw_pose(raw, right).inverse();
     if (raw.error()) return *raw.error();
-    out.notes.emplace_back("the cameras of the raw images are taken (S, K, D, R, T)");
+    out.notes.emplace_back("the cameras of the raw images are used (S, K, D, R, T)");
     return out;
 }
 
@@ -140,7 +140,7 @@ Result<RigFile> rectified_rig(RawLines& raw,
     RigFile out;
     out.rig = *rig;
     out.notes.emplace_back(
-        "the cameras of the rectified images are taken (S_rect, P_rect), as 'synced+rectified' "
+        "the cameras of the rectified images are used (S_rect, P_rect), as 'synced+rectified' "
         "recordings show them");
     return out;
 }
@@ -163,8 +163,8 @@ Result<RigFile> parse_kitti_raw_rig(std::string_view text,
     if (!out) return out;
     out->format = RigFormat::kitti_raw;
     out->rig.name = "kitti";
-    out->notes.push_back(grey ? "cameras 0 and 1 (grey) are taken"
-                              : "cameras 2 and 3 (colour) are taken");
+    out->notes.push_back(grey ? "cameras 0 and 1 (grey) are used"
+                              : "cameras 2 and 3 (colour) are used");
     return checked_file(std::move(out).value(), file);
 }
 

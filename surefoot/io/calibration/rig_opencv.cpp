@@ -34,14 +34,13 @@ bool is_fisheye(const YamlNode& root) {
 /// Requires a matrix; `other` is the same matrix of the other camera, for the message.
 bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
     if (found.node != nullptr) return true;
-    yaml.fail(
-        yaml.root(),
-        what,
-        other.node != nullptr
-            ? fmt::format("not found; the other camera's is '{}': give both the same name but "
-                          "for 1 and 2, left and right, or l and r",
-                          other.key)
-            : "not found under any of its usual names");
+    yaml.fail(yaml.root(),
+              what,
+              other.node != nullptr
+                  ? fmt::format("not found; the key of the other camera is '{}': both keys must "
+                                "differ only in 1 and 2, left and right, or l and r",
+                                other.key)
+                  : "not found under any of its usual names");
     return false;
 }
 
@@ -69,10 +68,10 @@ void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& 
     const std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
     const auto is_zero = [](double value) { return value == 0.0; };
     if (D.size() != 4 || std::all_of(D.begin(), D.end(), is_zero)) return;
-    out.notes.push_back(fmt::format(
-        "{}: four coefficients without the name of a lens model are taken as k1 k2 p1 p2 of a "
-        "pinhole; if cv::fisheye made them, add 'fisheye: 1' to the file",
-        distortion.key));
+    out.notes.push_back(
+        fmt::format("{}: four coefficients without the name of a lens model are read as k1 k2 p1 "
+                    "p2 of a pinhole; if cv::fisheye made them, add 'fisheye: 1' to the file",
+                    distortion.key));
 }
 
 /// Reads a rotation matrix or a rotation vector (cv::Rodrigues) and returns 9 numbers.
@@ -80,7 +79,7 @@ std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigF
     std::vector<double> R = read_matrix(yaml, *named.node, named.key, 3, 9);
     if (R.size() == 3) {
         out.notes.push_back(
-            fmt::format("{}: three numbers are taken as a rotation vector", named.key));
+            fmt::format("{}: the three numbers are read as a rotation vector", named.key));
         return row_major(exp_so3({R[0], R[1], R[2]}).toRotationMatrix());
     }
     if (R.size() != 9) {
@@ -105,7 +104,7 @@ Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
     if (const auto problem = camera::baseline_problem(length_m)) {
         yaml.fail(*names.T.node,
                   names.T.key,
-                  *problem + " (stereoCalibrate takes the unit of the board's squares)");
+                  *problem + " (stereoCalibrate uses the unit of the board's squares)");
     }
     return pose_from_parts(yaml, *names.R.node, names.R.key, R, T).inverse();
 }
@@ -121,12 +120,10 @@ ImageSize find_size(YamlReader& yaml, const OpenCvNames& names, std::optional<Im
         return read_size(yaml, data != nullptr ? *data : *names.size.node, names.size.key);
     }
     if (!fallback) {
-        yaml.fail(
-            yaml.root(),
-            "image size",
-            "the file does not hold the image size. Take it into a rig.yaml with 'surefoot rig "
-            "FILE --resolution WIDTHxHEIGHT --out rig.yaml', or add image_width and "
-            "image_height");
+        yaml.fail(yaml.root(),
+                  "image size",
+                  "the file has no image size. Convert it to a rig.yaml with 'surefoot rig FILE "
+                  "--resolution WIDTHxHEIGHT --out rig.yaml', or add image_width and image_height");
     }
     return fallback.value_or(ImageSize{});
 }
@@ -159,7 +156,9 @@ Result<std::string> format_opencv_rig(const camera::StereoRig& rig) {
     if (Status status = check_pair(rig, "OpenCV"); !status) return status.error();
     const bool fisheye = is_kannala_brandt(rig.left.model);
     if (fisheye != is_kannala_brandt(rig.right->model)) {
-        return output_error("an OpenCV file holds two fisheye lenses or none; this rig mixes them");
+        return output_error(
+            "an OpenCV file can store two fisheye lenses or two other lenses; this rig has one of "
+            "each");
     }
     const Pose T_right_left = rig.T_left_right.inverse();
     const Eigen::Vector3d& t = T_right_left.translation_m;

@@ -162,7 +162,8 @@ void read_raw_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
 void read_rgbd_camera(YamlReader& yaml, RigFile& out, ImageSize size) {
     out.rig.left = {
         read_lens(yaml, left_prefix(yaml.root()), read_type(yaml)), size.width, size.height};
-    out.notes.emplace_back("the file holds a depth factor: a rig of one camera with depth");
+    out.notes.emplace_back(
+        "the file has a depth factor, so it is read as a rig of one camera with depth");
     out.rig.rectified = true;  // StereoRig::problem() checks this claim
     out.rig.rectified = !out.rig.problem().has_value();
 }
@@ -178,14 +179,13 @@ void read_rectified_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
     out.rig.T_left_right.translation_m.x() = bf_px_m / fx_px;
     mark_if_rectified(out.rig);
     if (!out.rig.rectified && !out.rig.problem()) {
-        yaml.fail(
-            yaml.root(),
-            "Camera.bf",
-            "it is for rectified images, but Camera.k1 .. are not 0; give LEFT.K, D, R, P and "
-            "RIGHT.K, D, R, P of the raw images too");
+        yaml.fail(yaml.root(),
+                  "Camera.bf",
+                  "this key is for rectified images, but Camera.k1 .. are not 0; give LEFT.K, D, "
+                  "R, P and RIGHT.K, D, R, P of the raw images too");
     }
     out.notes.emplace_back(
-        "Camera.bf without LEFT.* and RIGHT.*: the images are rectified already");
+        "Camera.bf without LEFT.* and RIGHT.*: the program assumes rectified images");
 }
 
 void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
@@ -194,10 +194,9 @@ void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
         return yaml.fail(
             yaml.root(),
             has("LEFT.K") ? "RIGHT.K" : "LEFT.K",
-            "this key is missing: these ORB-SLAM settings hold the raw image of one camera alone. "
-            "Give K, D, R and P of LEFT and RIGHT, or of none of them where the images are "
-            "rectified "
-            "already (then Camera.fx .. and Camera.bf count)");
+            "this key is missing: these ORB-SLAM settings describe the raw images of one camera "
+            "only. Give K, D, R and P of both LEFT and RIGHT. For rectified images give none of "
+            "them; then Camera.fx .. and Camera.bf are used");
     }
     if (has("LEFT.K")) return read_raw_pair(yaml, out, size);
     if (has("DepthMapFactor") || has("RGBD.DepthMapFactor"))

@@ -60,8 +60,8 @@ std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, 
     if (zero) return "none";
     yaml.fail(list,
               key,
-              fmt::format("coefficients of distortion_model {}; name their model (plumb_bob, "
-                          "rational_polynomial, equidistant)",
+              fmt::format("the coefficients have distortion_model {}; give plumb_bob, "
+                          "rational_polynomial or equidistant",
                           quoted(model)));
     return "none";
 }
@@ -101,10 +101,10 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     drop_zero_tail(D, 5);
     if (given < 8 && !D.empty()) expect(4, 5);
     if (D.size() > 5 && !yaml.error()) {
-        out.notes.push_back(fmt::format(
-            "distortion_model is plumb_bob, but coefficients behind k3 of {} are not 0: taken as "
-            "rational_polynomial",
-            keys.D));
+        out.notes.push_back(
+            fmt::format("distortion_model is plumb_bob, but coefficients after k3 of {} are not 0: "
+                        "they are read as rational_polynomial",
+                        keys.D));
     }
     return lens_or_fail(yaml, list, keys.D, pinhole_lens(k, std::move(D)));
 }
@@ -195,14 +195,15 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
                                      camera.height));
     }
     if (width % bin_x != 0 || height % bin_y != 0) {
-        return yaml.fail(root,
-                         "binning_x, binning_y",
-                         fmt::format("{} x {} px cannot be binned by {} x {}: the sides leave a "
-                                     "rest. Calibrate at the size that the camera delivers",
-                                     width,
-                                     height,
-                                     bin_x,
-                                     bin_y));
+        return yaml.fail(
+            root,
+            "binning_x, binning_y",
+            fmt::format("{} x {} px cannot be binned by {} x {}: the sides are not multiples of "
+                        "it. Calibrate at the size that the camera delivers",
+                        width,
+                        height,
+                        bin_x,
+                        bin_y));
     }
     const bool whole = width == camera.width && height == camera.height;
     if (whole && bin_x == 1 && bin_y == 1) return;
@@ -257,8 +258,8 @@ Status check_rotations(const RosCamera& l, const RosCamera& r, RigFile& out) {
     }
     if (l.has_rotation) return {};
     out.notes.emplace_back(
-        "the rectification matrices are all zero (not rectified): the cameras are taken as "
-        "parallel. A stereo calibration gives their true directions");
+        "the rectification matrices are all zero (not rectified): the program assumes parallel "
+        "cameras. A stereo calibration gives their true directions");
     return {};
 }
 

@@ -129,7 +129,7 @@ TEST(RigVariants, RosModelsAreWhatTheirCoefficientsSay) {
             ASSERT_TRUE(ideal.ok()) << model << D << message(ideal);
             EXPECT_FALSE(pinhole(ideal->rig.left).has_distortion());
         }
-        EXPECT_TRUE(contains(message(with(model, kD)), "name their model"));
+        EXPECT_TRUE(contains(message(with(model, kD)), "the coefficients have distortion_model"));
     }
     const auto padded = with("plumb_bob", "[-0.03, 0.035, -0.00014, -0.00015, -0.012, 0, 0, 0]");
     ASSERT_TRUE(padded.ok()) << message(padded);
@@ -138,7 +138,7 @@ TEST(RigVariants, RosModelsAreWhatTheirCoefficientsSay) {
     const auto rational = with("plumb_bob", "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0]");
     ASSERT_TRUE(rational.ok()) << message(rational);
     EXPECT_EQ(std::get<camera::PinholeRational>(rational->rig.left.model).k5, 0.2);
-    EXPECT_TRUE(has_note(rational, "taken as rational_polynomial"));
+    EXPECT_TRUE(has_note(rational, "read as rational_polynomial"));
     const std::string rational_8 = "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0.05";
     EXPECT_TRUE(with("rational_polynomial", rational_8 + ", 0, 0, 0, 0, 0, 0]").ok());
     EXPECT_TRUE(contains(message(with("rational_polynomial", rational_8 + ", 0.001, 0, 0, 0]")),
@@ -314,13 +314,15 @@ TEST(RigVariants, OpenCvMatricesAreFoundUnderTheNamesOfTutorials) {
 
 TEST(RigVariants, OpenCvSaysWhichCameraIsMissing) {
     EXPECT_EQ(message(opencv(replaced(opencv_file(kUsualNames), "M2:", "N2:"))),
-              "stereo.yml:3: camera matrix of the right camera: not found; the other camera's is "
-              "'M1': give both the same name but for 1 and 2, left and right, or l and r");
-    EXPECT_TRUE(contains(message(opencv(replaced(opencv_file(kUsualNames), "D1:", "E1:"))),
-                         "distortion of the left camera: not found; the other camera's is 'D2'"));
+              "stereo.yml:3: camera matrix of the right camera: not found; the key of the other "
+              "camera is 'M1': both keys must differ only in 1 and 2, left and right, or l and r");
+    EXPECT_TRUE(
+        contains(message(opencv(replaced(opencv_file(kUsualNames), "D1:", "E1:"))),
+                 "distortion of the left camera: not found; the key of the other camera is 'D2'"));
     const std::string from_zero = opencv_file({"K0", "D0", "K1", "D1", "R", "T"});
-    EXPECT_TRUE(contains(message(opencv(replaced(from_zero, "D0:", "E0:"))),
-                         "distortion of the left camera: not found; the other camera's is 'D1'"))
+    EXPECT_TRUE(
+        contains(message(opencv(replaced(from_zero, "D0:", "E0:"))),
+                 "distortion of the left camera: not found; the key of the other camera is 'D1'"))
         << "beside K0 and K1, D1 is the right camera's";
     EXPECT_TRUE(contains(message(opencv("camera_matrix: [700, 0, 640, 0, 700, 360, 0, 0, 1]\n"
                                         "distortion_coefficients: [0, 0, 0, 0, 0]\n")),
@@ -365,7 +367,7 @@ TEST(RigVariants, OpenCvSizeRotationAndLens) {
     ASSERT_TRUE(turned.ok()) << message(turned);
     const auto matrix = opencv(opencv_file(kUsualNames));
     EXPECT_LT(difference(turned->rig.T_left_right, matrix->rig.T_left_right).norm(), 1e-12);
-    EXPECT_TRUE(has_note(turned, "taken as a rotation vector"));
+    EXPECT_TRUE(has_note(turned, "read as a rotation vector"));
     EXPECT_TRUE(contains(message(opencv(replaced(opencv_file(kUsualNames), kR, "[0, 1, 0, 0]"))),
                          "R: 4 numbers; a rotation matrix has 9, a rotation vector 3"));
 
@@ -464,9 +466,9 @@ TEST(RigVariants, OrbSlam2SettingsAreRead) {
     ASSERT_TRUE(rectified.ok()) << message(rectified);
     EXPECT_TRUE(rectified->rig.rectified);
     EXPECT_NEAR(baseline_m(rectified), 47.906 / 435.2, kExact);
-    EXPECT_TRUE(has_note(rectified, "rectified already"));
+    EXPECT_TRUE(has_note(rectified, "assumes rectified images"));
     EXPECT_TRUE(contains(message(orbslam(replaced(kOrbSlam2, "Camera.k1: 0.0", "Camera.k1: -0.2"))),
-                         "it is for rectified images"));
+                         "this key is for rectified images"));
 
     const auto raw =
         orbslam(kOrbSlam2 + orbslam2_side("LEFT", "0.0") + orbslam2_side("RIGHT", "-47.906"));
@@ -476,10 +478,9 @@ TEST(RigVariants, OrbSlam2SettingsAreRead) {
     EXPECT_NEAR(baseline_m(raw), 47.906 / 435.2, kExact);
     EXPECT_NEAR(raw->rig.T_left_right.translation_m.x(), 0.8 * 47.906 / 435.2, kExact);
 
-    EXPECT_TRUE(
-        contains(message(orbslam(kOrbSlam2 + orbslam2_side("LEFT", "0.0"))),
-                 "RIGHT.K: this key is missing: these ORB-SLAM settings hold the raw image of "
-                 "one camera alone"));
+    EXPECT_TRUE(contains(message(orbslam(kOrbSlam2 + orbslam2_side("LEFT", "0.0"))),
+                         "RIGHT.K: this key is missing: these ORB-SLAM settings describe the raw "
+                         "images of one camera only"));
     const auto rgbd = orbslam(kOrbSlam2 + "DepthMapFactor: 5000.0\n");
     ASSERT_TRUE(rgbd.ok()) << message(rgbd);
     EXPECT_FALSE(rgbd->rig.right);
@@ -677,7 +678,7 @@ TEST(RigVariants, ZedFilesOfAnyAge) {
                                "SN.conf")
                     .ok());
     EXPECT_TRUE(contains(message(file(replaced(stereo, "TY=-0.08\n", ""))),
-                         "[STEREO] has no 'TY_HD'. Older files leave it out"));
+                         "[STEREO] has no 'TY_HD'. Older files have no such key"));
     EXPECT_TRUE(contains(message(file(replaced(stereo, "RX_HD=0.001\n", ""))),
                          "or add the line 'RX_HD = 0'"));
 }

@@ -94,7 +94,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     const YamlNode& root = yaml.root();
     for (const char* key : {"left", "right", "T_left_right"}) {
         const YamlNode* node = root.find(key);
-        if (node != nullptr) yaml.fail(*node, key, "does not go together with 'focal_px'");
+        if (node != nullptr) yaml.fail(*node, key, "cannot be used together with 'focal_px'");
     }
     const YamlNode* focal = yaml.required(root, "focal_px");
     const YamlNode* principal = yaml.required(root, "principal_px");
@@ -106,7 +106,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     if (distortion != nullptr && yaml.text(*distortion, "distortion") != "none") {
         yaml.fail(*distortion,
                   "distortion",
-                  "only 'none' here; lenses with distortion need a 'left' and a 'right' block");
+                  "must be 'none' here; lenses with distortion need a 'left' and a 'right' block");
     }
     rig.left = {make_pinhole(intrinsics, {}), size.width, size.height};
     rig.rectified = true;
@@ -125,7 +125,7 @@ void read_full_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoR
     const YamlNode& root = yaml.root();
     for (const char* key : {"baseline_m", "focal_px", "principal_px", "distortion"}) {
         const YamlNode* node = root.find(key);
-        if (node != nullptr) yaml.fail(*node, key, "does not go together with a 'left' block");
+        if (node != nullptr) yaml.fail(*node, key, "cannot be used together with a 'left' block");
     }
     if (const YamlNode* left = yaml.required(root, "left"); left != nullptr) {
         rig.left = read_camera(yaml, *left, "left", size);
@@ -199,8 +199,10 @@ Result<camera::StereoRig> parse_rig_yaml(std::string_view text, const std::strin
     const Result<YamlNode> root = parse_yaml(text, file);
     if (!root) return root.error();
     if (!root->is_mapping()) {
-        return input_error(fmt::format(
-            "{}: a rig file holds 'key: value' lines, this one {}", file, root->kind_name()));
+        return input_error(
+            fmt::format("{}: a rig file must have 'key: value' lines, but this one has {}",
+                        file,
+                        root->kind_name()));
     }
     YamlReader yaml(file, *root);
     yaml.only_keys(*root, "", common_keys());

@@ -58,8 +58,8 @@ class ZedReader {
             if (ini_.find(section, key) != nullptr) return number(section, key);
         }
         fail(fmt::format(
-            "[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
-            "take 0: download the file of this serial number again, or add the line '{1} = 0'",
+            "[{0}] has no '{1}'. Older files have no such key, and Stereolabs' programs then use "
+            "0: download the file of this serial number again, or add the line '{1} = 0'",
             section,
             *keys.begin()));
         return 0.0;
@@ -98,15 +98,15 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
         return input_error(
-            fmt::format("{}: has no section for {} px; it holds {}. A ZED crops its sensor "
-                        "differently for each resolution, so that no section can be scaled",
+            fmt::format("{}: the file has no section for {} px, only {}. A ZED crops its sensor "
+                        "differently for each resolution, so no section can be scaled",
                         ini.name,
                         size_text(*size),
                         fmt::join(found, ", ")));
     }
     return input_error(
-        fmt::format("{}: holds {}; use it with its images, or take one out with 'surefoot rig "
-                    "FILE --resolution WxH --out rig.yaml'",
+        fmt::format("{}: the file has several resolutions: {}; use it with its images, or select "
+                    "one with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
                     ini.name,
                     fmt::join(found, ", ")));
 }
@@ -147,7 +147,7 @@ camera::CameraModel read_lens(ZedReader& zed,
         return lens_or_fail(zed, lens, fisheye_lens(k, read(lens, kFisheyeKeys)));
     }
     if (zed.ini().find(lens) != nullptr) {
-        out.notes.push_back(fmt::format("[{}] is not complete and left out", lens));
+        out.notes.push_back(fmt::format("[{}] is incomplete and is left out", lens));
     }
     return make_pinhole(k,
                         {zed.number(section, "k1"),
@@ -264,7 +264,9 @@ Result<std::string> format_zed_rig(const camera::StereoRig& rig) {
     const Mode* mode = mode_of(rig.left);
     if (mode == nullptr) {
         return output_error(
-            fmt::format("a ZED file knows no images of {}x{} px", rig.left.width, rig.left.height));
+            fmt::format("a ZED file cannot store a calibration for images of {}x{} px",
+                        rig.left.width,
+                        rig.left.height));
     }
     if (is_kannala_brandt(rig.left.model) || is_kannala_brandt(rig.right->model)) {
         return output_error("a ZED file for stereo cameras holds pinhole lenses, not fisheyes");

@@ -135,8 +135,9 @@ TEST(CloudScalar, WhatAFileHoldsMoreIsSaid) {
         "POINTS 1\nDATA ascii\n1 2 3 4 5 6 0 0 0 0\n",
         "a.pcd");
     ASSERT_TRUE(pcd.ok()) << pcd.error().message;
-    EXPECT_EQ(pcd->notes,
-              (std::vector<std::string>{"the field 'f' with 3 values a point is not kept"}));
+    EXPECT_EQ(
+        pcd->notes,
+        (std::vector<std::string>{"the field 'f' is not kept, because it has 3 values per point"}));
 }
 
 }  // namespace

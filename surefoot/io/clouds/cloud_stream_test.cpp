@@ -299,7 +299,7 @@ TEST(Las, RefusesWhatIsDamagedOrCompressed) {
     EXPECT_TRUE(contains(why(good.substr(0, good.size() - 1)), "do not fit into"));
     std::string headless = good;
     headless[94] = '\0';
-    EXPECT_TRUE(contains(why(headless), "LAS header of 0 bytes"));
+    EXPECT_TRUE(contains(why(headless), "the LAS header has 0 bytes"));
     EXPECT_FALSE(las_rows(headless, headless.size()));
     std::string laz = good;
     laz[104] = static_cast<char>(laz[104] | 0x80);
@@ -312,7 +312,7 @@ TEST(Las, RefusesWhatIsDamagedOrCompressed) {
     EXPECT_TRUE(contains(why(format), "point format 11"));
     std::string narrow = good;
     narrow[105] = 20;
-    EXPECT_TRUE(contains(why(narrow), "records of 20 bytes"));
+    EXPECT_TRUE(contains(why(narrow), "records have 20 bytes"));
     testing::for_each_mutation(good, 5000, 11, [](const std::string& bytes) {
         const auto cloud = parse_las(bytes, "damaged.las");
         if (cloud.ok()) {
@@ -363,7 +363,7 @@ TEST(Vtk, ReadsPointsOverAnyLines) {
     };
     EXPECT_TRUE(contains(why("ply\n"), "a.vtk:1: not a VTK file"));
     EXPECT_TRUE(contains(why("# vtk DataFile Version 3.0\nx\nBINARY\n"), "'BINARY'"));
-    EXPECT_TRUE(contains(why(head), "without POINTS"));
+    EXPECT_TRUE(contains(why(head), "has no line POINTS"));
     EXPECT_TRUE(contains(why(head + "POINTS 9999999999 float\n1 2 3\n"), "do not fit"));
     EXPECT_TRUE(contains(why(head + "POINTS 1 float\n1 2    x   \n"), "'x' is not a number"));
     EXPECT_TRUE(contains(why(head + "POINTS -1 float\n"), "POINTS count type"));

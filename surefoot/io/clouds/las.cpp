@@ -73,9 +73,10 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     const auto header_bytes = load_le<std::uint16_t>(data + kHeaderSize);
     const auto format = load_le<std::uint8_t>(data + kFormat);
     if (header_bytes < kSmallestHeader) {
-        return damaged(
-            file,
-            fmt::format("LAS header of {} bytes, at least {}", header_bytes, kSmallestHeader));
+        return damaged(file,
+                       fmt::format("the LAS header has {} bytes; at least {} are needed",
+                                   header_bytes,
+                                   kSmallestHeader));
     }
     if ((format & kCompressed) != 0) {
         return damaged(file,
@@ -83,7 +84,8 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
                        "'pdal translate IN.laz OUT.las' or 'laszip'");
     }
     if (format >= kFormats.size())
-        return damaged(file, fmt::format("LAS point format {}, 0 to 10 are known", format));
+        return damaged(
+            file, fmt::format("LAS point format {} is not supported; formats 0 to 10 are", format));
     Header header;
     header.header_bytes = header_bytes;
     header.format = format;
@@ -95,7 +97,7 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
         header.points = load_le<std::uint64_t>(data + kPoints64);
     if (header.record_bytes < kFormats[format].bytes) {
         return damaged(file,
-                       fmt::format("LAS records of {} bytes, format {} needs {}",
+                       fmt::format("the LAS records have {} bytes, but format {} needs {}",
                                    header.record_bytes,
                                    format,
                                    kFormats[format].bytes));
@@ -116,7 +118,7 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
         header.offset_m[axis] = load_le<double>(data + kOffsets + 8 * axis);
     }
     if (!header.scale.allFinite() || !header.offset_m.allFinite() || header.scale.minCoeff() <= 0.0)
-        return damaged(file, "LAS scales must be positive, and offsets numbers");
+        return damaged(file, "LAS scales must be positive, and LAS offsets must be finite numbers");
     return header;
 }
 
@@ -232,7 +234,10 @@ Result<PointCloud> parse_las(std::string_view bytes, const std::string& file) {
     if (!header) return header.error();
     constexpr std::uint64_t kMaxPoints = 1ULL << 30;
     if (header->points > kMaxPoints)
-        return damaged(file, fmt::format("{} points, at most {}", header->points, kMaxPoints));
+        return damaged(
+            file,
+            fmt::format(
+                "the file has {} points; at most {} are supported", header->points, kMaxPoints));
     const std::string_view records = bytes.substr(header->points_at);
     PointCloud cloud;
     cloud.points_m.reserve(header->points);

@@ -86,7 +86,7 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
         } else if (const auto count = parse_count(word, 65536); words[0] == "COUNT" && count) {
             field.count = *count;
         } else {
-            return input_error(fmt::format("{} {} is not possible", words[0], quoted(word)));
+            return input_error(fmt::format("{} {} is not valid", words[0], quoted(word)));
         }
     }
     return {};
@@ -317,11 +317,11 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
         const std::vector<std::string_view> words = split(*line);
         if (words.empty()) continue;
         if (words.size() != header.values_per_point()) {
-            return at_line(
-                file,
-                number,
-                fmt::format(
-                    "{} values; {} belong to a point", words.size(), header.values_per_point()));
+            return at_line(file,
+                           number,
+                           fmt::format("the line has {} values, but a point has {}",
+                                       words.size(),
+                                       header.values_per_point()));
         }
         std::size_t w = 0;
         for (std::size_t f = 0; f < header.fields.size(); ++f) {
@@ -351,9 +351,10 @@ std::vector<std::string> notes_of(const Header& header) {
         if (field.name == "rgba" && is_colour(field)) {
             notes.emplace_back("the fourth channel of 'rgba' is not kept");
         } else if (field.name != "_" && field.count > 1) {
-            notes.push_back(fmt::format("the field {} with {} values a point is not kept",
-                                        quoted(field.name),
-                                        field.count));
+            notes.push_back(
+                fmt::format("the field {} is not kept, because it has {} values per point",
+                            quoted(field.name),
+                            field.count));
         }
     }
     return notes;
@@ -367,7 +368,7 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
     const auto unpacked = load_le<std::uint32_t>(header.body.data() + 4);
     if (unpacked != needed) {
         return input_error(
-            fmt::format("{}: {} points of {} bytes do not make the {} bytes announced",
+            fmt::format("{}: {} points of {} bytes are not the {} bytes that the file announces",
                         file,
                         *header.points,
                         header.stride(),

@@ -112,7 +112,8 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
     if (words[0] == "element" && words.size() == 3) {
         const auto count = parse_int64(words[2]);
         if (!count || *count < 0) {
-            return input_error(fmt::format("element count {} is not a count", quoted(words[2])));
+            return input_error(fmt::format("element count {} is not a whole number of 0 or more",
+                                           quoted(words[2])));
         }
         header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(*count), {}});
         return {};
@@ -122,7 +123,7 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
         if (!property) return property.error();
         header.elements.back().properties.push_back(std::move(property).value());
         if (header.elements.back().properties.size() <= kMaxProperties) return {};
-        return input_error(fmt::format("more than {} properties", kMaxProperties));
+        return input_error(fmt::format("an element has more than {} properties", kMaxProperties));
     }
     return input_error(fmt::format("unexpected header line beginning with {}", quoted(words[0])));
 }
@@ -306,12 +307,13 @@ bool skip_element(ValueReader& values, const Element& element) {
 }
 
 Error too_short(const std::string& file, const Element& element, std::size_t bytes) {
-    return input_error(fmt::format(
-        "{}: truncated or damaged PLY: {} '{}' announced, {} bytes of data do not hold them",
-        file,
-        element.count,
-        element.name,
-        bytes));
+    return input_error(
+        fmt::format("{}: truncated or damaged PLY: the header announces {} '{}', but {} bytes of "
+                    "data are too few",
+                    file,
+                    element.count,
+                    element.name,
+                    bytes));
 }
 
 Result<PointCloud> read_vertices(const Element& vertex,
@@ -320,8 +322,8 @@ Result<PointCloud> read_vertices(const Element& vertex,
     PointCloud cloud;
     const auto targets = targets_of(vertex, cloud);
     if (!targets) {
-        return input_error(fmt::format(
-            "{}: PLY vertices without x, y and z, or with one of them more than once", file));
+        return input_error(
+            fmt::format("{}: PLY vertices must have each of x, y and z exactly once", file));
     }
     const bool coloured = std::any_of(targets->begin(), targets->end(), [](const Target& target) {
         return target.kind == Target::Kind::red;
@@ -332,7 +334,7 @@ Result<PointCloud> read_vertices(const Element& vertex,
     for (std::uint64_t i = 0; i < vertex.count; ++i) {
         if (read_vertex(values, vertex, *targets, coloured, cloud)) continue;
         return input_error(
-            fmt::format("{}: PLY vertex {} of {} is cut off, no number, or beyond the "
+            fmt::format("{}: PLY vertex {} of {} is cut off, is not a number, or does not fit the "
                         "type of its property",
                         file,
                         i,
@@ -415,7 +417,7 @@ Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file) {
         }
         if (!skip_element(values, element)) return too_short(file, element, header->body.size());
     }
-    return input_error(fmt::format("{}: PLY without vertices", file));
+    return input_error(fmt::format("{}: the PLY file has no vertices", file));
 }
 
 std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size) {

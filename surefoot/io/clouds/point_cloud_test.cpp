@@ -113,7 +113,7 @@ TEST(Ply, RefusesWhatIsDamagedWithFileAndReason) {
                          "1000000000000 'vertex' announced"));
     EXPECT_TRUE(contains(
         message(parse_ply("ply\nelement vertex 1\nproperty float x\nend_header\n1\n", "a.ply")),
-        "without x, y and z"));
+        "must have each of x, y and z"));
     EXPECT_TRUE(contains(
         message(parse_ply("ply\nelement vertex 1\nproperty half x\nend_header\n1\n", "a.ply")),
         "a.ply:3: unknown property type 'half'"));

@@ -64,10 +64,11 @@ Result<PointCloud> TextCloudParser::parse(std::string_view text) {
 
 Status TextCloudParser::finish() const {
     if (announced_.value_or(0) > points_) {
-        return input_error(fmt::format("{}: {} points announced, {} are there: the file is cut off",
-                                       file_,
-                                       *announced_,
-                                       points_));
+        return input_error(
+            fmt::format("{}: the file announces {} points, but has {}: it is cut off",
+                        file_,
+                        *announced_,
+                        points_));
     }
     if (points_ > 0) return {};
     return input_error(fmt::format("{}: no points; expected lines of 'x y z'", file_));
@@ -107,15 +108,15 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
     if (!axes && comment) return {};
     if (!axes) {
         return input_error(
-            fmt::format("a head line that begins with {} but does not name x, y and z once each: "
-                        "name them, or remove the line",
+            fmt::format("the head line begins with {} but does not name x, y and z once each: name "
+                        "them, or remove the line",
                         quoted(columns.empty() ? content : columns.front().name)));
     }
     if (columns_ != 0) {
         const bool same = head_ && head_->line == content;
         if (same || (!head_ && *axes == axes_)) return {};
         if (comment && head_ && columns.size() != columns_) return {};
-        return input_error("other columns than before; put each part in a file of its own");
+        return input_error("the columns change here; put each part into a separate file");
     }
     for (const std::size_t axis : *axes) {
         if (is_metre(columns[axis].unit)) continue;
@@ -159,7 +160,8 @@ Status TextCloudParser::choose_columns(std::string_view content) {
         return input_error(fmt::format("{} numbers where x y z are expected", fields_.size()));
     }
     if (fields_.size() > kMaxColumns) {
-        return input_error(fmt::format("{} columns; {} are possible", fields_.size(), kMaxColumns));
+        return input_error(fmt::format(
+            "the line has {} columns; at most {} are supported", fields_.size(), kMaxColumns));
     }
     columns_ = fields_.size();
     if (Status status = name_columns(); !status) {

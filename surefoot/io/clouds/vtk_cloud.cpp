@@ -24,10 +24,11 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
     (void)lines.next();  // the title may be anything
     const auto encoding = lines.next();
     if (!encoding || trimmed(*encoding) != "ASCII") {
-        return input_error(fmt::format(
-            "{}:3: {} where VTK files are read as ASCII alone: write it as ASCII, or as PLY",
-            file,
-            quoted(encoding.value_or(""))));
+        return input_error(
+            fmt::format("{}:3: found {}, but only ASCII VTK files can be read; write the file as "
+                        "ASCII VTK or as PLY",
+                        file,
+                        quoted(encoding.value_or(""))));
     }
     while (const auto line = lines.next()) {
         const std::vector<std::string_view> words = split(*line);
@@ -39,7 +40,7 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
         }
         return Points{*count, words[2] == "double", lines.rest()};
     }
-    return input_error(fmt::format("{}: VTK file without POINTS", file));
+    return input_error(fmt::format("{}: the VTK file has no line POINTS", file));
 }
 
 }  // namespace

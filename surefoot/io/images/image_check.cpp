@@ -55,7 +55,7 @@ Result<ImageHeader> parse_ihdr(std::string_view data, const std::string& file) {
     const auto height = load<std::uint32_t>(data.data() + 4, std::endian::big);
     if (width > 1U << 24 || height > 1U << 24) {
         return input_error(
-            fmt::format("{}: image size {} x {} exceeds 2^24 a side", file, width, height));
+            fmt::format("{}: image size {} x {} exceeds 2^24 px on a side", file, width, height));
     }
     static constexpr int kChannels[] = {1, 0, 3, 3, 2, 0, 4};
     const int colour = static_cast<std::uint8_t>(data[9]);
@@ -85,7 +85,8 @@ Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
                 fmt::format(
                     "damaged PNG: wrong checksum of the part {} at byte {}", quoted(type), at));
         }
-        if (first != (type == "IHDR")) return damaged(file, "damaged PNG: header not at its place");
+        if (first != (type == "IHDR"))
+            return damaged(file, "damaged PNG: the header must be the first part");
         if (first) header = parse_ihdr(data, file);
         if (!header) return header;
         has_pixels = has_pixels || type == "IDAT";

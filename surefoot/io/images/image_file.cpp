@@ -35,8 +35,8 @@ Result<cv::Mat> decode(std::string_view bytes, const std::string& file) {
 
 Result<cv::Mat> decode_checked(std::string_view bytes, const std::string& file, int bits) {
     if (bytes.size() > (std::size_t{1} << 30)) {
-        return input_error(
-            fmt::format("{}: {} bytes is too large for an image", file, bytes.size()));
+        return input_error(fmt::format(
+            "{}: the file has {} bytes, which is too large for an image", file, bytes.size()));
     }
     const Result<ImageHeader> header = check_image(bytes, file);
     if (!header) return header.error();
@@ -56,7 +56,8 @@ Result<cv::Mat> decode_checked(std::string_view bytes, const std::string& file, 
     Result<cv::Mat> image = decode(bytes, file);
     if (image && (image->depth() != (bits == 8 ? CV_8U : CV_16U) || image->cols != header->width ||
                   image->rows != header->height)) {
-        return input_error(fmt::format("{}: its pixels do not agree with its header", file));
+        return input_error(fmt::format(
+            "{}: damaged image: the pixels do not match the header; record it again", file));
     }
     return image;
 }

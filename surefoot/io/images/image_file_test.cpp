@@ -390,7 +390,7 @@ TEST(DemFile, HeightImagesHaveTheirHeights) {
     EXPECT_NEAR(height_at_row(30), 0.6 * 94 / 255, 1e-6);
     EXPECT_TRUE(contains(message(read_dem_image(path, 0.0, 1.0)), "a scale of 0.0001 to 1000 m"));
     EXPECT_FALSE(read_dem_image(path, 1e-12, 0.6).ok());
-    EXPECT_TRUE(contains(message(read_dem_image(path, 0.02, 2e5)), "beyond 100000 m"));
+    EXPECT_TRUE(contains(message(read_dem_image(path, 0.02, 2e5)), "exceeds 100000 m"));
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ struct Header {
 /// "Pf", width, height and scale as words, then one white space, then the pixels.
 Result<Header> parse_header(std::string_view bytes, const std::string& file) {
     if (bytes.starts_with("PF")) {
-        return input_error(file + ": colour PFM; a disparity has one channel ('Pf')");
+        return input_error(
+            file + ": this is a colour PFM; a disparity image must have one channel ('Pf')");
     }
     if (!bytes.starts_with("Pf")) return input_error(file + ": not a PFM file ('Pf' expected)");
     constexpr std::size_t kLongestHeader = 256;
@@ -45,8 +46,8 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
                                        kMaxImagePixels));
     }
     if (!scale || !std::isfinite(*scale) || *scale == 0.0) {
-        return input_error(
-            fmt::format("{}: PFM scale {} must be a number but 0", file, quoted(scale_word)));
+        return input_error(fmt::format(
+            "{}: PFM scale {} must be a finite number other than 0", file, quoted(scale_word)));
     }
     const auto begin =
         static_cast<std::size_t>(scale_word.data() - bytes.data()) + scale_word.size();

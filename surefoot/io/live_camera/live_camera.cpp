@@ -187,14 +187,14 @@ Result<std::optional<StereoFrame>> LiveCamera::next() {
 Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffer) {
     if (!buffer.monotonic) {
         return input_error(info_.path +
-                           ": the driver's time stamps are not of CLOCK_MONOTONIC: the age of a "
-                           "frame would not be known");
+                           ": the driver's time stamps do not use CLOCK_MONOTONIC, so the age of a "
+                           "frame is unknown; use another camera or driver");
     }
     StereoFrame frame;
     frame.time_ns = middle_of_exposure_ns(buffer);
     Status status;
     if (last_time_ns_ && frame.time_ns <= *last_time_ns_)
-        status = input_error("its stamp does not grow");
+        status = input_error("its time stamp does not increase");
     if (buffer.damaged) status = input_error("the driver reports it as damaged");
     if (status) {
         const Result<GreyImage> image = decode(buffer);

@@ -437,7 +437,8 @@ TEST(LiveCamera, SaysWhatCannotBeSet) {
 TEST(LiveCamera, RefusesAnotherFormatThanAskedFor) {
     FakeCamera camera = small_camera();
     camera.keeps_its_own_size = true;
-    EXPECT_TRUE(contains(open_error(camera), "asked for 64 x 24 YUYV, the camera gives 32 x 24"));
+    EXPECT_TRUE(
+        contains(open_error(camera), "asked for 64 x 24 YUYV, but the camera gives 32 x 24"));
     camera = small_camera();
     EXPECT_TRUE(contains(open_error(camera, {}, {"/dev/fake", 64, 24, 60.0}),
                          "no YUYV or MJPEG mode of 64 x 24 px at 60 Hz; it has YUYV 64x24@30"));

@@ -65,7 +65,8 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
     if (const int error = system.open(path); error != 0) {
         if (error == EACCES) {
             return input_error(fmt::format(
-                "{}: may not be opened; add the user to the group 'video' and log in again", path));
+                "{}: no permission to open it; add the user to the group 'video' and log in again",
+                path));
         }
         if (error == ENOTTY) return input_error(path + ": not a device");
         return device.failed("cannot be opened (surefoot doctor lists the cameras)", error);
@@ -77,9 +78,10 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                                   ? capability.device_caps
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
-        return input_error(fmt::format(
-            "{}: delivers no streamed video (a camera has several nodes; use the first one)",
-            path));
+        return input_error(
+            fmt::format("{}: this device delivers no video stream; a camera has several devices: "
+                        "use the first one",
+                        path));
     }
     device.card_ = text_of(capability.card);
     device.driver_ = text_of(capability.driver);
@@ -203,7 +205,7 @@ Status V4l2Device::set_control(std::uint32_t id, const std::string& name, int va
     if (system_->request(VIDIOC_G_CTRL, &now) == 0 && std::abs(now.value - value) >= known->step &&
         now.value != value) {
         return input_error(fmt::format(
-            "{}: {} was set to {}, but the camera says {}", path_, name, value, now.value));
+            "{}: {} was set to {}, but the camera reports {}", path_, name, value, now.value));
     }
     return {};
 }
@@ -221,8 +223,8 @@ Status V4l2Device::set_mode(const VideoMode& mode) {
     if (static_cast<int>(got.width) != mode.width || static_cast<int>(got.height) != mode.height ||
         format_of(got.pixelformat) != mode.format) {
         return input_error(
-            fmt::format("{}: asked for {} x {} {}, the camera gives {} x {} {}; see surefoot info "
-                        "v4l2:{} for what it can do",
+            fmt::format("{}: asked for {} x {} {}, but the camera gives {} x {} {}; run 'surefoot "
+                        "info v4l2:{}' to list its modes",
                         path_,
                         mode.width,
                         mode.height,
@@ -248,8 +250,8 @@ Status V4l2Device::set_rate(double rate_hz) {
     const double got_hz = rate_of(parameters.parm.capture.timeperframe);
     if (std::abs(got_hz - rate_hz) <= kRateTolerance * rate_hz) return {};
     return input_error(
-        fmt::format("{}: asked for {:g} Hz, the camera gives {:g} Hz at this size; see surefoot "
-                    "info v4l2:{} for what it can do",
+        fmt::format("{}: asked for {:g} Hz, but the camera gives {:g} Hz at this size; run "
+                    "'surefoot info v4l2:{}' to list its modes",
                     path_,
                     rate_hz,
                     got_hz,
@@ -286,7 +288,7 @@ Status V4l2Device::start() {
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     if (const int error = system_->request(VIDIOC_STREAMON, &type); error != 0) {
         return failed(error == ENOSPC ? "not enough USB bandwidth (choose a smaller or slower mode)"
-                                      : "cannot start to stream",
+                                      : "cannot start the video stream",
                       error);
     }
     return {};
@@ -295,17 +297,18 @@ Status V4l2Device::start() {
 Result<std::optional<VideoBuffer>> V4l2Device::dequeue(int timeout_ms) {
     if (const int error = system_->wait(timeout_ms); error != 0) {
         if (error == ETIMEDOUT || error == EINTR) return std::optional<VideoBuffer>();
-        return failed("stopped to deliver", error);
+        return failed("stopped delivering images", error);
     }
     v4l2_buffer raw = {};
     raw.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     raw.memory = V4L2_MEMORY_MMAP;
     if (const int error = system_->request(VIDIOC_DQBUF, &raw); error != 0) {
         if (error == EAGAIN) return std::optional<VideoBuffer>();
-        return failed("stopped to deliver", error);
+        return failed("stopped delivering images", error);
     }
     if (raw.index >= mappings_.size())
-        return input_error(fmt::format("{}: the driver names buffer {}", path_, raw.index));
+        return input_error(fmt::format(
+            "{}: the driver returned buffer {}, which does not exist", path_, raw.index));
     VideoBuffer buffer;
     const Mapping& mapping = mappings_[raw.index];
     buffer.bytes = {mapping.address, std::min<std::size_t>(raw.bytesused, mapping.length)};

@@ -136,13 +136,13 @@ Result<grid::GridGeometry> geometry_of(const Header& header, const std::string& 
                   {"yllcorner", header.y},
                   {"cellsize", header.cell}};
     for (const auto& [name, value] : needed) {
-        if (!value) return input_error(fmt::format("{}: ESRI grid without '{}'", file, name));
+        if (!value) return input_error(fmt::format("{}: the ESRI grid has no '{}'", file, name));
         if (!std::isfinite(*value)) {
             return input_error(fmt::format("{}: {} = {} must be finite", file, name, *value));
         }
     }
     if (!is_cell_size(*header.cell)) {
-        return input_error(fmt::format("{}: cellsize {}: {:g} to {:g} m are possible",
+        return input_error(fmt::format("{}: cellsize {} must be from {:g} to {:g} m",
                                        file,
                                        *header.cell,
                                        kFinest_m,
@@ -175,12 +175,13 @@ Status check_layer(const std::string& path,
                    const grid::Layer& values) {
     if (values.width() == geometry.nx && values.height() == geometry.ny && !values.empty())
         return {};
-    return output_error(fmt::format("{}: layer of {} x {} cells on a grid of {} x {}",
-                                    path,
-                                    values.width(),
-                                    values.height(),
-                                    geometry.nx,
-                                    geometry.ny));
+    return output_error(
+        fmt::format("{}: a layer of {} x {} cells does not fit a grid of {} x {} cells",
+                    path,
+                    values.width(),
+                    values.height(),
+                    geometry.nx,
+                    geometry.ny));
 }
 
 /// Formats nine digits, or NODATA for unknown.
@@ -254,8 +255,11 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
         }
     }
     if (const std::string_view extra = words.next(); !extra.empty()) {
-        return input_error(fmt::format(
-            "{}: {} follows the {} x {} cells", file, quoted(extra), geometry->nx, geometry->ny));
+        return input_error(fmt::format("{}: found {} after the {} x {} cells",
+                                       file,
+                                       quoted(extra),
+                                       geometry->nx,
+                                       geometry->ny));
     }
     return dem;
 }
@@ -318,10 +322,11 @@ Result<Dem> parse_dem_image(std::string_view bytes,
                         full_height_m));
     }
     if (std::abs(full_height_m) > kMaxHeight_m) {
-        return usage_error(fmt::format("{}: a full height of {} m is beyond {:g} m: give metres",
-                                       file,
-                                       full_height_m,
-                                       kMaxHeight_m));
+        return usage_error(
+            fmt::format("{}: the full height of {} m exceeds {:g} m: give it in metres",
+                        file,
+                        full_height_m,
+                        kMaxHeight_m));
     }
     const Result<ImageHeader> header = check_image(bytes, file);
     if (!header) return header.error();

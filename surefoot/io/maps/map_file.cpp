@@ -142,11 +142,12 @@ Result<Outline> check_outline(std::string_view bytes, const std::string& file) {
         return damaged(file, "truncated or damaged map region: its checksum is wrong");
     }
     if (outline.header_bytes < kHeaderBytes || outline.header_bytes > without_checksum) {
-        return damaged(file,
-                       fmt::format("map region with a header of {} bytes; {} to {} are possible",
-                                   outline.header_bytes,
-                                   kHeaderBytes,
-                                   without_checksum));
+        return damaged(
+            file,
+            fmt::format("the header of the map region has {} bytes; {} to {} are allowed",
+                        outline.header_bytes,
+                        kHeaderBytes,
+                        without_checksum));
     }
     return outline;
 }
@@ -163,7 +164,8 @@ Status read_header(Cursor& cursor, MapRegion& region, std::uint32_t& layers) {
     if (reserved != 0) return input_error(fmt::format("reserved bytes hold {}", reserved));
     if (auto problem = region.box.problem()) return input_error(*problem);
     if (layers > kMaxLayers) {
-        return input_error(fmt::format("{} layers; up to {} are possible", layers, kMaxLayers));
+        return input_error(
+            fmt::format("the map has {} layers; at most {} are allowed", layers, kMaxLayers));
     }
     return {};
 }
@@ -180,14 +182,14 @@ Result<std::vector<LayerEntry>> read_layer_table(Cursor& cursor, std::uint32_t c
         if (!name || !unit || entry.name.empty())
             return input_error(fmt::format("layer {} has no name or unit", i));
         if (entry.cell_bytes < 1 || entry.cell_bytes > kMaxCellBytes) {
-            return input_error(fmt::format("layer {} has {} bytes a cell; 1 to {} are possible",
+            return input_error(fmt::format("layer {} has {} bytes per cell; 1 to {} are allowed",
                                            quoted(entry.name),
                                            entry.cell_bytes,
                                            kMaxCellBytes));
         }
         const auto same = [&](const LayerEntry& other) { return other.name == entry.name; };
         if (std::any_of(entries.begin(), entries.end(), same))
-            return input_error(fmt::format("layer {} is there twice", quoted(entry.name)));
+            return input_error(fmt::format("layer {} appears twice", quoted(entry.name)));
         entries.push_back(std::move(entry));
     }
     return entries;
@@ -205,8 +207,8 @@ Status load_layer(const grid::RegionLayer& layer,
     if (entry->unit != layer.unit || entry->type != type_code<T>() ||
         entry->cell_bytes != sizeof(T)) {
         return input_error(
-            fmt::format("layer {} is of type {}, {} bytes, unit {}; type {}, {} bytes, unit {} "
-                        "are right",
+            fmt::format("layer {} has type {}, {} bytes and unit {}; it must have type {}, {} "
+                        "bytes and unit {}",
                         layer.name,
                         entry->type,
                         entry->cell_bytes,
@@ -235,7 +237,7 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
         outline.header_bytes + std::uint64_t{layers} * kLayerEntryBytes + kChecksumBytes;
     cursor.at = bytes.data() + outline.header_bytes;
     if (needed > bytes.size())
-        return input_error(fmt::format("{} bytes do not hold {} layers", bytes.size(), layers));
+        return input_error(fmt::format("{} bytes are too few for {} layers", bytes.size(), layers));
     auto entries = read_layer_table(cursor, layers);
     if (!entries) return entries.error();
     for (LayerEntry& entry : *entries) {
@@ -245,12 +247,13 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
         needed += cells * entry.cell_bytes;
     }
     if (needed != bytes.size()) {
-        return input_error(fmt::format("{} bytes where {} x {} cells of its {} layers make {}",
-                                       bytes.size(),
-                                       region.box.nx,
-                                       region.box.ny,
-                                       layers,
-                                       needed));
+        return input_error(
+            fmt::format("the file has {} bytes, but {} x {} cells of its {} layers need {}",
+                        bytes.size(),
+                        region.box.nx,
+                        region.box.ny,
+                        layers,
+                        needed));
     }
     Status first;
     grid::for_each_layer([&](const grid::RegionLayer& layer, auto member, auto) {

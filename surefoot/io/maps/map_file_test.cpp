@@ -183,21 +183,21 @@ TEST(MapFile, SaysWhatIsImpossible) {
         {"version 2.0; this program reads version 1: use a newer program",
          with(bytes, kMajorAt, std::uint16_t{2})},
         {"version 0.0", with(bytes, kMajorAt, std::uint16_t{0})},
-        {"header of 160 bytes", with(bytes, kHeaderBytesAt, std::uint32_t{160})},
-        {"header of 4294967295 bytes", with(bytes, kHeaderBytesAt, 0xffffffffU)},
+        {"header of the map region has 160 bytes", with(bytes, kHeaderBytesAt, std::uint32_t{160})},
+        {"header of the map region has 4294967295 bytes", with(bytes, kHeaderBytesAt, 0xffffffffU)},
         {"cells of nan m", with(bytes, kResolutionAt, std::nan(""))},
         {"-1 x 2 cells", with(bytes, kNxAt, std::int32_t{-1})},
         {"2147483647 x 2 cells", with(bytes, kNxAt, std::int32_t{2147483647})},
-        {"bytes where 3 x 2 cells of its 10 layers make", with(bytes, kNxAt, std::int32_t{3})},
+        {"bytes, but 3 x 2 cells of its 10 layers need", with(bytes, kNxAt, std::int32_t{3})},
         {"its frame needs a name", with(bytes, kFrameAt, std::uint32_t{0})},
         {"frame is not filled up", with(bytes, kFrameAt + 31, 'x')},
         {"257 layers", with(bytes, kLayersAt, std::uint32_t{257})},
-        {"do not hold 200 layers", with(bytes, kLayersAt, std::uint32_t{200})},
+        {"are too few for 200 layers", with(bytes, kLayersAt, std::uint32_t{200})},
         {"reserved bytes hold 1", with(bytes, kLayersAt + 4, std::uint32_t{1})},
         {"layer elevation is missing", with(bytes, kTableAt, 'E')},
         {"layer 0 has no name", with(bytes, kTableAt + 39, 'x')},
         {"layer elevation is of type 3", with(bytes, kTableAt + 56, std::uint32_t{3})},
-        {"0 bytes a cell", with(bytes, kTableAt + 60, std::uint32_t{0})},
+        {"0 bytes per cell", with(bytes, kTableAt + 60, std::uint32_t{0})},
         {"unit 'k'", with(bytes, kTableAt + 40, 'k')},
         {"cell (0, 0) has elevation inf", with(bytes, cells_at, kInf)},
         {"cell (0, 0) has variance nan", with(bytes, cells_at + 16, std::nanf(""))},
@@ -209,7 +209,7 @@ TEST(MapFile, SaysWhatIsImpossible) {
     }
     std::string twice = bytes;
     twice.replace(kTableAt + kEntryBytes, kEntryBytes, bytes, kTableAt, kEntryBytes);
-    EXPECT_TRUE(contains(message(parse_map(resealed(twice), "m")), "'elevation' is there twice"));
+    EXPECT_TRUE(contains(message(parse_map(resealed(twice), "m")), "'elevation' appears twice"));
 }
 
 TEST(MapFile, ANewerMinorVersionMayHaveMoreHeaderAndMoreLayers) {

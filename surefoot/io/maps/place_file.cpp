@@ -87,7 +87,7 @@ Status check_sizes(const Outline& outline, std::size_t content_bytes) {
         [](const char* of, std::uint64_t is, std::uint64_t least, std::uint64_t most) {
             if (is >= least && is <= most) return Status{};
             return Status{input_error(
-                fmt::format("{} of {} bytes; {} to {} are possible", of, is, least, most))};
+                fmt::format("{} of {} bytes; {} to {} are allowed", of, is, least, most))};
         };
     if (auto status = size("a header", outline.header_bytes, kHeaderBytes, content_bytes); !status)
         return status;
@@ -98,7 +98,7 @@ Status check_sizes(const Outline& outline, std::size_t content_bytes) {
         !status)
         return status;
     if (outline.keyframes > static_cast<std::uint32_t>(place_recognition::kMostKeyframes))
-        return input_error(fmt::format("{} keyframes; up to {} are possible",
+        return input_error(fmt::format("{} keyframes; at most {} are allowed",
                                        outline.keyframes,
                                        place_recognition::kMostKeyframes));
     return {};
@@ -154,7 +154,7 @@ Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& k
     if (reserved != 0) return input_error(fmt::format("reserved bytes hold {}", reserved));
     if (features > static_cast<std::uint32_t>(place_recognition::kMostFeatures))
         return input_error(fmt::format(
-            "{} features; up to {} are possible", features, place_recognition::kMostFeatures));
+            "{} features; at most {} are allowed", features, place_recognition::kMostFeatures));
     const std::size_t bytes =
         outline.keyframe_bytes + std::size_t{features} * outline.feature_bytes;
     if (left.size() < bytes) return too_short();

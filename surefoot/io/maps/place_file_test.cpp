@@ -138,7 +138,7 @@ TEST(PlaceFile, SaysWhatIsWrongAndWhatToDo) {
     };
     says(with(bytes, kHeaderBytesAt, std::uint32_t{31}), "header of 31 bytes; 32 to");
     says(with(bytes, kHeaderBytesAt, std::uint32_t{1U << 31U}), "header of 2147483648 bytes");
-    says(with(bytes, kKeyframesAt, std::uint32_t{501}), "501 keyframes; up to 500");
+    says(with(bytes, kKeyframesAt, std::uint32_t{501}), "501 keyframes; at most 500");
     says(with(bytes, kKeyframesAt, std::uint32_t{3}), "keyframe 2: it ends 0 bytes into");
     says(with(bytes, kKeyframesAt, std::uint32_t{1}), "308 bytes after its last keyframe");
     says(with(bytes, kKeyframeBytesAt, std::uint32_t{8}), "keyframes of 8 bytes; 176 to 4096");

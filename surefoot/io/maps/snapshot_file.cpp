@@ -170,8 +170,8 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
     ahead(sizes.edge_count);
     if (!sizes.are_possible()) {
         return damaged(file,
-                       fmt::format("map snapshot of {} x {} cells and {} edges; 1 to {} cells a "
-                                   "side and 0 to {} edges are possible",
+                       fmt::format("map snapshot of {} x {} cells and {} edges; 1 to {} cells on a "
+                                   "side and 0 to {} edges are allowed",
                                    sizes.nx,
                                    sizes.ny,
                                    sizes.edge_count,

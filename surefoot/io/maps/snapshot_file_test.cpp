@@ -138,7 +138,7 @@ TEST(SnapshotFile, AnImpossibleNumberOfEdgesIsASentence) {
         return message(parse_snapshot(changed, "map.snapshot"));
     };
     for (const std::int32_t count : {-1, MapSnapshot::kMaxEdges + 1, 2'000'000'000}) {
-        EXPECT_TRUE(contains(with_count(count), "0 to 128 edges are possible")) << count;
+        EXPECT_TRUE(contains(with_count(count), "0 to 128 edges are allowed")) << count;
     }
     EXPECT_TRUE(contains(with_count(2), "too long a map"));
     EXPECT_TRUE(contains(with_count(4), "truncated map"));

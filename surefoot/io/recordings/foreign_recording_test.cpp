@@ -123,14 +123,14 @@ TEST(PairTolerance, StampsThatDifferByMicrosecondsArePairedAndItIsSaid) {
     EXPECT_DOUBLE_EQ(info->pair_tolerance_s, 0.01) << "a fifth of 50 ms";
     EXPECT_DOUBLE_EQ(info->largest_pair_difference_s, 37e-6);
     options.pair_tolerance_s = 1e-6;
-    EXPECT_TRUE(contains(play(folder / "r", options).errors, "no stamp in common within 0.001 ms"));
+    EXPECT_TRUE(contains(play(folder / "r", options).errors, "no time stamps within 0.001 ms"));
     EXPECT_EQ(play(folder / "same", make_euroc(folder / "same", 3, 0)).notes(), "");
 }
 
 TEST(PairTolerance, AnImageWithoutPartnerIsLeftOutAndCounted) {
     const TemporaryFolder folder;
     const OpenOptions options = make_euroc(folder / "r", 4, 12'000'000);
-    EXPECT_TRUE(contains(play(folder / "r", options).errors, "no stamp in common within 10 ms"));
+    EXPECT_TRUE(contains(play(folder / "r", options).errors, "no time stamps within 10 ms"));
     const OpenOptions near = make_euroc(folder / "n", 4, 1'000);
     std::string right = *read_file(folder / "n/mav0/cam1/data.csv");
     write_lines(folder / "n/mav0/cam1/data.csv", right.substr(right.find('\n') + 1));
@@ -171,7 +171,7 @@ TEST(SixteenBits, AValueBeyondTheGuessIsAnErrorNotASaturatedPixel) {
     write_image(folder / ("r/mav0/cam1/data/" + stamp(1) + ".png"), deep(image(1), 8));
     const Played played = play(folder / "r", options);
     EXPECT_EQ(played.frames.size(), 4U);
-    EXPECT_TRUE(contains(played.errors, "needs more than 12 bits; give --image-bits 16"))
+    EXPECT_TRUE(contains(played.errors, "needs more than 12 bits; give the number of bits"))
         << played.errors;
     options.image_bits = 16;
     EXPECT_EQ(play(folder / "r", options).errors, "");
@@ -208,7 +208,7 @@ TEST(PairFolders, LeftAndRightByTheirNames) {
         EXPECT_EQ(contains(played.notes(), "paired in their order"), std::string("other") == name);
     }
     std::filesystem::remove(folder / "other/right/r8.png");
-    EXPECT_TRUE(contains(play(folder / "other").errors, "neither names nor stamps say"));
+    EXPECT_TRUE(contains(play(folder / "other").errors, "neither names nor time stamps show"));
     std::filesystem::remove(folder / "same/right/9.png");
     EXPECT_TRUE(
         contains(play(folder / "same").errors, "9.png: the right image of this frame is missing"));
@@ -311,7 +311,7 @@ TEST(RgbdOfOthers, MillimetresAreGuessedWithASentence) {
     const Played guessed = play(folder.path());
     ASSERT_EQ(guessed.frames.size(), 1U) << guessed.errors;
     EXPECT_EQ(guessed.frames[0].depth_m.at(3, 3), 2.0F);
-    EXPECT_TRUE(contains(guessed.notes(), "depth is taken as millimetres")) << guessed.notes();
+    EXPECT_TRUE(contains(guessed.notes(), "depth is read as millimetres")) << guessed.notes();
     OpenOptions options;
     options.depth_codes_per_m = 5000.0;
     EXPECT_EQ(play(folder.path(), options).frames.at(0).depth_m.at(3, 3), 0.4F);

@@ -64,17 +64,18 @@ Result<bool> ImuStream::read_some() {
     const std::size_t whole = end == unread_.npos ? 0 : end + 1;
     if (unread_.size() - whole > kMaxLine)
         return input_error(file_.path() +
-                           ": a line without end: not IMU rows 'stamp_ns,wx,wy,wz,ax,ay,az'");
+                           ": a line has no end; give IMU rows 'stamp_ns,wx,wy,wz,ax,ay,az'");
     const auto samples =
         parse_euroc_imu_samples(std::string_view(unread_).substr(0, whole), file_.path());
     if (!samples) return samples.error();
     unread_.erase(0, whole);
     for (const ImuSample& sample : *samples) {
         if (sample.time_ns <= last_time_ns_) {
-            return input_error(fmt::format("{}: IMU stamp {} ns does not grow: {} ns came before",
-                                           file_.path(),
-                                           sample.time_ns,
-                                           last_time_ns_));
+            return input_error(
+                fmt::format("{}: IMU time stamp {} ns does not increase: the previous one is {} ns",
+                            file_.path(),
+                            sample.time_ns,
+                            last_time_ns_));
         }
         last_time_ns_ = sample.time_ns;
         waiting_.push_back(sample);

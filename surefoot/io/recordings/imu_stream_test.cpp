@@ -102,14 +102,14 @@ TEST(ImuStream, SaysWhatIsWrong) {
         return samples.ok() ? std::string() : samples.error().message;
     };
     EXPECT_EQ(error_of(row(1) + row(2)), "");
-    EXPECT_TRUE(contains(error_of(row(5) + row(5)), "does not grow"));
+    EXPECT_TRUE(contains(error_of(row(5) + row(5)), "does not increase"));
     EXPECT_TRUE(contains(error_of("1,2,3\n"), "expected 'stamp_ns"));
     EXPECT_TRUE(contains(error_of("1,0,0,nan,0,0,0\n"), "not a finite number"));
-    EXPECT_TRUE(contains(error_of(std::string(10'000, '7')), "a line without end"));
+    EXPECT_TRUE(contains(error_of(std::string(10'000, '7')), "a line has no end"));
     // Stamps that go back from one part of the file to the next, far apart.
     std::string text;
     for (std::int64_t i = 0; i < 1000; ++i) text += row(10 + i);
-    EXPECT_TRUE(contains(error_of(text + row(3)), "does not grow"));
+    EXPECT_TRUE(contains(error_of(text + row(3)), "does not increase"));
     EXPECT_FALSE(ImuStream::open(folder / "missing.csv").ok());
 }
 

@@ -79,7 +79,7 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
         if (!is_folder(join_path(folder, layout.left))) continue;
         if (!is_folder(join_path(folder, layout.right))) {
             return input_error(
-                fmt::format("{}: {} is there but {} is missing; a stereo recording has both",
+                fmt::format("{}: {} exists but {} is missing; a stereo recording needs both",
                             folder,
                             layout.left,
                             layout.right));
@@ -240,9 +240,8 @@ Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Record
         return {};
     }
     return input_error(
-        fmt::format("{} holds {} images and {} {}, and neither names nor stamps say which belong "
-                    "together; give "
-                    "both images of a frame the same name",
+        fmt::format("{} has {} images and {} has {}, and neither names nor time stamps show which "
+                    "belong together; give both images of a frame the same name",
                     pair.left_folder,
                     pair.left.size(),
                     pair.right_folder,

@@ -41,7 +41,8 @@ struct Recorder::Impl {
             const int second_width = rig.right ? frame.right.width() : frame.depth_m.width();
             const int second_height = rig.right ? frame.right.height() : frame.depth_m.height();
             return input_error(
-                fmt::format("{}: frame {} is {} x {} and {} x {} px, the rig is for {} x {} px",
+                fmt::format("{}: frame {}: the left image has {} x {} px and the second image {} x "
+                            "{} px, but the rig is for {} x {} px; give the rig of this image size",
                             folder,
                             frame.index,
                             frame.left.width(),
@@ -52,12 +53,12 @@ struct Recorder::Impl {
                             rig.left.height));
         }
         if (last_frame_ns && frame.time_ns <= *last_frame_ns) {
-            return input_error(
-                fmt::format("{}: frame {}: stamp {} s does not grow: {} s came before",
-                            folder,
-                            frame.index,
-                            format_seconds(frame.time_ns),
-                            format_seconds(*last_frame_ns)));
+            return input_error(fmt::format(
+                "{}: frame {}: time stamp {} s does not increase: the previous one is {} s",
+                folder,
+                frame.index,
+                format_seconds(frame.time_ns),
+                format_seconds(*last_frame_ns)));
         }
         return {};
     }
@@ -111,8 +112,10 @@ bool Recorder::read_back(StereoFrame& frame) const {
 
 Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {
     if (impl_->last_truth_ns && time_ns <= *impl_->last_truth_ns) {
-        return input_error(fmt::format(
-            "{}: truth stamp {} s does not grow", impl_->folder, format_seconds(time_ns)));
+        return input_error(
+            fmt::format("{}: the time stamp {} s of the ground truth does not increase",
+                        impl_->folder,
+                        format_seconds(time_ns)));
     }
     std::string text = format_tum_trajectory({{time_ns, T_world_body}});
     if (!impl_->truth) {

@@ -65,14 +65,14 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
         if (largest > 0 && static_cast<int>(std::bit_width(largest)) <= bits) guess = bits;
     recording.image_bits = options.image_bits.value_or(guess);
     if (recording.image_bits < 9 || recording.image_bits > 16)
-        return usage_error(fmt::format("--image-bits {}: must be 9 .. 16", recording.image_bits));
-    recording.info.notes.push_back(fmt::format(
-        "16-bit images: the upper 8 of {} bits are used{}",
-        recording.image_bits,
-        options.image_bits ? std::string()
-                           : fmt::format(" (the first, middle and last image reach {}); "
-                                         "--image-bits replaces the guess",
-                                         largest)));
+        return usage_error(fmt::format("--image-bits {}: give 9 to 16", recording.image_bits));
+    recording.info.notes.push_back(
+        fmt::format("16-bit images: the upper 8 of {} bits are used{}",
+                    recording.image_bits,
+                    options.image_bits ? std::string()
+                                       : fmt::format(" (the first, middle and last image reach "
+                                                     "{}); if this is wrong, give --image-bits",
+                                                     largest)));
     return {};
 }
 
@@ -112,11 +112,12 @@ Result<std::vector<ImuSample>> parse_euroc_imu_samples(std::string_view text,
                            "expected 'stamp_ns,wx,wy,wz,ax,ay,az', found " + quoted(content));
         }
         if (!samples.empty() && *time_ns <= samples.back().time_ns) {
-            return at_line(file,
-                           lines.number(),
-                           fmt::format("IMU stamp {} ns does not grow: {} ns came before",
-                                       *time_ns,
-                                       samples.back().time_ns));
+            return at_line(
+                file,
+                lines.number(),
+                fmt::format("IMU time stamp {} ns does not increase: the previous one is {} ns",
+                            *time_ns,
+                            samples.back().time_ns));
         }
         double v[6] = {};
         for (std::size_t i = 0; i < 6; ++i) {
@@ -281,14 +282,14 @@ void fit_rig(camera::StereoRig& rig,
     Result<camera::StereoRig> scaled = camera::scaled_to(rig, images->width, images->height);
     if (!scaled) return;
     rig = std::move(scaled).value();
-    notes.push_back(fmt::format(
-        "the calibration for {} x {} px is scaled by {} to the images of {} x {} px; right only if "
-        "these show the whole picture",
-        of_rig.width,
-        of_rig.height,
-        static_cast<double>(images->width) / of_rig.width,
-        images->width,
-        images->height));
+    notes.push_back(
+        fmt::format("the calibration for {} x {} px is scaled by {} to the images of {} x {} px; "
+                    "this is correct only if the images show the whole field of view",
+                    of_rig.width,
+                    of_rig.height,
+                    static_cast<double>(images->width) / of_rig.width,
+                    images->width,
+                    images->height));
 }
 
 Result<std::optional<camera::StereoRig>> read_rig_beside(const std::string& folder,
@@ -307,13 +308,15 @@ Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz) {
     constexpr double kMax_hz = 1e4;
     if (rate_hz >= kMin_hz && rate_hz <= kMax_hz) return rate_hz;
     return usage_error(
-        fmt::format("--rate {}: a frame rate must be {} .. {} Hz", rate_hz, kMin_hz, kMax_hz));
+        fmt::format("--rate {}: a frame rate must be {} to {} Hz", rate_hz, kMin_hz, kMax_hz));
 }
 
 Status refuse_rate(const OpenOptions& options, const std::string& file) {
     if (!options.rate_hz) return {};
-    return usage_error(fmt::format(
-        "--rate {}: {} has its own stamps; remove the option --rate", *options.rate_hz, file));
+    return usage_error(
+        fmt::format("--rate {}: {} has time stamps of its own; remove the option --rate",
+                    *options.rate_hz,
+                    file));
 }
 
 std::int64_t stamp_at(int index, double rate_hz) noexcept {

@@ -25,9 +25,8 @@ bool same_size(const Image<Pixel>& a, const Image<Other>& b) {
 Status check_size(const GreyImage& image, const camera::StereoRig& rig, const std::string& file) {
     if (image.width() == rig.left.width && image.height() == rig.left.height) return {};
     return input_error(
-        fmt::format("{}: image is {}, but the rig is for {} x {} px: a rig for another resolution "
-                    "(give the right one "
-                    "with --rig)",
+        fmt::format("{}: the image is {}, but the rig is for {} x {} px; give the rig of this "
+                    "resolution with --rig",
                     file,
                     size_text(image),
                     rig.left.width,
@@ -43,12 +42,12 @@ Result<GreyImage> read_camera_image(const std::string& path, int bits) {
     for (std::size_t i = 0; i < codes->size(); ++i) {
         const int value = codes->data()[i] >> (bits - 8);
         if (value > 255) {
-            return input_error(fmt::format(
-                "{}: value {} needs more than {} bits; give --image-bits 16 (or as many as the "
-                "camera has)",
-                path,
-                codes->data()[i],
-                bits));
+            return input_error(
+                fmt::format("{}: value {} needs more than {} bits; give the number of bits of the "
+                            "camera, for example --image-bits 16",
+                            path,
+                            codes->data()[i],
+                            bits));
         }
         image.data()[i] = static_cast<std::uint8_t>(value);
     }
@@ -69,7 +68,7 @@ Status load_pair(const FrameEntry& entry,
     if (!right) return right.error();
     if (!same_size(*left, *right)) {
         return input_error(
-            fmt::format("{} is {}, but {} is {}; both images of a frame must be equal",
+            fmt::format("{} is {}, but {} is {}; both images of a frame must have the same size",
                         entry.left,
                         size_text(*left),
                         entry.right,
@@ -90,11 +89,12 @@ Status load_rgbd(const FrameEntry& entry,
     const Result<DepthCodes> codes = read_depth_codes(entry.right);
     if (!codes) return codes.error();
     if (!same_size(*grey, *codes)) {
-        return input_error(fmt::format("{} is {}, but {} is {}; depth must be registered to colour",
-                                       entry.left,
-                                       size_text(*grey),
-                                       entry.right,
-                                       size_text(*codes)));
+        return input_error(fmt::format(
+            "{} is {}, but {} is {}; the depth image must have the size of the colour image",
+            entry.left,
+            size_text(*grey),
+            entry.right,
+            size_text(*codes)));
     }
     if (Status status = check_size(*grey, rig, entry.left); !status) return status;
     frame.left = std::move(grey).value();
@@ -129,13 +129,13 @@ Result<std::optional<StereoFrame>> RecordingSource::next() {
     frame.index = static_cast<int>(next_frame_++);
     frame.time_ns = entry.time_ns;
     if (last_time_ns_ && frame.time_ns <= *last_time_ns_) {
-        return input_error(
-            fmt::format("frame {}: {}: stamp {} s {}: {} s came before; stamps must grow",
-                        frame.index,
-                        entry.where,
-                        format_seconds(frame.time_ns),
-                        frame.time_ns == *last_time_ns_ ? "repeats" : "goes back",
-                        format_seconds(*last_time_ns_)));
+        return input_error(fmt::format(
+            "frame {}: {}: time stamp {} s {}: the previous one is {} s; time stamps must increase",
+            frame.index,
+            entry.where,
+            format_seconds(frame.time_ns),
+            frame.time_ns == *last_time_ns_ ? "repeats" : "goes back",
+            format_seconds(*last_time_ns_)));
     }
     if (Status status = load_images(entry, frame); !status) {
         return input_error(fmt::format("frame {}: {}", frame.index, status.error().message));

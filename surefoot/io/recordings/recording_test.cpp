@@ -206,7 +206,7 @@ TEST(Recorder, RefusesInWords) {
     camera::StereoRig rgbd = small_rig();
     rgbd.right.reset();
     EXPECT_TRUE(contains(Recorder::create(folder / "d", rgbd)->add(small_frame(0)).error().message,
-                         "32 x 20 and 0 x 0 px"))
+                         "the left image has 32 x 20 px and the second image 0 x 0 px"))
         << "no depth";
     EXPECT_TRUE(
         contains(message(Recorder::create(folder / "d", small_rig())), "holds a recording already"))
@@ -215,10 +215,11 @@ TEST(Recorder, RefusesInWords) {
     auto recorder = Recorder::create(folder / "s", small_rig());
     ASSERT_TRUE(recorder.ok());
     ASSERT_TRUE(recorder->add(small_frame(1)).ok());
-    EXPECT_TRUE(contains(recorder->add(small_frame(0)).error().message, "does not grow"));
+    EXPECT_TRUE(contains(recorder->add(small_frame(0)).error().message, "does not increase"));
     StereoFrame wrong = small_frame(2);
     wrong.right = GreyImage(3, 3);
-    EXPECT_TRUE(contains(recorder->add(wrong).error().message, "3 x 3 px, the rig is for 32 x 20"));
+    EXPECT_TRUE(
+        contains(recorder->add(wrong).error().message, "3 x 3 px, but the rig is for 32 x 20"));
 }
 
 TEST(Recorder, ReadsBackWhatIsWholeAndOfItsSize) {
@@ -298,9 +299,9 @@ TEST(EurocSource, OneBadFrameIsNamedAndTheOthersAreKept) {
     const Played unequal = damaged("unequal", [](const std::string& mav) {
         ASSERT_TRUE(write_png(mav + "/cam1/data/" + stamp(3) + ".png", GreyImage(16, 20)).ok());
     });
-    EXPECT_TRUE(contains(unequal.errors, "frame 3: ") &&
-                contains(unequal.errors, "is 32 x 20 px, but") &&
-                contains(unequal.errors, "16 x 20 px; both images of a frame must be equal"))
+    EXPECT_TRUE(
+        contains(unequal.errors, "frame 3: ") && contains(unequal.errors, "is 32 x 20 px, but") &&
+        contains(unequal.errors, "16 x 20 px; both images of a frame must have the same size"))
         << unequal.errors;
     const Played backwards = damaged("backwards", [](const std::string& mav) {
         for (const char* camera : {"/cam0", "/cam1"}) {
@@ -335,7 +336,7 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
     EXPECT_TRUE(
         contains(error("b", "imu0/data.csv", "0.1,0.2,", "0.1,nan,"), "imu0/data.csv:2: 'nan'"));
     EXPECT_TRUE(contains(error("c", "imu0/data.csv", stamp(0) + ",", "5,"),
-                         "IMU stamp 5 ns does not grow"));
+                         "IMU time stamp 5 ns does not increase"));
     EXPECT_TRUE(contains(error("d", "cam0/sensor.yaml", "intrinsics: [30,", "intrinsics: [.nan,"),
                          "cam0/sensor.yaml:9: intrinsics: nan"));
     EXPECT_TRUE(contains(error("e", "cam1/sensor.yaml", "resolution", "resolutoin"),
@@ -350,11 +351,11 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
     }
     EXPECT_TRUE(contains(
         play(folder / "g").errors,
-        "image is 32 x 20 px, but the rig is for 48 x 30 px: a rig for another resolution"));
+        "image is 32 x 20 px, but the rig is for 48 x 30 px; give the rig of this resolution"));
     OpenOptions rate;
     rate.rate_hz = 10.0;
     record(folder / "h", 2);
-    EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has its own stamps"));
+    EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has time stamps of its own"));
 }
 
 TEST(EurocSource, BeginsAtAnyFrame) {
@@ -477,7 +478,7 @@ TEST(KittiSource, BadInputIsNamed) {
     std::filesystem::remove(folder / "a/calib.txt");
     EXPECT_TRUE(contains(play(folder / "a").errors, "calib.txt: cannot read"));
     std::filesystem::remove_all(folder / "a/image_1");
-    EXPECT_TRUE(contains(play(folder / "a").errors, "image_0 is there but image_1 is missing"));
+    EXPECT_TRUE(contains(play(folder / "a").errors, "image_0 exists but image_1 is missing"));
     ASSERT_TRUE(make_folder(folder / "e/image_0").ok() && make_folder(folder / "e/image_1").ok());
     EXPECT_TRUE(contains(play(folder / "e").errors, "no images in this folder"));
 }
@@ -504,9 +505,9 @@ TEST(SideBySideSource, CutsInNaturalOrderAtFifteenHertz) {
         EXPECT_EQ(frame.time_ns, (i * 1'000'000'000LL + 7) / 15) << i;
     }
     ASSERT_TRUE(write_png(folder / "frame9.png", GreyImage(kWidth, kHeight)).ok());
-    EXPECT_TRUE(
-        contains(play(folder.path()).errors,
-                 "frame9.png: image is 32 x 20 px; a side-by-side frame of this rig is 64 x 20"));
+    EXPECT_TRUE(contains(
+        play(folder.path()).errors,
+        "frame9.png: the image is 32 x 20 px, but a side-by-side frame of this rig is 64 x 20"));
     OpenOptions options;
     options.rate_hz = 0.0;
     EXPECT_TRUE(contains(play(folder.path(), options).errors, "--rate 0: a frame rate must be"));

@@ -59,9 +59,8 @@ Status split_side_by_side(const GreyImage& both,
     const int height = rig.left.height;
     if (both.width() != 2 * width || both.height() != height) {
         return input_error(
-            fmt::format("{}: image is {} x {} px; a side-by-side frame of this rig is {} x {} px "
-                        "(a rig for another "
-                        "resolution? give the right one with --rig)",
+            fmt::format("{}: the image is {} x {} px, but a side-by-side frame of this rig is {} x "
+                        "{} px; give the rig of this resolution with --rig",
                         what,
                         both.width(),
                         both.height(),

@@ -81,15 +81,15 @@ void sort_and_thin(TrajectoryFile& out) {
 std::vector<std::string> TrajectoryFile::notes() const {
     std::vector<std::string> notes;
     if (repeated > 0) {
-        notes.push_back(fmt::format(
-            "{} rows left out whose stamp was there already (at most {:.4f} m from the row that "
-            "was kept, the first)",
-            repeated,
-            repeated_apart_m));
+        notes.push_back(
+            fmt::format("{} rows with a repeated time stamp are left out; the first one is kept "
+                        "(the others are at most {:.4f} m from it)",
+                        repeated,
+                        repeated_apart_m));
     }
     if (not_finite > 0)
-        notes.push_back(fmt::format("{} rows left out that hold NaN or infinity", not_finite));
-    if (sorted) notes.emplace_back("the rows were not in the order of time; they are sorted");
+        notes.push_back(fmt::format("{} rows with NaN or infinity are left out", not_finite));
+    if (sorted) notes.emplace_back("the rows were not in the order of time and are now sorted");
     return notes;
 }
 
@@ -120,8 +120,8 @@ Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string
         if (const double far_m = pose->translation_m.cwiseAbs().maxCoeff(); far_m > kFarthest_m) {
             return at_line(file,
                            row.line,
-                           fmt::format("a position {:g} m from the origin; at most {:g} m are "
-                                       "possible: check the unit",
+                           fmt::format("the position is {:g} m from the origin; at most {:g} m are "
+                                       "allowed: check the unit",
                                        far_m,
                                        kFarthest_m));
         }

@@ -46,20 +46,21 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
         return message(parse_trajectory(text, "a.tum"));
     };
     const std::string good = "1 0 0 0 0 0 0 1\n";
+    EXPECT_TRUE(contains(why("1 0 0 0 0 0 0\n"),
+                         "a.tum:1: the line has 7 numbers; a line of a trajectory has 8"));
     EXPECT_TRUE(
-        contains(why("1 0 0 0 0 0 0\n"), "a.tum:1: 7 numbers; a trajectory has 8 in a line"));
-    EXPECT_TRUE(contains(why(good + "2 0 0 0 0 0 0\n"), "a.tum:2: 7 numbers; 8 belong in a line"));
+        contains(why(good + "2 0 0 0 0 0 0\n"), "a.tum:2: the line has 7 numbers, but needs 8"));
     EXPECT_TRUE(contains(why(good + "2 1 2 3 0 0 0 0\n"), "a.tum:2: quaternion has length 0.0000"));
     EXPECT_TRUE(contains(why("1 0 0 0 0 0 0 2\n"), "quaternion has length 2.0000"));
     // `eval trajectory --plot` broke an invariant.
     EXPECT_TRUE(contains(why(good + "2 0 -1e200 0 0 0 0 1\n"),
-                         "a.tum:2: a position 1e+200 m from the origin; at most 1e+09 m"));
+                         "a.tum:2: the position is 1e+200 m from the origin; at most 1e+09 m"));
     EXPECT_TRUE(contains(why(good + "2 0 x 0 0 0 0 1\n"), "a.tum:2: 'x' is not a number"));
     EXPECT_TRUE(contains(why("1,5 0,1 0,2 0,3 0 0 0 1\n"), "a.tum:1: commas and blanks"));
     EXPECT_TRUE(contains(why("1,5;0,1;0;0;0;0;0;1\n"), "'1,5' has a decimal comma"));
     EXPECT_TRUE(contains(why("# only a comment\n"), "no poses"));
     EXPECT_TRUE(contains(why("1 nan 0 0 0 0 0 1\n"), "no poses in this trajectory (1 rows"));
-    EXPECT_TRUE(contains(why("a b c d e f g h\n" + good), "a head line that begins with 'a'"));
+    EXPECT_TRUE(contains(why("a b c d e f g h\n" + good), "the head line begins with 'a'"));
     EXPECT_TRUE(contains(why(std::string("\xff\xfe") + "1"), "a.tum:1: is text in UTF-16"));
     EXPECT_TRUE(
         contains(why("1403636579000000000,0,0,0,1,0,0,0\n"), "is the quaternion qw,qx,qy,qz"));
@@ -79,7 +80,7 @@ TEST(TrajectoryFile, RowsThatAreOnlyOddAreLeftOutOrSortedAndCounted) {
     EXPECT_EQ(twice->repeated, 1);
     ASSERT_EQ(twice->poses.size(), 3U);
     EXPECT_EQ(twice->poses[1].T_world_body.translation_m.x(), 1.0) << "the first is kept";
-    EXPECT_TRUE(contains(twice->notes().at(0), "1 rows left out whose stamp was there already"));
+    EXPECT_TRUE(contains(twice->notes().at(0), "1 rows with a repeated time stamp are left out"));
     EXPECT_TRUE(contains(twice->notes().at(0), "at most 0.0010 m"));
 
     const auto unsorted = parse_trajectory("2 1 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "a.tum");

@@ -78,9 +78,9 @@ Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, c
     }
     if (words.size() != kTumColumns) {
         return input_error(
-            fmt::format("{} numbers; a trajectory has {} in a line (TUM: stamp_s tx ty tz qx qy qz "
-                        "qw), {} (KITTI: 3x4 matrices), {} (ground truth of EuRoC), or a head line "
-                        "with the names of the columns",
+            fmt::format("the line has {} numbers; a line of a trajectory has {} (TUM: stamp_s tx "
+                        "ty tz qx qy qz qw), {} (KITTI: 3x4 matrices) or {} (ground truth of "
+                        "EuRoC); for other files add a head line with the names of the columns",
                         words.size(),
                         kTumColumns,
                         kKittiColumns,
@@ -128,8 +128,8 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
     if (no_number && rows_.empty()) {
         if (take_head(content)) return {};
         return input_error(
-            fmt::format("a head line that begins with {} but does not name a stamp, x, y, z, qx, "
-                        "qy, qz and qw once each: name the columns so, or remove the line",
+            fmt::format("the head line begins with {} but does not name a stamp, x, y, z, qx, qy, "
+                        "qz and qw once each: rename the columns, or remove the line",
                         quoted(words_.front())));
     }
     if (const auto problem = separator_problem(content)) return input_error(*problem);
@@ -178,7 +178,7 @@ Status TrajectoryTable::choose_layout(char separator) {
 Status TrajectoryTable::take_row(int number) {
     if (words_.size() != layout_.columns) {
         return input_error(
-            fmt::format("{} numbers; {} belong in a line", words_.size(), layout_.columns));
+            fmt::format("the line has {} numbers, but needs {}", words_.size(), layout_.columns));
     }
     TrajectoryRow row;
     row.line = number;

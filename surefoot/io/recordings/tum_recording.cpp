@@ -95,7 +95,7 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         const double codes = *options.depth_codes_per_m;
         if (!(codes >= 1.0 && codes <= 1e6)) {
             return usage_error(fmt::format(
-                "--depth-factor {:g}: codes of a metre must be 1 .. 1000000 (TUM: 5000, mm: 1000)",
+                "--depth-factor {:g}: the value for 1 m must be 1 to 1000000 (TUM: 5000, mm: 1000)",
                 codes));
         }
         recording.depth_codes_per_m = static_cast<float>(codes);
@@ -114,11 +114,11 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (near_m >= kNearest_m || *near < kNearest_m * static_cast<double>(kMillimetresPerMetre))
         return {};
     recording.depth_codes_per_m = kMillimetresPerMetre;
-    recording.info.notes.push_back(fmt::format(
-        "depth is taken as millimetres: at the 5000 codes a metre of TUM RGB-D the first image "
-        "would begin {:.2f} m from the camera, nearer than depth cameras measure; --depth-factor "
-        "5000 or another one replaces the guess",
-        near_m));
+    recording.info.notes.push_back(
+        fmt::format("depth is read as millimetres: with 5000 per metre (TUM RGB-D) the first image "
+                    "would begin {:.2f} m from the camera, nearer than depth cameras measure. If "
+                    "this is wrong, give --depth-factor",
+                    near_m));
     return {};
 }
 

@@ -170,7 +170,7 @@ Result<std::optional<VideoFrame>> VideoFrames::next() {
             continue;
         }
         video.ended = true;
-        if (video.decoded == 0) return input_error(video.path + ": a video without a single frame");
+        if (video.decoded == 0) return input_error(video.path + ": the video has no frame");
         if (video.breaks_off()) {
             video.held.reset();
             return input_error(fmt::format(

@@ -182,7 +182,7 @@ TEST(VideoFrames, TheContainerBeatsTheRigAndTheOptionBeatsBoth) {
     ASSERT_EQ(own.times_ns.size(), 4U) << own.errors;
     EXPECT_NEAR(static_cast<double>(own.times_ns[3]), 1e8, 1e3);
     ASSERT_EQ(own.info.notes.size(), 1U);
-    EXPECT_TRUE(contains(own.info.notes[0], "the rig says 10 Hz, the video has 30 frames"))
+    EXPECT_TRUE(contains(own.info.notes[0], "the rig says 10 Hz, but the video has 30 frames"))
         << own.info.notes[0];
     OpenOptions options;
     options.rate_hz = 5.0;

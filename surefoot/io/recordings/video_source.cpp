@@ -61,12 +61,12 @@ class VideoSource final : public camera::FrameSource {
             std::abs(of_rig_hz - of_video_hz) <= kSameShare * of_video_hz) {
             return;
         }
-        info_.notes.push_back(fmt::format(
-            "the rig says {:g} Hz, the video has {:g} frames a second (mean): the times of the "
-            "video count; --rate {:g} replaces them",
-            of_rig_hz,
-            of_video_hz,
-            of_rig_hz));
+        info_.notes.push_back(
+            fmt::format("the rig says {:g} Hz, but the video has {:g} frames per second (mean). "
+                        "The times of the video are used; --rate {:g} replaces them",
+                        of_rig_hz,
+                        of_video_hz,
+                        of_rig_hz));
     }
 
     VideoFrames frames_;

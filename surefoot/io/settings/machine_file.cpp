@@ -95,7 +95,8 @@ void read_movement(Group& group, Machine& machine) {
         group.fail("class", quoted(name_of_class) + " is neither walk nor stair");
     if (code == 0) return;  // missing or refused; this is reported elsewhere or by finish()
     Movement& slot = machine.movements[static_cast<std::size_t>(code)];
-    if (slot.configured) group.fail("code", fmt::format("{} is there twice", code));
+    if (slot.configured)
+        group.fail("code", fmt::format("{} appears twice; give each movement its own code", code));
     slot = movement;
 }
 

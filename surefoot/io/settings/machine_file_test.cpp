@@ -115,7 +115,7 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
         {"frame_age_ms: 200", "frame_age_ms: 0", "frame_age_ms", "outside 1 .. 1000"},
         {"verdict_ttl_ms: 300", "verdict_ttl_ms: 3.5", "verdict_ttl_ms", "not a whole number"},
         {"  drop_m: 0.05 ", "  # ", "", "limits.drop_m: this key is missing"},
-        {"{code: 9, name: N", "{code: 8, name: N", "forward_m: 0.400", "code: 8 is there twice"},
+        {"{code: 9, name: N", "{code: 8, name: N", "forward_m: 0.400", "code: 8 appears twice"},
         {"{code: 9, name: N", "{code: 27, name: N", "forward_m: 0.400", "27 is outside 1 .. 26"},
         {"{code: 9, name: N", "{code: 0, name: N", "forward_m: 0.400", "0 is outside 1 .. 26"},
         {"class: walk}", "class: run}", "class: run", "'run' is neither walk nor stair"},
@@ -264,7 +264,7 @@ TEST(MachineFile, a_signature_is_for_one_value_of_one_limit) {
                          "limits.drop_m is not beyond its rated limit 0.05: remove this line"));
     EXPECT_TRUE(contains(line("2026-11-27", "27.11.2026"), "is not a date YYYY-MM-DD"));
     EXPECT_TRUE(contains(line("2026-11-27", "2026-13-27"), "is not a date YYYY-MM-DD"));
-    EXPECT_TRUE(contains(line("ramp trial with a spotter", "trial"), "10 characters or more why"));
+    EXPECT_TRUE(contains(line("ramp trial with a spotter", "trial"), "at least 10 characters"));
     EXPECT_TRUE(
         contains(line("signed: J. Doe, ", ""), "deviations[0].signed: this key is missing"));
     EXPECT_TRUE(

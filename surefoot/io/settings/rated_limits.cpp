@@ -97,7 +97,8 @@ Deviation read_line(YamlGroup& line) {
     deviation.signed_by = line.text("signed", 80);
     deviation.date = line.text("date", 10);
     if (deviation.reason.size() < kShortestReason)
-        line.fail("reason", fmt::format("say in {} characters or more why", kShortestReason));
+        line.fail("reason",
+                  fmt::format("give the reason in at least {} characters", kShortestReason));
     if (!is_date(deviation.date))
         line.fail("date", quoted(deviation.date) + " is not a date YYYY-MM-DD");
     return deviation;
@@ -116,7 +117,8 @@ std::optional<std::string> problem_of(const Deviation& deviation,
             "{} is not a rated limit{}", quoted(deviation.key), did_you_mean(deviation.key, keys));
     }
     for (const Deviation& other : before) {
-        if (other.key == deviation.key) return fmt::format("{} is signed twice", deviation.key);
+        if (other.key == deviation.key)
+            return fmt::format("{} is signed twice; remove one of the two lines", deviation.key);
     }
     const std::optional<double> value = value_at(document, deviation.key);
     if (value && *value != deviation.value) {

@@ -32,7 +32,8 @@ struct Converter {
     YamlNode convert(const YAML::Node& in, int depth) {
         YamlNode out;
         out.line = std::max(in.Mark().line + 1, 1);
-        if (depth > kMaxDepth) fail(in.Mark(), fmt::format("nested deeper than {}", kMaxDepth));
+        if (depth > kMaxDepth)
+            fail(in.Mark(), fmt::format("nested deeper than {} levels", kMaxDepth));
         if (++values > kMaxValues) fail(in.Mark(), fmt::format("more than {} values", kMaxValues));
         if (error) return out;
         if (in.IsScalar()) {

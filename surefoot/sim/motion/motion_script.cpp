@@ -73,18 +73,18 @@ Status check_waypoint(std::size_t i, const Waypoint& stop) {
                         std::abs(stop.ground_z_m) <= kFarthest_m &&
                         std::abs(stop.yaw_rad) <= kFarthest_m;  // false for NaN too
     if (!usable) {
-        return usage_error(fmt::format(
-            "simulator: waypoint {} is at x {} y {} z {} yaw {} rad, allowed are finite numbers "
-            "up to {:.0f}",
-            i,
-            stop.x_m,
-            stop.y_m,
-            stop.ground_z_m,
-            stop.yaw_rad,
-            kFarthest_m));
+        return usage_error(
+            fmt::format("simulator: waypoint {} is at x {} y {} z {} yaw {} rad; give finite "
+                        "numbers up to {:.0f}",
+                        i,
+                        stop.x_m,
+                        stop.y_m,
+                        stop.ground_z_m,
+                        stop.yaw_rad,
+                        kFarthest_m));
     }
     if (!(stop.pause_s >= 0.0 && stop.pause_s <= kLongestPause_s)) {
-        return usage_error(fmt::format("simulator: waypoint {} has pause_s {}, allowed are 0 to {}",
+        return usage_error(fmt::format("simulator: waypoint {} has pause_s {}; it must be 0 to {}",
                                        i,
                                        stop.pause_s,
                                        kLongestPause_s));
@@ -101,8 +101,8 @@ Status check_slope(MotionModel motion_model,
     const double steepest = kSteepest[static_cast<std::size_t>(motion_model)];
     if (std::abs(rise_m) <= steepest * way_m) return {};
     return usage_error(fmt::format(
-        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m, a {} takes 1:{:.0f} at "
-        "most; put waypoints at the foot and the top of what climbs, or use the rex",
+        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m; a {} climbs 1:{:.0f} "
+        "at most. Put waypoints at the foot and at the top of the slope, or use the rex",
         i,
         rise_m,
         way_m,
@@ -114,12 +114,13 @@ Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
         return usage_error(
-            fmt::format("simulator: height_m is only for a hand; a {} has its own height",
+            fmt::format("simulator: height_m is allowed for a hand only; a {} has a fixed height; "
+                        "remove height_m",
                         kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
     return usage_error(
-        fmt::format("simulator: height_m is {}, a hand holds {} to {} m (0 = its own)",
+        fmt::format("simulator: height_m is {}; for a hand it must be {} to {} m (0 = default)",
                     script.height_m,
                     kLowestHand_m,
                     kHighestHand_m));
@@ -132,7 +133,7 @@ Status check(const MotionScript& script) {
     if (script.speed_m_s != 0.0 &&
         !(script.speed_m_s >= speeds.slowest_m_s && script.speed_m_s <= speeds.fastest_m_s)) {
         return usage_error(
-            fmt::format("simulator: speed_m_s is {}, a {} goes {} to {} (0 = its own)",
+            fmt::format("simulator: speed_m_s is {}; a {} moves at {} to {} m/s (0 = default)",
                         script.speed_m_s,
                         kMotionModelNames[motion_model],
                         speeds.slowest_m_s,

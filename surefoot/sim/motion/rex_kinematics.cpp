@@ -102,7 +102,7 @@ std::optional<std::string> joint_problem(Side side, const LegAngles& angles) {
     for (const Range& range : ranges) {
         const double angle_deg = range.angle_rad / kRadPerDeg;
         if (angle_deg >= range.min_deg && angle_deg <= range.max_deg) continue;
-        return fmt::format("{} {} would be {:.1f} deg, allowed are {:.0f} to {:.0f}",
+        return fmt::format("{} {} would be {:.1f} deg; the joint allows {:.0f} to {:.0f} deg",
                            kSideNames[static_cast<int>(side)],
                            range.joint,
                            angle_deg,

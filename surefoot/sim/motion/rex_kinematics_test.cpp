@@ -71,11 +71,11 @@ TEST(RexKinematicsTest, JointRangesNameTheJoint) {
     q.hip_roll_rad = 0.3;  // 17 deg: outward on the left, inward on the right
     EXPECT_FALSE(joint_problem(Side::left, q).has_value());
     EXPECT_EQ(joint_problem(Side::right, q),
-              "right hip abduction would be -17.2 deg, allowed are -16 to 20");
+              "right hip abduction would be -17.2 deg; the joint allows -16 to 20 deg");
     q = {};
     q.ankle_pitch_rad = -0.4;
     EXPECT_EQ(joint_problem(Side::left, q),
-              "left ankle dorsiflexion would be 22.9 deg, allowed are -10 to 20");
+              "left ankle dorsiflexion would be 22.9 deg; the joint allows -10 to 20 deg");
 }
 
 }  // namespace

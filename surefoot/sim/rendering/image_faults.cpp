@@ -73,15 +73,14 @@ std::optional<std::string> ImageFaultConfig::problem(int frames, int height) con
     for (const InjectedFault& fault : planned) {
         if (fault.frame < 1 || fault.frame >= frames) {
             return fmt::format(
-                "a fault is planned for frame {}; allowed are 1 to {}, because the first frame "
-                "has no older one",
+                "a fault is planned for frame {}; give a frame from 1 to {}, because frame 0 has "
+                "no older frame",
                 fault.frame,
                 frames - 1);
         }
         if (fault.tear_row < 0 || fault.tear_row >= height) {
             return fmt::format(
-                "frame {} is to be torn at row {}; allowed are 1 to {}, or 0 to "
-                "draw one",
+                "frame {} is to be torn at row {}; give a row from 1 to {}, or 0 for a random row",
                 fault.frame,
                 fault.tear_row,
                 height - 1);

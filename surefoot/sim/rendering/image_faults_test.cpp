@@ -83,11 +83,13 @@ TEST(ImageFaultsTest, PlannedFaultsReplaceDrawnOnes) {
 TEST(ImageFaultsTest, ImpossiblePlansGetASentence) {
     ImageFaultConfig config;
     config.planned = {{0, ImageFault::dropped, 0}};
-    EXPECT_NE(config.problem(10, kHeight)->find("frame 0; allowed are 1 to 9"), std::string::npos);
+    EXPECT_NE(config.problem(10, kHeight)->find("frame 0; give a frame from 1 to 9"),
+              std::string::npos);
     config.planned = {{10, ImageFault::dropped, 0}};
     EXPECT_TRUE(config.problem(10, kHeight));
     config.planned = {{9, ImageFault::torn, 94}};
-    EXPECT_NE(config.problem(10, kHeight)->find("row 94; allowed are 1 to 93"), std::string::npos);
+    EXPECT_NE(config.problem(10, kHeight)->find("row 94; give a row from 1 to 93"),
+              std::string::npos);
     config.planned = {{9, ImageFault::torn, 93}};
     EXPECT_FALSE(config.problem(10, kHeight));
 }

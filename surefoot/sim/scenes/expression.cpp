@@ -78,7 +78,7 @@ class Parser {
     }
 
     double factor(int depth) {
-        if (depth >= kMaxDepth) fail(fmt::format("nested deeper than {}", kMaxDepth));
+        if (depth >= kMaxDepth) fail(fmt::format("nested deeper than {} levels", kMaxDepth));
         if (error_) return 0.0;
         const char c = next();
         if (c == '-' || c == '+') {

@@ -56,10 +56,10 @@ void SceneBuilder::place_one(const SceneNode& node, const Spec& spec, const Plac
     ++solids_;
     lines_.resize(static_cast<std::size_t>(scene_.primitives()), node.line);
     if (scene_.primitives() > kMaxPrimitives) {
-        reader_.fail(
-            node,
-            fmt::format(
-                "makes {} primitives, a scene may have {}", scene_.primitives(), kMaxPrimitives));
+        reader_.fail(node,
+                     fmt::format("makes {} primitives; a scene may have at most {}",
+                                 scene_.primitives(),
+                                 kMaxPrimitives));
     }
 }
 
@@ -80,8 +80,8 @@ void SceneBuilder::add_floor(const SceneNode& node, const Place& place) {
         const SceneNode* pits = reader_.required(node, "pits", SceneNode::Kind::list);
         if (pits == nullptr) return;
         if (pits->items.size() > kMaxPits) {
-            reader_.fail(*pits,
-                         fmt::format("are {}, allowed are {}", pits->items.size(), kMaxPits));
+            reader_.fail(
+                *pits, fmt::format("are {}; at most {} are allowed", pits->items.size(), kMaxPits));
         }
         for (const SceneNode& item : pits->items) {
             PitSpec pit;

@@ -270,7 +270,7 @@ TEST(SceneFileTest, AScannerStandsOverTheGround) {
     };
     EXPECT_NE(error_of("scan: {stations: [{x_m: 7, y_m: 0}]}\n").find("there is no ground"),
               std::string::npos);
-    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0, allowed are 1 to 100"),
+    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0; 1 to 100 are allowed"),
               std::string::npos);
     EXPECT_NE(error_of("scan: {from: 3}\n").find("unknown key 'from'"), std::string::npos);
 }
@@ -296,12 +296,13 @@ TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
         const auto bad = read_scene({"test.yaml", text_with(motion)}, "", 1);
         return bad ? std::string("accepted") : bad.error().message;
     };
-    EXPECT_NE(error_of(way).find("a trolley takes 1:2 at most"), std::string::npos)
+    EXPECT_NE(error_of(way).find("a trolley climbs 1:2 at most"), std::string::npos)
         << error_of(way);
-    EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is only for a hand"),
+    EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is allowed for a hand only"),
               std::string::npos);
-    EXPECT_NE(error_of("  carrier: hand\n  height_m: 0.1\n" + way).find("height_m is 0.1, a hand"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of("  carrier: hand\n  height_m: 0.1\n" + way).find("height_m is 0.1; for a hand"),
+        std::string::npos);
 }
 
 TEST(SceneFileTest, AVariantMayGoItsOwnWay) {
@@ -345,10 +346,10 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {file_with("  - box: {x_m: 3, material: stone}\n"), "test.yaml:10: key 'y_m' is missing"},
         {file_with("  - box: {x_m: 3, y_m: 0, length_m: 1, width_m: -1, top_m: 1, material: "
                    "stone}\n"),
-         "test.yaml:10: 'width_m' is -1, allowed are 0.001 to 100"},
+         "test.yaml:10: 'width_m' is -1; it must be 0.001 to 100"},
         {file_with("  - box: {x_m: 3, y_m: 0, length_m: 0, width_m: 1, top_m: 1, material: "
                    "stone}\n"),
-         "test.yaml:10: 'length_m' is 0, allowed are 0.001 to 100"},
+         "test.yaml:10: 'length_m' is 0; it must be 0.001 to 100"},
         {file_with("  - box: {" + box + ", bottom_m: 1.5}\n"),
          "test.yaml:10: 'box' top_m 1 is not above bottom_m 1.5"},
         {file_with("  - box:\n      {material: stone, x_m: [1]}\n"),
@@ -375,7 +376,7 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
          "test.yaml:10: 'steps' needs a whole number, not 2.5"},
         {file_with("  - flight: {x_m: 2, y_m: 0, steps: 3, rise_m: 0.2, going_m: 0.3, width_m: 1, "
                    "rise_variation_m: 0.006, material: stone}\n"),
-         "'rise_variation_m' is 0.006, allowed are 0 to 0.005"},
+         "'rise_variation_m' is 0.006; it must be 0 to 0.005"},
         {file_with("  - flight: {x_m: 2, y_m: 0, rise_m: 0.2, going_m: 0.3, width_m: 1, material: "
                    "stone}\n"),
          "'flight' key 'steps' is missing"},
@@ -388,15 +389,15 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {file_with("  - table: {x_m: 2, y_m: 0, length_m: 1, width_m: 0.1, material: stone}\n"),
          "'table' leg_inset_m 0.06 is not below half"},
         {file_with("  - repeat: {count: 3000, name: k, solids: []}\n"),
-         "'count' is 3000, allowed are 0 to 2000"},
+         "'count' is 3000; it must be 0 to 2000"},
         {file_with(
              "  - repeat: {count: 50, name: k, solids: [{repeat: {count: 50, name: j, solids: "
              "[{box: {" +
              box + "}}]}}]}\n"),
-         "test.yaml:10: 'box' makes 2001 primitives, a scene may have 2000"},
+         "test.yaml:10: 'box' makes 2001 primitives; a scene may have at most 2000"},
         {file_with("  - repeat: {count: 2, name: k, solids: [{repeat: {count: 2, name: k, solids: "
                    "[]}}]}\n"),
-         "parameter 'k' is there already"},
+         "parameter 'k' is defined twice"},
         {file_with("  - box: {x_m: 0, y_m: 0, length_m: 1, width_m: 1, top_m: 2, material: "
                    "stone}\n"),
          "test.yaml:7: 'motion' brings the camera or base_link into the solid of line 10 after "
@@ -447,8 +448,7 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
     const std::vector<BadFile> files{
         {replaced("pattern: concrete", "pattern: marble"),
          "test.yaml:5: 'pattern' 'marble' is not one of carpet, "},
-        {replaced("albedo: 0.4", "albedo: 1.4"),
-         "test.yaml:5: 'albedo' is 1.4, allowed are 0 to 1"},
+        {replaced("albedo: 0.4", "albedo: 1.4"), "test.yaml:5: 'albedo' is 1.4; it must be 0 to 1"},
         {replaced("pattern: wood", "shine: 1"), "test.yaml:6: unknown key 'shine'"},
         {replaced("motion:", "lighting: {lamp: -1}\nmotion:"), "test.yaml:7: 'lamp' is -1"},
         {replaced("motion:", "lighting: {shadows: 3}\nmotion:"),
@@ -456,7 +456,7 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
         {replaced("waypoints:", "carrier: horse\n  waypoints:"),
          "test.yaml:8: 'carrier' 'horse' is not one of trolley, rex, hand"},
         {replaced("[{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]", "[]"),
-         "test.yaml:8: 'waypoints' are 0, allowed are 1 to 1000"},
+         "test.yaml:8: 'waypoints' are 0; 1 to 1000 are allowed"},
         {replaced("pause_s: 1", "pause_s: -1"), "test.yaml:8: 'pause_s' is -1"},
     };
     for (const BadFile& file : files) {

@@ -153,7 +153,9 @@ std::optional<std::string> ScriptSpec::problem() const {
     const auto which = static_cast<Script>(script);
     if (which == Script::back_to_table && left_m > table_x_m) {
         return fmt::format(
-            "left_m {} is more than table_x_m {}: the table would be passed", left_m, table_x_m);
+            "left_m {} must be at most table_x_m {}, or the machine would pass the table",
+            left_m,
+            table_x_m);
     }
     if (which != Script::descend_backwards) return std::nullopt;
     if (steps_ahead < 1) return "key 'steps_ahead' is missing";
@@ -204,7 +206,7 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     if (stops == nullptr) return script;
     if (stops->items.empty() || stops->items.size() > kMaxWaypoints) {
         reader.fail(*stops,
-                    fmt::format("are {}, allowed are 1 to {}", stops->items.size(), kMaxWaypoints));
+                    fmt::format("are {}; 1 to {} are allowed", stops->items.size(), kMaxWaypoints));
     }
     for (const SceneNode& item : stops->items) {
         WaypointSpec stop;

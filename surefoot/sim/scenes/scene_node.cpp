@@ -24,7 +24,8 @@ class Copier {
     SceneNode copy(const YAML::Node& in, int depth) {
         SceneNode out;
         out.line = line_of(in);
-        if (depth > kMaxDepth) fail(out.line, fmt::format("nested deeper than {}", kMaxDepth));
+        if (depth > kMaxDepth)
+            fail(out.line, fmt::format("nested deeper than {} levels", kMaxDepth));
         if (++values_ > kMaxValues) {
             fail(out.line, fmt::format("more than {} values", kMaxValues));
         }
@@ -93,8 +94,8 @@ const char* to_string(SceneNode::Kind kind) noexcept {
 
 Result<SceneNode> parse_scene_node(std::string_view text, const std::string& file) {
     if (text.size() > kMaxBytes) {
-        return input_error(
-            fmt::format("{}: {} bytes; a scene file may have {}", file, text.size(), kMaxBytes));
+        return input_error(fmt::format(
+            "{}: {} bytes; a scene file may have at most {}", file, text.size(), kMaxBytes));
     }
     // yaml-cpp throws exceptions; this function catches all of them.
     try {

@@ -103,7 +103,7 @@ class GroupReader final : public ConfigVisitor {
     double in_range(const SceneNode& node, double min, double max) {
         const double value = reader_.number(node);
         if (reader_.error() || (value >= min && value <= max)) return value;
-        reader_.fail(node, fmt::format("is {}, allowed are {} to {}", value, min, max));
+        reader_.fail(node, fmt::format("is {}; it must be {} to {}", value, min, max));
         return value;
     }
 
@@ -192,7 +192,7 @@ void SceneReader::define(const SceneNode& origin, const std::string& name, doubl
         return fail(origin.line, fmt::format("'{}' is not a valid name for a parameter", name));
     }
     if (numbers_.contains(name) || words_.contains(name)) {
-        return fail(origin.line, fmt::format("parameter '{}' is there already", name));
+        return fail(origin.line, fmt::format("parameter '{}' is defined twice", name));
     }
     numbers_[name] = value;
 }

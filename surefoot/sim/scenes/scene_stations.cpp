@@ -42,7 +42,7 @@ std::vector<Eigen::Vector3d> read_stations(SceneReader& reader,
     if (reader.error()) return {};
     if (list->items.empty() || list->items.size() > kMaxStations) {
         reader.fail(*list,
-                    fmt::format("are {}, allowed are 1 to {}", list->items.size(), kMaxStations));
+                    fmt::format("are {}; 1 to {} are allowed", list->items.size(), kMaxStations));
     }
     std::vector<Eigen::Vector3d> stations_m;
     for (const SceneNode& item : list->items) {

@@ -136,14 +136,18 @@ void FlightSpec::describe(ConfigVisitor& visitor) {
 std::optional<std::string> FlightSpec::problem() const {
     if (steps < 1) return "key 'steps' is missing";
     if (direction == StairDirection::down && steps == 1 && landing_m == 0.0) {
-        return "a flight of 1 step down without a landing has no tread";
+        return "a flight of 1 step down without a landing has no tread; set landing_m, or more "
+               "steps";
     }
     if (nosing_m >= going_m) {
-        return fmt::format("nosing_m {} is not below going_m {}", nosing_m, going_m);
+        return fmt::format("nosing_m {} must be below going_m {}", nosing_m, going_m);
     }
     if ((open || nosing_m > 0.0) && tread_thickness_m > rise_m - rise_variation_m) {
         return fmt::format(
-            "tread_thickness_m {} does not fit into rise_m {}", tread_thickness_m, rise_m);
+            "tread_thickness_m {} does not fit into rise_m {} minus rise_variation_m; make the "
+            "tread thinner",
+            tread_thickness_m,
+            rise_m);
     }
     return std::nullopt;
 }

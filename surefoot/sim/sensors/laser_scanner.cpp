@@ -82,13 +82,13 @@ Result<LaserScanner> LaserScanner::make(const Scene& scene,
     }
     const LaserScanner scanner(scene, config, seed);
     if (scanner.columns_ < 1 || scanner.rows_ < 1) {
-        return usage_error(fmt::format(
-            "simulator: laser: azimuth {} to {} deg and elevation {} to {} deg hold no beam; "
-            "the second of each must be above the first",
-            config.azimuth_min_deg,
-            config.azimuth_max_deg,
-            config.elevation_min_deg,
-            config.elevation_max_deg));
+        return usage_error(
+            fmt::format("simulator: laser: azimuth {} to {} deg and elevation {} to {} deg contain "
+                        "no beam; the second angle of each must be above the first",
+                        config.azimuth_min_deg,
+                        config.azimuth_max_deg,
+                        config.elevation_min_deg,
+                        config.elevation_max_deg));
     }
     if (!(config.min_range_m < config.max_range_m)) {
         return usage_error(
