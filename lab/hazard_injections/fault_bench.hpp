@@ -27,12 +27,12 @@ inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 struct Outcome {
     std::string variant;     ///< the drawn fault, as text
     int asked_before = 0;    ///< queries before the fault
-    int allowed_before = 0;  ///< of these answered OK; the run counts only if all were
+    int allowed_before = 0;  ///< OK answers before the fault; the run counts only if all were OK
     int asked_after = 0;     ///< queries since the fault began
-    int allowed_late = 0;    ///< of these OK after the deadline or after the first inhibit
+    int allowed_late = 0;    ///< OK answers after the deadline or after the first inhibit
     std::int64_t last_allowed_ns = -1;         ///< fault to last OK; -1 = no OK
     std::optional<std::int64_t> latency_ns;    ///< fault to first inhibit
-    gate::Reason reason = gate::Reason::none;  ///< of the first inhibit, if possible not NOT_READY
+    gate::Reason reason = gate::Reason::none;  ///< first inhibit, if possible not NOT_READY
 };
 
 /// The gate process in simulated time: a gatekeeper that is polled every 10 ms, and a client that

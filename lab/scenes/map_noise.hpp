@@ -83,7 +83,7 @@ class SceneCells {
         float top_m = 0.0F;       ///< top of that thing
         float share_high = 0.0F;  ///< samples nearer to high_m than to low_m
         bool ground = false;      ///< at least one sample is not a void
-        bool seen = false;        ///< both cameras see its middle
+        bool seen = false;        ///< both cameras see the middle of the cell
         bool beside_seen = false;    ///< at least one of its 8 neighbours is seen
         float beside_high_m = 0.0F;  ///< highest of these neighbours
     };

@@ -17,7 +17,7 @@ struct PageAddress {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 0;
     std::vector<std::string> names;    ///< names of this computer, e.g. "robot.local"; lower case
-    std::vector<std::string> origins;  ///< of a proxy or tunnel, e.g. "https://robot.example:444"
+    std::vector<std::string> origins;  ///< proxy or tunnel, e.g. "https://robot.example:444"
 };
 
 /// The parts of a Host header, for example of "localhost:8080".

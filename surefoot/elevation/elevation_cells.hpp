@@ -129,7 +129,7 @@ class ElevationCells {
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
-    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
+    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< viewpoint of the last such fusion
     /// Lowest surface observed above the height, and the trust in it.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;

@@ -14,7 +14,7 @@ struct ElevationLayers {
     using Layer = grid::SlidingLayer<float>;
 
     Layer height_m;                           ///< highest observed surface, in odom
-    Layer height_var_m2;                      ///< of the height relative to the present body
+    Layer height_var_m2;                      ///< variance relative to the present body
     grid::SlidingLayer<std::uint32_t> count;  ///< measurements fused since the height was set
     grid::SlidingLayer<std::int64_t>
         seen_ns;               ///< last time that a measurement agreed with the height; 0 = never

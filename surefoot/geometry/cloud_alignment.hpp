@@ -34,8 +34,8 @@ struct AlignmentConfig {
 struct AlignmentStep {
     std::int64_t pairs = 0;
     std::int64_t borders = 0;    ///< points on a border of both clouds
-    double rms_m = 0.0;          ///< of the distances across the reference's surface
-    double nearest_rms_m = 0.0;  ///< of the distances between the points of a pair
+    double rms_m = 0.0;          ///< rms of the distances across the surface of the reference
+    double nearest_rms_m = 0.0;  ///< rms of the distances between the points of a pair
     double step_m = 0.0;
     double step_rad = 0.0;
 };

@@ -28,7 +28,7 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 
 /// One column of a header line.
 struct Column {
-    std::string name;  ///< as written, without quotes
+    std::string name;  ///< name as written, without quotes
     std::string key;   ///< in lower case, without its unit
     std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty without a unit
 };

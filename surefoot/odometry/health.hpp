@@ -27,9 +27,9 @@ struct HealthEvidence {
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
-    bool imu_disagrees = false;        ///< for several frames in a row
+    bool imu_disagrees = false;        ///< the IMU disagrees for several frames in a row
     bool imu_gap = false;              ///< samples are missing, for more than a frame
-    bool machine_disagrees = false;    ///< for several frames in a row
+    bool machine_disagrees = false;    ///< the machine disagrees for several frames in a row
     bool beyond_machine = false;       ///< faster than the machine can move
 };
 

@@ -83,7 +83,7 @@ class Odometry {
     /// happened. A frame with repeated or torn images is LOST and skipped
     /// (camera::FrameIntegrityCheck).
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
-    /// The same for a frame that has already passed the frame integrity check.
+    /// Processes a frame that has already passed the frame integrity check.
     [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
     /// The same for points from another source, all of which are used with the noise `sigma_px`. A
     /// change between images and points costs one LOST frame, which seeds new landmarks.

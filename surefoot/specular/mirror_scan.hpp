@@ -41,12 +41,12 @@ class MirrorScan {
     [[nodiscard]] PatchLine rated(PatchLine line, int first, int last, double raw);
 
     std::vector<int> candidates_;     ///< lines of the fine detail
-    std::vector<PairSums> coarse_;    ///< of each line of the coarse detail
-    std::vector<double> stands_out_;  ///< the same: largest excess of one of its runs
+    std::vector<PairSums> coarse_;    ///< one per line of the coarse detail
+    std::vector<double> stands_out_;  ///< one per line of the coarse detail: excess of its best run
     std::vector<double> scores_;
-    std::vector<PairSums> beside_;  ///< of the lines beside a candidate
+    std::vector<PairSums> beside_;  ///< sums of the lines beside a candidate
     std::vector<double> noise_;
-    double mean_square_ = 0.0;  ///< of the fine detail
+    double mean_square_ = 0.0;  ///< mean square of the fine detail
 };
 
 }  // namespace surefoot::specular

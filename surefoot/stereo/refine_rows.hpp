@@ -38,7 +38,7 @@ inline constexpr std::int32_t kUnused = std::numeric_limits<std::int32_t>::min()
 
 struct WarpRow {
     const std::int16_t* left = nullptr;   ///< smoothed, 1/16 grey level
-    const std::int16_t* right = nullptr;  ///< the same; one more pixel stands before the row
+    const std::int16_t* right = nullptr;  ///< smoothed, with one more pixel before the row
     const float* disparity_px = nullptr;
     const std::uint8_t* jump_distance_px = nullptr;
     int jump_margin_px = 0;

@@ -25,10 +25,10 @@ struct SelfCalibrationConfig {
 /// Correction of the right camera, estimated from the row errors of a rectified pair.
 struct RigSelfCalibration {
     camera::RightCameraCorrection camera;             ///< yaw stays 0
-    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of roll, pitch [rad] and focal share
+    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< roll, pitch [rad] and focal share
     int corners = 0;
     double row_error_px = 0.0;       ///< median of the absolute value, before the correction
-    double row_error_left_px = 0.0;  ///< the same after the correction
+    double row_error_left_px = 0.0;  ///< median after the correction
     double significance = 0.0;       ///< chi square of the three parameters together
 
     /// A chi square with 3 degrees of freedom exceeds this by chance once in 1000 cases.

@@ -47,7 +47,7 @@ void transpose(const std::uint8_t* in,
 /// A block of up to 64 columns of 64 rows; the rows lie side by side in the lanes.
 struct RowBlock {
     const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
-    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more columns precede column 0
+    const std::uint8_t* right = nullptr;  ///< `disparities` more columns precede column 0
     const std::uint8_t* grey = nullptr;   ///< [column] kLanes
     /// Of the previous column on the path; at the image edge, of the path's first column.
     const std::uint8_t* grey_before = nullptr;

@@ -58,8 +58,8 @@ struct TraversabilityConfig {
 
     /// See rating_confidence.hpp.
     struct Confidence {
-        double safe_threshold = 0.80;  ///< as `eval.maps.safe_threshold`
-        int independent_cells = 4;     ///< as the REX gate's patches
+        double safe_threshold = 0.80;  ///< same value as `eval.maps.safe_threshold`
+        int independent_cells = 4;     ///< same number as in the patches of the REX gate
         void describe(ConfigVisitor& visitor);
     };
     struct Resolve {

@@ -13,7 +13,7 @@ namespace surefoot::gate_process {
 /// Numbers of connections that a service keeps, by rank.
 struct SlotLimits {
     std::size_t max_clients = 64;
-    std::size_t reserved = 8;  ///< of these, reserved for clients of high rank
+    std::size_t reserved = 8;  ///< part of max_clients that is reserved for clients of high rank
     /// Limit of connections without a complete request; beyond it one is closed. It is large, so
     /// that many new connections do not displace a client before its request arrives.
     std::size_t max_handshakes = 256;

@@ -19,9 +19,9 @@ struct BoardMeasures {
     /// Mean difference of triangulated depth and depth from the board size in the left image alone:
     /// baseline and rotation of the right camera against focal length and square size.
     double axial_m = 0.0;
-    double axial_std_m = 0.0;    ///< of the triangulated depths around their plane
+    double axial_std_m = 0.0;    ///< scatter of the triangulated depths around their plane
     double lateral_m = 0.0;      ///< mean of triangulated minus true length of neighbours
-    double lateral_std_m = 0.0;  ///< of single lengths
+    double lateral_std_m = 0.0;  ///< scatter of single lengths
 };
 
 /// nullopt with fewer than eight common points, with points that no plane explains, or with views

@@ -49,7 +49,7 @@ enum class HeightDriftReason : std::uint8_t {
 /// Result of the height drift check of one frame.
 struct HeightDriftReport {
     double offset_m = 0.0;   ///< frame - map
-    double sigma_m = 0.0;    ///< of the offset, with the frame's common errors
+    double sigma_m = 0.0;    ///< sigma of the offset, with the common errors of the frame
     std::int64_t cells = 0;  ///< number of cells behind the offset
     std::int64_t moved_cells = 0;
     HeightDriftReason reason = HeightDriftReason::off;
@@ -108,7 +108,7 @@ class HeightDrift {
         int tiles = 0;
         Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
         double offset_m = 0.0;
-        double scatter_m2 = 0.0;  ///< of the offsets
+        double scatter_m2 = 0.0;  ///< scatter of the offsets
         double spread_m = 0.0;
         Eigen::Vector2d slope = Eigen::Vector2d::Zero();
         double slope_chi2 = 0.0;  ///< test of "no slope", 2 degrees of freedom

@@ -259,7 +259,7 @@ Eigen::Vector2d uphill_of(std::span<const Level> levels) {
 }  // namespace
 
 SortedSurfaces sort_surfaces(std::span<const Vector3f> points_m, Executor& executor) {
-    constexpr float kRadius_m = 0.04F;  // a tread is a quarter of a metre
+    constexpr float kRadius_m = 0.04F;  // small compared with a tread, which is about 0.25 m deep
     const float level_up = std::cos(static_cast<float>(20.0 * M_PI / 180.0));
     const float upright_up = std::sin(static_cast<float>(20.0 * M_PI / 180.0));
     const geometry::KdTree cloud(voxel_means_m(points_m, kSurfaceVoxel_m, executor), executor);

@@ -23,11 +23,11 @@ inline constexpr const char* kM3c2NormalsNames[] = {"vertical", "pca"};
 /// Parameters with the names of CloudCompare's plugin: two diameters and a half length.
 struct M3c2Config {
     M3c2Normals normals = M3c2Normals::vertical;
-    double normal_diameter_m = 0.10;      ///< of the ball of points for the normal
-    double projection_diameter_m = 0.05;  ///< of the cylinder along the normal
-    double half_length_m = 0.10;          ///< of the cylinder
+    double normal_diameter_m = 0.10;      ///< diameter of the ball of points for the normal
+    double projection_diameter_m = 0.05;  ///< diameter of the cylinder along the normal
+    double half_length_m = 0.10;          ///< half length of the cylinder
     double registration_error_m = 0.0;    ///< added to the level of detection
-    int min_points = 5;                   ///< per cloud; fewer points: never significant
+    int min_points = 5;                   ///< least points of each cloud for a significant result
     void describe(ConfigVisitor& visitor);
 };
 

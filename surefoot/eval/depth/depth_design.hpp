@@ -13,7 +13,7 @@ struct DepthDesign {
     double focal_px = 342.0;
     int width = 672;
     int height = 376;
-    double sigma_px = 0.1;  ///< of a disparity, 1 sigma
+    double sigma_px = 0.1;  ///< one sigma of a disparity
     double camera_height_m = 1.0;
     double pitch_deg = 32.0;  ///< below the horizon
 

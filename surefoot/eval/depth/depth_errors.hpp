@@ -16,7 +16,7 @@ struct DepthPair {
     ImageView<const float> estimate_px;
     ImageView<const float> truth_px;
     ImageView<const std::uint8_t> mask;  ///< empty = all pixels; else only non-zero pixels
-    ImageView<const float> sigma_px;     ///< of the estimate; may be empty
+    ImageView<const float> sigma_px;     ///< sigma of the estimate; may be empty
 };
 
 /// Share of pixels with |error| above 0.5, 1 and 2 px [%].
@@ -35,7 +35,7 @@ struct DepthErrors {
     BadPixels known_bad;           ///< over the counted pixels with a known estimate
     double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
     ErrorFigures known;            ///< estimate - truth at the known estimates [px]
-    SigmaCoverage coverage;        ///< of the known estimates; empty without sigma
+    SigmaCoverage coverage;        ///< coverage of the known estimates; empty without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
     /// Median of truth / estimate where both are known and positive. About 1 if both are in pixels;

@@ -44,12 +44,12 @@ struct MapComparison {
     std::vector<ErrorBin> by_distance;  ///< to the nearest position of the machine [m]
     std::vector<ErrorBin> by_range;     ///< to the camera at the cell's last observation [m]
     std::vector<ErrorBin> by_column;    ///< image column of the cell's last observation [px]
-    SigmaCoverage sigma;                ///< of the height, away from edges
+    SigmaCoverage sigma;                ///< coverage of the height sigma, away from edges
     double coverage = 0.0;
     TraversabilityErrors traversability;
     ErrorFigures edges;                     ///< |jumps| between neighbours on the level floor
     std::vector<ErrorBin> edges_by_column;  ///< [px]
-    FloorSpread floor;                      ///< of the level floor's cells
+    FloorSpread floor;                      ///< spread of the level floor's cells
     Image<Call> calls;
     grid::Layer error_m;
 };

@@ -38,7 +38,7 @@ struct LayerStyle {
 /// Predefined styles; callers may change `subtitle`.
 [[nodiscard]] LayerStyle elevation_style();
 [[nodiscard]] LayerStyle traversability_style(double safe_threshold);
-/// For one-sigma heights that are stored in m and shown in mm.
+/// Style for one-sigma heights that are stored in m and shown in mm.
 [[nodiscard]] LayerStyle height_sigma_style();
 
 /// Range of the shown values by the rule of LayerStyle; {0, 1} if no value is known.

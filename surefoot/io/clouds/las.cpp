@@ -120,7 +120,8 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     return header;
 }
 
-/// One value of every record as a scalar; `value_of` takes the record's first byte.
+/// Adds one value of every record to the cloud as a scalar. `value_of` gets a pointer to the start
+/// of the record.
 template <typename T, typename Value>
 void add_scalar(const Header& header,
                 std::string_view records,

@@ -77,7 +77,7 @@ struct RecordingInfo {
     std::string incomplete = {};    ///< first unreadable frame of a video; empty = none
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;
-    std::vector<std::string> notes = {};  ///< what the user should know about how it was opened
+    std::vector<std::string> notes = {};  ///< notes for the user about how the recorder was opened
     bool has_truth = false;  ///< groundtruth.tum, groundtruth.txt or poses.txt is there
 };
 

@@ -20,7 +20,7 @@ namespace surefoot::io {
 
 struct OpenOptions {
     std::optional<std::string> rig_file;  ///< replaces the recording's own calibration
-    std::optional<double> rate_hz;        ///< for recordings without stamps
+    std::optional<double> rate_hz;        ///< frame rate of recordings without stamps
     int first_frame = 0;                  ///< earlier frames are skipped
     /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
@@ -34,14 +34,14 @@ struct OpenOptions {
 
 /// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
 inline constexpr float kDepthCodesPerMetre = 5000.0F;
-/// For depth cameras that store millimetres.
+/// Depth codes per metre for depth cameras that store millimetres.
 inline constexpr float kMillimetresPerMetre = 1000.0F;
 
 /// One frame with the paths of its images.
 struct FrameEntry {
     std::int64_t time_ns = 0;
-    std::string left;   ///< or the side-by-side image, or the colour image of RGB-D
-    std::string right;  ///< or the depth image; empty for side by side
+    std::string left;   ///< left image, side-by-side image, or colour image of RGB-D
+    std::string right;  ///< right image or depth image; empty for side by side
     std::string where;  ///< "mav0/cam0/data.csv:17", for errors about the stamp
 };
 

@@ -42,7 +42,7 @@ struct ConfigEntry {
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe,
                                      Notes* notes = nullptr);
-/// As above for a separate key and value; an error begins with the key.
+/// Sets a key to a value that are given separately; an error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);

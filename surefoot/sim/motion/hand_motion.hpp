@@ -16,7 +16,7 @@ namespace surefoot::sim {
 /// because arms damp them: peaks of the vertical acceleration are 1.9-2.3 m/s^2, its rms is 1.4
 /// m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
-    double height_m = 1.30;   ///< of base_link above the ground, held in front of the chest
+    double height_m = 1.30;   ///< base_link above the ground, held in front of the chest
     double speed_m_s = 1.0;   ///< slower than normal walking, because the person watches a screen
     double ramp_s = 0.8;      ///< to reach that speed
     double cadence_hz = 1.8;  ///< steps of both feet

@@ -43,8 +43,8 @@ struct Stop {
 
 struct ScriptedMotion {
     std::shared_ptr<const Motion> motion;
-    std::vector<StepEvent> steps = {};  ///< of a walking machine; empty for the other motion models
-    std::vector<Stop> stops = {};       ///< of a trolley; a hand-held camera never stands still
+    std::vector<StepEvent> steps = {};  ///< only for a walking machine; empty for the other models
+    std::vector<Stop> stops = {};       ///< only for a trolley; a hand-held camera never stops
 };
 
 /// Builds the motion of a script. The seed moves all waypoints but the first by about a centimetre

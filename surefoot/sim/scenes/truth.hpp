@@ -19,10 +19,10 @@ namespace surefoot::sim {
 struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
-    std::vector<StampedPose> trajectory;  ///< one pose a frame
+    std::vector<StampedPose> trajectory;  ///< one pose per frame
     std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
-    std::vector<StepEvent> steps;         ///< of a walking machine
-    std::vector<Stop> stops;              ///< of a trolley
+    std::vector<StepEvent> steps;         ///< steps of a walking machine
+    std::vector<Stop> stops;              ///< stops of a trolley
 };
 
 /// Cells of a map. `origin_m` is the outer corner of cell (0, 0) in the world. Images are indexed

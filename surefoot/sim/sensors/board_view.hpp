@@ -22,7 +22,7 @@ struct BoardView {
     double contrast = 1.0;  ///< factor on the contrast of the materials
     CameraConfig camera;
     CalibrationError calibration_error;
-    std::uint64_t seed = 1;  ///< for texture and noise
+    std::uint64_t seed = 1;  ///< seed of texture and noise
 };
 
 struct SeenBoard {
