@@ -23,7 +23,7 @@ class GateChild {
     /// Arguments and key for the gate process.
     struct Start {
         std::vector<std::string> arguments;        ///< arguments of every start
-        std::vector<std::string> first_arguments;  ///< for the first start only, after `arguments`
+        std::vector<std::string> first_arguments;  ///< for the first start, added to `arguments`
         gate_process::ChecksumKey key;  ///< snapshot channel key; sent through the socket pair
     };
     /// Starts the program surefoot-gate from the folder of this program (or from its place in a

@@ -27,9 +27,9 @@ namespace {
 struct RatingConstants {
     float largest_below;   ///< largest float that is not above the critical step
     float smallest_above;  ///< smallest float that is not below it
-    float inverse;         ///< of the critical step
+    float inverse;         ///< 1 / critical step
     float enough;          ///< critical cells
-    float share;           ///< of one critical cell
+    float share;           ///< share of one critical cell
 };
 
 }  // namespace

@@ -113,7 +113,7 @@ bool is_step(const Level& lower, const Level& upper) {
 /// Chains levels that are one riser apart, upward and downward from the first level. Among several
 /// levels near the expected height the one with most points is the tread.
 std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
-    constexpr double kUneven = 0.08;  // of a riser
+    constexpr double kUneven = 0.08;  // share of a riser
     constexpr double kLeastShare = 0.15;
     const auto next_to = [&](const Level& from, double rise_m) -> const Level* {
         const Level* best = nullptr;

@@ -38,7 +38,7 @@ const RosKeys& keys_of(const YamlNode& root) {
 struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
-    double x_m = 0.0;          ///< its centre on the x axis of the rectified frame
+    double x_m = 0.0;          ///< camera centre on the x axis of the rectified frame
     bool has_rotation = true;  ///< false: R is all zero, "not rectified"
     std::vector<std::string> notes;
 };

@@ -36,7 +36,7 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
 
 /// Pairs of images: from associations.txt, else by time.
 struct Association {
-    std::string list;  ///< of the colour images
+    std::string list;  ///< list of the colour images
     std::vector<CsvRow> colour;
     std::vector<CsvRow> depth;
     Partners partners;

@@ -24,7 +24,7 @@ struct Spread {
 struct RexGaitConfig {
     double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;               ///< part of step_s: standing until ringing stops
-    double foot_clearance_m = 0.01;      ///< of the toes of a swinging foot; ankles rise by 22 mm
+    double foot_clearance_m = 0.01;      ///< height of the toes of a swinging foot; ankles: 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< toward the standing foot
     Spread yaw_deg{1.5, 3.0};            ///< toward the foot behind

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRiserStep_m = 0.008;
 constexpr double kGoingStep_m = 0.02;
-constexpr double kShortestGoing_m = 0.2;  ///< of real stairs; a spiral has no equal steps
+constexpr double kShortestGoing_m = 0.2;  ///< limit of real stairs; a spiral has no equal steps
 constexpr double kLongestGoing_m = 0.4;
 constexpr int kMostSteps = 8;  ///< deeper steps are not visible
 constexpr double kDeepest_m =
