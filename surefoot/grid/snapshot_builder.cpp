@@ -38,7 +38,7 @@ std::uint16_t saturated_up(double length_m) {
     return static_cast<std::uint16_t>(scaled);  // in range, as checked
 }
 
-/// Rounds an angle in the same way. Unknown and too large angles become unknown.
+/// Rounds an angle up to microradians. Unknown and too large angles become unknown.
 std::uint32_t microradians_up(double angle_rad) {
     const double scaled = std::ceil(angle_rad * 1e6);
     constexpr double kLargest = 1e9;

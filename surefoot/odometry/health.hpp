@@ -54,8 +54,8 @@ struct HealthVerdict {
                                       double before_s,
                                       double after_s);
 
-/// Motion estimate for a frame at `time_ns` that is repeated or torn (`frame_status`), after
-/// `last`: the pose of `last`, health LOST, and the covariance of the motion since then.
+/// Motion estimate for a frame at `time_ns` after `last` that is repeated or torn (`frame_status`).
+/// It has the pose of `last`, health LOST, and the covariance of the motion since then.
 [[nodiscard]] MotionEstimate unseen_motion(const OdometryConfig& config,
                                            const MotionEstimate& last,
                                            std::int64_t time_ns,

@@ -31,8 +31,8 @@ inline constexpr int kCensusBits = 30;
 /// 0.01 px (docs/lab/matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
 inline constexpr int kSearchLag_rows = 2;
 
-/// Result of the search for every pixel of the left image: the disparity of least cost, the costs
-/// there and beside it, and the least cost at least 2 disparities away (255 = no such disparity).
+/// Result of the search for every pixel of the left image: the disparity of least cost, and the
+/// costs there and beside it. Also the least cost at least 2 disparities away (255 = none).
 struct Winners {
     Image<std::uint8_t> disparity;
     Image<std::uint8_t> cost;

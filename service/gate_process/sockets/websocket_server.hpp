@@ -24,8 +24,8 @@ class SocketServer;
 
 /// Serves the step gate on a socket: rosbridge over WebSocket, and GET /health. The caller's thread
 /// asks the gate and serves all clients; TLS has its own thread. A client that misbehaves, sleeps
-/// or floods costs the others little: riders and operators with a token are served at once and keep
-/// their slots, all others share a bounded part of the time.
+/// or floods costs the others little. Riders and operators with a token are served at once and keep
+/// their slots; all others share a bounded part of the time.
 class WebsocketServer {
   public:
     /// Called every `tick_ms`, before topics are published.

@@ -141,8 +141,8 @@ class HeightDrift {
                                               const Evidence& evidence,
                                               std::span<const HeightResidual> recent,
                                               const Frame& frame);
-    /// Offset that the frame shows on recently aligned ground, continued as a plane to `at_m` (from
-    /// the point below the camera); 0 if the frame shows too little of that ground.
+    /// Offset that the frame shows on recently aligned ground. Continued as a plane to `at_m` (from
+    /// the point below the camera). 0 if the frame shows too little of that ground.
     [[nodiscard]] double frame_error_m(std::span<const HeightResidual> recent,
                                        const Eigen::Vector2d& at_m,
                                        const Frame& frame);

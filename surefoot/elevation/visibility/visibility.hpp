@@ -47,8 +47,8 @@ class FreeSpaceRays {
     void add(grid::Cell cell, float z_m);
     /// Call once after the last `add`.
     void finish();
-    /// Returns the height in odom of the lowest line of sight over the middle of a cell that ends
-    /// at least two cells beyond it; +inf without such a line.
+    /// Returns the height in odom of the lowest line of sight over the middle of a cell. The line
+    /// ends at least two cells beyond the cell. +inf without such a line.
     [[nodiscard]] float lowest_over(grid::Cell cell) const;
 
   private:

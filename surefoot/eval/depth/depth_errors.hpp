@@ -43,9 +43,9 @@ struct DepthErrors {
     double truth_over_estimate = 0.0;
 };
 
-/// Fills an unknown pixel with the smaller of the nearest known disparities to its left and right
-/// in the row (the background of an occlusion), as Middlebury fills sparse results. A row without
-/// any known pixel stays unknown.
+/// Fills an unknown pixel with the background of an occlusion, as Middlebury fills sparse results.
+/// This is the smaller of the nearest known disparities to the left and right in the row. A row
+/// without any known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
 
 /// Suspected scale factor of the truth, for example 4 or 1/16: the factor, among those that data

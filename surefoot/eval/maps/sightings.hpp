@@ -22,10 +22,10 @@ struct Sightings {
     grid::Layer range_m;    ///< from the camera to the cell, horizontally
 };
 
-/// For each known cell the latest pose from which its centre, at its height, falls into the image
-/// and is at most `max_depth_m` away along the optical axis. Occlusion is ignored: a cell counts as
-/// observed although another object may hide it. `T_world_camera`: poses of the optical frame in
-/// the map's frame, in time order.
+/// Finds for each known cell the latest pose that observes its centre at its height. The centre is
+/// in the image and at most `max_depth_m` away along the optical axis. Ignores occlusion: a cell
+/// counts as observed although another object may hide it. `T_world_camera`: poses of the optical
+/// frame in the map's frame, in time order.
 [[nodiscard]] Sightings last_sightings(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const Trajectory& T_world_camera,

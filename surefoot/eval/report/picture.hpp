@@ -72,8 +72,8 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// The same colours without title, axes and legend, cut to the known cells of the live map and the
-/// path (at least `kThumbnailCells` wide and high); empty if no cell is known.
+/// The same colours without title, axes and legend. Shows only the known cells of the live map and
+/// the path, at least `kThumbnailCells` wide and high. Empty if no cell is known.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,

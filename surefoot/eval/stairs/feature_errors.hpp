@@ -8,8 +8,8 @@
 
 namespace surefoot::eval {
 
-/// Limits for a match between a found and a true feature: rotation, and offset of the middle across
-/// the line (along the path over it) and along the line.
+/// Limits for a match between a found and a true feature. They limit the rotation, and the offset
+/// of the middle along the line and across it (along the path over the feature).
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;

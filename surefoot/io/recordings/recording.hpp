@@ -119,7 +119,7 @@ struct AssociatedRow {
 /// Image size of one camera in a side-by-side image (half the width); no value for odd widths.
 [[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
 /// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
-/// adds a note. For any other size the rig stays, and the frames are refused: a ratio like 2/3 may
+/// adds a note. For any other size the rig stays, and the frames are refused. A ratio like 2/3 may
 /// also be a different crop of the sensor, with other angles.
 void fit_rig(camera::StereoRig& rig,
              std::optional<ImageSize> images,
@@ -140,9 +140,9 @@ void set_pair_tolerance(const OpenOptions& options,
 /// Stamp of frame `index` at a constant rate, starting at 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
 
-/// Opens the frames of an index one after another. An unusable frame (missing or damaged image,
-/// wrong size, stamp that does not increase) is an error that names it; the next call continues
-/// with the next frame.
+/// Opens the frames of an index one after another. An unusable frame is an error that names the
+/// frame: missing or damaged image, wrong size, or a stamp that does not increase. The next call
+/// continues with the next frame.
 class RecordingSource final : public camera::FrameSource {
   public:
     explicit RecordingSource(Recording recording, int first_frame = 0)
