@@ -45,7 +45,7 @@ class PageSettings {
 
     /// Sets the list of settings, and the function that changes one.
     void offer(std::vector<PageSetting> settings, Change change);
-    /// Changes a setting, or says in words why it cannot be changed.
+    /// Changes a setting, or returns the reason why the setting cannot be changed.
     [[nodiscard]] SettingAnswer ask(const SettingWish& wish);
 
     [[nodiscard]] std::vector<PageSetting> all() const;

@@ -9,11 +9,11 @@
 namespace surefoot::page {
 
 enum class RecordingStage : std::uint8_t {
-    off,    ///< recording is not possible; `text` says why
-    ready,  ///< `text` says how the last recording ended, if there was one
+    off,    ///< recording is not possible; `text` gives the reason
+    ready,  ///< `text` has the result of the last recording, if there was one
     recording,
     finishing,  ///< the queued frames are still being written
-    failed,     ///< `text` says why; a new recording may begin
+    failed,     ///< `text` gives the reason; a new recording may begin
 };
 
 /// The state of the current recording, or of the last one.

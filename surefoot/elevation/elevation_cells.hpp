@@ -78,9 +78,9 @@ class ElevationCells {
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// Writes the highest visible surface of each cell: the height, or the lowest observed top of
-    /// an object that stands on known ground in two frames (a person stepped in). NaN = unknown
-    /// cell. `out_m` takes the size of the layers.
+    /// Writes the height of the highest visible surface of each cell. This may be the lowest
+    /// observed top of an object that stands on known ground in two frames (a person stepped in).
+    /// NaN = unknown cell. `out_m` takes the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// Notes that a line of sight passed through the lowest object above a cell.
     void see_no_more_above(std::size_t cell);

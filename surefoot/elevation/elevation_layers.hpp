@@ -22,8 +22,8 @@ struct ElevationLayers {
     Layer highest_m;           ///< robust extremes of all points in the cell since the height
     Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
     Layer clearance_m;         ///< from the height to the lowest object above; NaN = none
-    /// Unknown cells only: lines of sight passed at this height or lower in at least two frames
-    /// (one may hold a wrong match), so the ground lies lower. This is evidence of drops that the
+    /// Unknown cells only: lines of sight passed here in at least two frames, because one may hold
+    /// a wrong match. The ground is lower than this height. This is evidence of drops that the
     /// camera never observes directly. NaN = no line of sight passed.
     Layer free_above_m;
     /// Share of agreeing observations among about the last four of the cell; 1/2 right after the

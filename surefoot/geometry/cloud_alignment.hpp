@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Directions of the six (three of them rotations) that surfaces do not fix: those fixed by
-    /// edges, where surfaces end between points (faces of steps in a height map); those fixed only
-    /// by borders of the clouds; and free ones, where the guess stays unchanged. On a bare floor
-    /// the three numbers add up to three.
+    /// Numbers of directions of the six (three of them rotations) that surfaces do not fix. First:
+    /// directions fixed by edges, where surfaces end between points (faces of steps in a height
+    /// map). Second: fixed only by borders of the clouds. Third: free, the guess stays unchanged.
+    /// On a bare floor the three numbers add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

@@ -124,7 +124,7 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
+    /// The frame's own motion, or the odometry's estimate; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);

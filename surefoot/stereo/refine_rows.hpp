@@ -76,7 +76,7 @@ struct SolveRow {
     float min_noise_grey = 0.0F;
     float prior_sigma_px = 0.0F;
     float max_step_px = 0.0F;
-    float* disparity_px = nullptr;  ///< NaN = unknown, stays unknown; else moved by the shift
+    float* disparity_px = nullptr;  ///< moved by the shift; NaN = unknown, stays unknown
     float* shift_px = nullptr;
     float* residual_grey = nullptr;
     float* gradient_grey_px = nullptr;

@@ -19,8 +19,8 @@ struct VisibilityConfig {
     bool drops = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
-    /// Frames with such a line, without an agreeing observation in between, that remove a surface
-    /// shown by every observation; a surface shown by every third one needs three times as many.
+    /// Number of such frames, with no agreeing one in between, that removes a surface shown by
+    /// every observation. A surface shown by every third one needs three times as many.
     int frames = 3;
     /// A neighbour of equal height, confirmed this recently, keeps a cell from removal.
     double neighbour_s = 0.4;

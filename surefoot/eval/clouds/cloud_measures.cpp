@@ -160,8 +160,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
     return best;
 }
 
-/// Position of a cluster along a line: the fullest 20 mm, if it holds far more points than chance
-/// could put there from an even spread, such as that of a side wall.
+/// Position of a cluster along a line: the fullest 20 mm. An even spread, such as that of a side
+/// wall, must be very unlikely to put so many points there by chance.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;

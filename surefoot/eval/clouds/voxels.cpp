@@ -125,7 +125,7 @@ std::vector<Vector3f> means_m(std::span<Keyed> points) {
 }  // namespace
 
 std::int64_t voxel_number(float p_m, double size_m) noexcept {
-    // `fits_voxels` says no to boxes with such numbers.
+    // `fits_voxels` returns false for boxes with such numbers.
     return saturated_integer<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
 }
 

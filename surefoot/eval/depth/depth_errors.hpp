@@ -15,7 +15,7 @@ namespace surefoot::eval {
 struct DepthPair {
     ImageView<const float> estimate_px;
     ImageView<const float> truth_px;
-    ImageView<const std::uint8_t> mask;  ///< empty = all pixels; else only non-zero pixels
+    ImageView<const std::uint8_t> mask;  ///< empty = all pixels, otherwise the non-zero ones
     ImageView<const float> sigma_px;     ///< sigma of the estimate; may be empty
 };
 

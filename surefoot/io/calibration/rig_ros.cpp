@@ -163,8 +163,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to: first
-/// the part `roi` (in pixels of that image; all 0 = the whole image), then binning.
+/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to. First
+/// `roi` (in pixels of that image; all 0 = the whole image), then binning.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;

@@ -124,7 +124,7 @@ struct AssociatedRow {
 void fit_rig(camera::StereoRig& rig,
              std::optional<ImageSize> images,
              std::vector<std::string>& notes);
-/// Uses the tolerance of the options, else `otherwise_ns`.
+/// Uses the tolerance of the options, or `otherwise_ns` if the options have none.
 void set_pair_tolerance(const OpenOptions& options,
                         std::int64_t otherwise_ns,
                         Recording& recording);
@@ -133,7 +133,7 @@ void set_pair_tolerance(const OpenOptions& options,
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
-/// Frame rate for frames without stamps: from the options, else `otherwise_hz`.
+/// Frame rate for frames without stamps: the rate of the options, or `otherwise_hz` without one.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
 /// Error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);

@@ -87,7 +87,7 @@ inline float pattern_value(std::uint32_t fine_sum,
     return (fine + share * (coarse - fine) - kMiddle) * kQuantum;
 }
 
-/// How the pixel ellipse is sampled: `taps` look-ups along its long axis.
+/// Sampling of the pixel ellipse: `taps` look-ups along its long axis.
 struct Cover {
     int taps = 1;
     float level = 0.0F;
