@@ -25,7 +25,7 @@ struct PageCell {
     static constexpr std::int16_t kUnknownHeight = std::numeric_limits<std::int16_t>::min();
     static constexpr std::uint8_t kSigmaSaturated_mm = 255;
 
-    std::int16_t height_mm = kUnknownHeight;  ///< above PageMap::base_z_tenth_mm
+    std::int16_t height_mm = kUnknownHeight;  ///< height above PageMap::base_z_tenth_mm
     std::uint8_t sigma_mm = kSigmaSaturated_mm;
     std::uint8_t state = 0;
     friend bool operator==(const PageCell&, const PageCell&) = default;

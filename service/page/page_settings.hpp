@@ -13,7 +13,7 @@ namespace surefoot::page {
 
 /// One setting of the run, with the same texts as `surefoot config` prints.
 struct PageSetting {
-    std::string key;    ///< with its groups, e.g. "elevation.length_m"
+    std::string key;    ///< key with its groups, e.g. "elevation.length_m"
     std::string value;  ///< the value in use now
     std::string unit;   ///< "m"; empty if the setting has no unit
     std::string range;

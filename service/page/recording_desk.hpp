@@ -23,7 +23,7 @@ struct RecordingState {
     std::int64_t frames = 0;    ///< number of frames written
     std::int64_t left_out = 0;  ///< frames dropped because the disk was too slow
     std::int64_t bytes = 0;     ///< size of the images
-    double duration_s = 0.0;    ///< from the first frame's time stamp to the last one
+    double duration_s = 0.0;    ///< time from the first to the last stamp
     std::string text;
     friend bool operator==(const RecordingState&, const RecordingState&) = default;
 };

@@ -127,9 +127,9 @@ class RexLink {
         Question question;  ///< the last question sent
         /// First question; answers to it also belong to the attempt.
         std::uint64_t first_sequence = 0;
-        std::int64_t sent_ns = 0;          ///< when `question` was sent
+        std::int64_t sent_ns = 0;          ///< time at which `question` was sent
         std::uint64_t connection = 0;      ///< connection of the first OK; 0 = no OK yet
-        std::int64_t acknowledged_ns = 0;  ///< when the first OK arrived
+        std::int64_t acknowledged_ns = 0;  ///< time at which the first OK arrived
         std::int64_t first_valid_ns = 0;   ///< end of the first OK's validity
     };
 

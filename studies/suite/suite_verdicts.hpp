@@ -22,7 +22,7 @@ struct VerdictCounts {
     int safe_ok = 0;            ///< ... of these OK
     int unsafe = 0;             ///< clear-cut questions that are truly dangerous
     int unsafe_ok = 0;          ///< ... of these OK: missed hazards
-    int borderline = 0;         ///< not clear-cut
+    int borderline = 0;         ///< answers that are not clear-cut
     int borderline_ok = 0;      ///< ... of these OK
     int borderline_missed = 0;  ///< OK, but dangerous by the exact truth
 

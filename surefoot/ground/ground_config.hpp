@@ -11,7 +11,7 @@ struct GroundConfig {
     int max_points = 4000;           ///< evenly picked from the remaining points
     double max_range_m = 8.0;        ///< stereo noise tilts far ground
     double tolerance_m = 0.05;       ///< inliers of the search; the refit narrows to the noise
-    double max_tilt_deg = 20.0;      ///< from the hint; must cover mount error plus slope
+    double max_tilt_deg = 20.0;      ///< tilt from the hint; must cover mount error plus slope
     double min_inlier_ratio = 0.15;  ///< floor between walls and furniture
     double min_area_m2 = 0.3;        ///< area of the occupied squares; two soles cover 0.14
     double min_extent_m = 0.12;      ///< narrow one-sigma extent; slices through walls are thinner

@@ -75,7 +75,7 @@ class Pipeline {
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
-    /// What was corrected; nothing where the calibration fits or nothing could be said.
+    /// The applied correction; empty if the calibration fits or the images show no error.
     [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
         const noexcept {
         return self_calibration_;

@@ -11,7 +11,7 @@ namespace surefoot::place_recognition {
 struct ComparisonConfig {
     MatchConfig matching;
     int min_matches = 15;
-    int min_inliers = 25;   ///< after the search at the known pose
+    int min_inliers = 25;   ///< inliers after the search at the known pose
     double sigma_px = 1.0;  ///< sigma of a matched corner; corners of higher levels are coarse
     int ransac_rounds = 300;
     double ransac_threshold_px = 4.0;
@@ -33,7 +33,7 @@ struct ComparisonConfig {
     int min_parts = 5;                     ///< least number of parts with an inlier
     double max_sigma_m = 0.05;             ///< sigma of the position
     double max_sigma_deg = 1.5;
-    double max_tilt_deg = 3.0;  ///< between the up directions of the two views
+    double max_tilt_deg = 3.0;  ///< angle between the up directions of the two views
 };
 
 /// Result of comparing a keyframe (candidate) with a view (query).

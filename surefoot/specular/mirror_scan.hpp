@@ -11,9 +11,9 @@ namespace surefoot::specular {
 
 /// The most likely mirror line of a patch.
 struct PatchLine {
-    double score = 0.0;        ///< in standard deviations of the noise of other lines
+    double score = 0.0;        ///< score in standard deviations of the noise of other lines
     double unique = 0.0;       ///< score over the second best score of the patch
-    double correlation = 0.0;  ///< between the cells before and behind the line
+    double correlation = 0.0;  ///< correlation of the cells before and behind the line
     double at = 0.0;           ///< in fine cells across the lines, at the middle of the patch
     double lean_rad = 0.0;     ///< rotation of its normal from that of the patch, counter-clockwise
     int first_cell = 0;        ///< the visible part of the line, in fine cells

@@ -33,14 +33,14 @@ struct PairSearch {
 
 /// A corner of the left image with a clear match in the right image.
 struct CornerShift {
-    double u_px = 0.0;  ///< in the left image
+    double u_px = 0.0;  ///< column in the left image
     double v_px = 0.0;
     double columns_px = 0.0;  ///< right minus left
     double rows_px = 0.0;
 };
 
 struct Corners {
-    int found = 0;  ///< in the left image
+    int found = 0;  ///< number of corners in the left image
     std::vector<CornerShift> matched;
 };
 

@@ -14,7 +14,7 @@ namespace surefoot::stereo {
 
 struct SelfCalibrationConfig {
     bool enabled = true;
-    int min_corners = 150;  ///< below this no estimate is made
+    int min_corners = 150;  ///< fewer corners give no estimate
     /// Larger corrections are rejected: the rig then needs a new calibration.
     double max_turn_deg = 0.6;
     double max_focal_share = 0.01;

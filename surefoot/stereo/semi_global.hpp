@@ -36,8 +36,8 @@ inline constexpr int kSearchLag_rows = 2;
 struct Winners {
     Image<std::uint8_t> disparity;
     Image<std::uint8_t> cost;
-    Image<std::uint8_t> cost_below;  ///< at disparity - 1
-    Image<std::uint8_t> cost_above;  ///< at disparity + 1
+    Image<std::uint8_t> cost_below;  ///< cost at disparity - 1
+    Image<std::uint8_t> cost_above;  ///< cost at disparity + 1
     Image<std::uint8_t> second_cost;
 
     void resize(int width, int height);

@@ -93,7 +93,7 @@ class Reachability {
     int nx_ = 0;
     int ny_ = 0;
     int stride_ = 0;                    ///< row stride of `cells_`
-    std::vector<Cell> cells_;           ///< with a rim of unknown cells
+    std::vector<Cell> cells_;           ///< cells with a rim of unknown cells
     std::vector<std::int32_t> stance_;  ///< candidates, then the cells of the stance
     std::vector<std::int32_t> sorted_;  ///< heights of the candidates
     std::vector<double> distance_m_;    ///< distances of all known cells from the body

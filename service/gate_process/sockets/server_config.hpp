@@ -38,7 +38,7 @@ struct ServerConfig {
     int guest_work_us = 1500;
     int door_work_us = 750;                 ///< time for accepting and reading requests
     int handshake_ms = 2000;                ///< time limit for the complete WebSocket handshake
-    int idle_ms = 10000;                    ///< without data from the client; a ping at half of it
+    int idle_ms = 10000;                    ///< longest time without data; a ping at half of it
     int message_ms = 2000;                  ///< from the first to the last byte of a message
     int write_ms = 2000;                    ///< time limit for sending one text
     std::size_t max_queue_bytes = 1 << 20;  ///< texts waiting for a client that does not read

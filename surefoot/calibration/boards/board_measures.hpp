@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 /// show.
 struct BoardMeasures {
     int points = 0;           ///< points that both cameras see
-    int lengths = 0;          ///< between neighbours of a row or a column
+    int lengths = 0;          ///< number of lengths between neighbours of a row or a column
     double distance_m = 0.0;  ///< mean depth from the board size; rectified left frame
     /// Mean difference of the triangulated depth and the depth from the board size in the left
     /// image. Compares baseline and rotation of the right camera with focal length and square size.

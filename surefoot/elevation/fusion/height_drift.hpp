@@ -73,7 +73,7 @@ class HeightDrift {
   public:
     struct Frame {
         const grid::GridGeometry& geometry;
-        double camera_z_m = 0.0;  ///< in odom
+        double camera_z_m = 0.0;  ///< camera height in odom
         double systematic_sigma_m = 0.0;
         double tilt_sigma_rad = 0.0;
         std::uint32_t motions = 0;  ///< uncertain motions so far

@@ -32,7 +32,7 @@ struct DepthErrors {
     /// matcher gains nothing by answering only at easy pixels. A pixel that stays unknown counts as
     /// bad.
     BadPixels bad;
-    BadPixels known_bad;           ///< over the counted pixels with a known estimate
+    BadPixels known_bad;           ///< bad pixels among the counted pixels with a known estimate
     double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
     ErrorFigures known;            ///< estimate - truth at the known estimates [px]
     SigmaCoverage coverage;        ///< coverage of the known estimates; empty without sigma

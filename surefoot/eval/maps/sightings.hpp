@@ -19,7 +19,7 @@ struct PinholeView {
 /// Image column and distance of each cell at its last observation; NaN = never observed.
 struct Sightings {
     grid::Layer column_px;  ///< image column of the cell's centre
-    grid::Layer range_m;    ///< from the camera to the cell, horizontally
+    grid::Layer range_m;    ///< horizontal distance from the camera to the cell
 };
 
 /// Finds for each known cell the latest pose that observes its centre at its height. The centre is

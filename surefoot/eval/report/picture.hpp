@@ -24,7 +24,7 @@ struct ValueRange {
 /// Mapping from numbers to colours.
 struct LayerStyle {
     FigureText text;
-    std::string unit;  ///< in the legend
+    std::string unit;  ///< unit in the legend
     ColorMap map = ColorMap::viridis;
     std::optional<ValueRange> range;  ///< no value: 1st to 99th percentile of the known values
     double min_span = 0.0;            ///< smallest width of a range computed from the values

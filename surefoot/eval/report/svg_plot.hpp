@@ -45,7 +45,7 @@ struct BinPlot {
         std::string label;
         std::vector<double> values;  ///< one value per bin; NaN = no value, the line has a gap
     };
-    std::string x_label;        ///< with its unit
+    std::string x_label;        ///< label with its unit
     std::string unit;           ///< unit of the values
     std::vector<double> edges;  ///< bin edges, ascending; one more than values
     std::vector<Line> lines;    ///< at most two

@@ -65,8 +65,8 @@ struct RecordingInfo {
     int missing_images = 0;     ///< listed files that do not exist
     std::string first_missing;  ///< the first of them
     int bad_stamps = 0;         ///< stamps that do not increase
-    double duration_s = 0.0;    ///< from the first to the last stamp
-    double rate_hz = 0.0;       ///< from the median interval; 0 for fewer than two frames
+    double duration_s = 0.0;    ///< time from the first to the last stamp
+    double rate_hz = 0.0;       ///< rate from the median interval; 0 for fewer than two frames
     int gaps = 0;               ///< intervals longer than 1.5 times the median
     double longest_gap_s = 0.0;
     std::int64_t bytes = 0;  ///< size of all images

@@ -55,7 +55,7 @@ struct Recording {
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;  ///< between the stamps of both images of a frame
     float depth_codes_per_m = kDepthCodesPerMetre;  ///< RGB-D only
-    int image_bits = 8;                             ///< above 8: 16-bit images, see OpenOptions
+    int image_bits = 8;                             ///< more than 8: 16-bit images, see OpenOptions
 };
 
 /// Indexes EuRoC ASL: `folder` contains cam0 and cam1 ("mav0").

@@ -24,7 +24,7 @@ struct TrajectoryLayout {
     std::size_t columns = 0;
     char separator = ' ';
     PosePlaces places = {0, 1, 2, 3, 4, 5, 6, 7};
-    std::optional<StampUnit> unit;  ///< if the header names it
+    std::optional<StampUnit> unit;  ///< unit of the stamps, if the header names the unit
 };
 
 /// A line of numbers: the seven of a stamped pose, or the twelve of a 3x4 matrix.

@@ -23,7 +23,7 @@ using Notes = std::vector<std::string>;
 
 /// One key with its current value, without nesting.
 struct ConfigEntry {
-    std::string key;    ///< with its groups: "elevation.length_m"
+    std::string key;    ///< key with its groups: "elevation.length_m"
     std::string value;  ///< reads back to the same bits
     std::string range;  ///< "0.1 .. 100", "true | false", "mean_nan | zero_dominates"
     std::string comment;

@@ -14,7 +14,7 @@ namespace surefoot::odometry {
 /// Layout of the error vector of an inertial state: first index of each component.
 inline constexpr int kInertialSize = 17;
 inline constexpr int kPoseAt = 0;      ///< (translation, rotation) as in pose.hpp
-inline constexpr int kVelocityAt = 6;  ///< in odom axes
+inline constexpr int kVelocityAt = 6;  ///< index of the velocity in odom axes
 inline constexpr int kGyroBiasAt = 9;
 inline constexpr int kAccelBiasAt = 12;
 inline constexpr int kTiltAt = 15;  ///< index of the tilt of gravity in odom

@@ -28,8 +28,8 @@ struct MotionScript {
 
 /// One step of the walking machine, triggered by a joystick code.
 struct StepEvent {
-    double start_s = 0.0;  ///< when the joystick sends the code; the machine still stands
-    double end_s = 0.0;    ///< when the machine stands again
+    double start_s = 0.0;  ///< time of the joystick code; the machine still stands
+    double end_s = 0.0;    ///< time from which the machine stands again
     int command = 0;       ///< joystick code of the machine file
     Pose T_world_before;   ///< base_link standing, level
     Pose T_world_after;

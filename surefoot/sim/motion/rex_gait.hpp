@@ -37,7 +37,7 @@ struct RexGaitConfig {
 
 /// Pose of one foot in the world. A foot stands flat on the ground, also on a ramp.
 struct FootState {
-    Pose T_world_sole;    ///< below the ankle
+    Pose T_world_sole;    ///< sole below the ankle
     bool carries = true;  ///< stands flat; false while it swings or has its heel up
 };
 

@@ -92,7 +92,7 @@ struct Cover {
     int taps = 1;
     float level = 0.0F;
     float blotch_level = 0.0F;
-    TextureTable::Place du = 0;  ///< from tap to tap
+    TextureTable::Place du = 0;  ///< step from tap to tap
     TextureTable::Place dv = 0;
 };
 

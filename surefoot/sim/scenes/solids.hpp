@@ -210,7 +210,7 @@ struct FlightSpec {
     double landing_m = 0.0;           ///< 0: going up the last tread is as deep as the others
     double base_m = 0.0;              ///< solid down to this far below its lower end
     double nosing_m = 0.0;            ///< overhang of each tread over its riser
-    double tread_thickness_m = 0.04;  ///< with nosing or open risers
+    double tread_thickness_m = 0.04;  ///< used if the stairs have a nosing or no risers
     bool open = false;                ///< treads only, no risers
     double rise_variation_m = 0.0;    ///< each rise differs by up to this; the sum is exact
     void describe(ConfigVisitor& visitor);
@@ -236,7 +236,7 @@ struct SpiralSpec {
     double inner_radius_m = kRequired;
     double outer_radius_m = kRequired;
     double thickness_m = 0.0;    ///< thickness of a step; 0 = solid to the floor
-    double pole_height_m = 0.0;  ///< above z_m; 0 = no pole
+    double pole_height_m = 0.0;  ///< height above z_m; 0 = no pole
     void describe(ConfigVisitor& visitor);
     [[nodiscard]] std::optional<std::string> problem() const;
     void add(Site& site) const;

@@ -73,7 +73,7 @@ struct EdgeConfig {
                                             const EdgeConfig& config = {});
 
 struct VisibilityConfig {
-    double range_m = 2.5;    ///< from the left camera to the surface, straight line
+    double range_m = 2.5;    ///< straight distance from the left camera to the surface
     int min_frames = 1;      ///< smallest number of frames that must see a cell
     double margin_px = 0.0;  ///< ignored pixels at the image border
     int frame_stride = 1;    ///< use every n-th pose only

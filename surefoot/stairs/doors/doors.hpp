@@ -76,7 +76,7 @@ class DoorFinder {
     };
     /// The point where a row of cells meets the wall, in the frame of the opening.
     struct RowEnd {
-        double across_m = 0.0;  ///< from the middle
+        double across_m = 0.0;  ///< offset from the middle
         double along_m = 0.0;
     };
     /// Mean height of the ground over the width of an opening.
