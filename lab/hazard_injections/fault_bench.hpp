@@ -48,7 +48,7 @@ class GateBench {
         /// Every answer from this long after the fault on must be an inhibit; 0 = at once.
         std::int64_t deadline_ns = 250 * kMs;
         std::int64_t lasts_ns = 500 * kMs;  ///< time from the fault to the end of the run
-        std::int64_t watched_on_ns = 0;     ///< from the first inhibit to an earlier end; 0 = none
+        std::int64_t watched_on_ns = 0;     ///< first inhibit to an earlier end; 0 = none
         bool faulty = true;                 ///< false: a control run without a fault
         bool from_the_start = false;        ///< the fault exists before the gate starts
         double attestation_radius_m = 0.0;  ///< attested area; 0 = no operator attestation

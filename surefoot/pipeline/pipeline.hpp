@@ -75,7 +75,7 @@ class Pipeline {
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
-    /// The applied correction; empty if the calibration fits or the images show no error.
+    /// The applied correction; empty if no significant error of the calibration was found.
     [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
         const noexcept {
         return self_calibration_;

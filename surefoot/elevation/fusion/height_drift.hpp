@@ -27,7 +27,7 @@ struct HeightDriftConfig {
     double agreeing_share = 0.8;       ///< share of old cells with the offset, within noise
     double significance_sigmas = 3.0;  ///< smallest significant offset [sigma]
     double motion_sigmas = 3.0;        ///< a larger offset is no drift [sigma of the motion]
-    double depth_scale_sigma = 0.002;  ///< one frame; looks like an offset on level ground
+    double depth_scale_sigma = 0.002;  ///< per frame; resembles an offset on level ground
 
     void describe(ConfigVisitor& visitor);
 };
