@@ -13,7 +13,7 @@ namespace surefoot::app {
 /// A logged verdict that differs from the verdict this gate decides for the same query and map.
 struct AuditDifference {
     std::string file;
-    std::uint64_t offset = 0;    ///< of the record's frame in the file [bytes]
+    std::uint64_t offset = 0;    ///< position of the record's frame in the file [bytes]
     std::uint64_t sequence = 0;  ///< number of that frame
     std::vector<gate_process::FieldDifference> fields;
 };

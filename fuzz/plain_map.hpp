@@ -92,7 +92,7 @@ class PlainMap {
     }
     [[nodiscard]] Samples samples_of(std::span<const elevation::GridPoint> points,
                                      FusionCounts& counts) const;
-    /// The same after the enabled cloud filters, which remove points from `points`.
+    /// Takes a cloud after the enabled cloud filters, which remove points from `points`.
     [[nodiscard]] Samples samples_of(std::vector<elevation::GridPoint>& points,
                                      FusionCounts& counts) const;
     void fuse(const Samples& samples,

@@ -86,7 +86,7 @@ class Perception {
     /// The verdict as one sentence: what, where, value and limit.
     [[nodiscard]] std::string text_of(const gate::Verdict& verdict) const;
 
-    /// Everything else: alignment, camera, depth image of the last frame, footholds.
+    /// All other results: alignment, camera, depth image of the last frame, footholds.
     [[nodiscard]] const pipeline::Pipeline& pipeline() const noexcept { return *pipeline_; }
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
 

@@ -22,7 +22,7 @@ struct EvalMapsOptions {
     CommonOptions common;
     std::string live_dir;
     std::string truth_dir;
-    std::string out_dir;  ///< for pictures; optional
+    std::string out_dir;  ///< folder for pictures; optional
 };
 
 /// Loads the settings of the live run, so that the true map is processed identically.

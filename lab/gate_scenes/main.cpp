@@ -72,8 +72,8 @@ namespace {
 
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
-constexpr int kSafeEvery = 10;       ///< for maps
-constexpr int kSafeEveryOfRuns = 5;  ///< for runs: each takes seconds
+constexpr int kSafeEvery = 10;       ///< stride for maps
+constexpr int kSafeEveryOfRuns = 5;  ///< stride for runs: each run takes seconds
 
 /// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {

@@ -27,12 +27,12 @@ inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 struct Outcome {
     std::string variant;     ///< the drawn fault, as text
     int asked_before = 0;    ///< queries before the fault
-    int allowed_before = 0;  ///< of these answered OK; the run counts only if all were
+    int allowed_before = 0;  ///< OK answers before the fault; the run counts only if all were OK
     int asked_after = 0;     ///< queries since the fault began
-    int allowed_late = 0;    ///< of these OK after the deadline or after the first inhibit
+    int allowed_late = 0;    ///< OK answers after the deadline or after the first inhibit
     std::int64_t last_allowed_ns = -1;         ///< fault to last OK; -1 = no OK
     std::optional<std::int64_t> latency_ns;    ///< fault to first inhibit
-    gate::Reason reason = gate::Reason::none;  ///< of the first inhibit, if possible not NOT_READY
+    gate::Reason reason = gate::Reason::none;  ///< first inhibit, if possible not NOT_READY
 };
 
 /// The gate process in simulated time: a gatekeeper that is polled every 10 ms, and a client that
@@ -47,8 +47,8 @@ class GateBench {
     struct Plan {
         /// Every answer from this long after the fault on must be an inhibit; 0 = at once.
         std::int64_t deadline_ns = 250 * kMs;
-        std::int64_t lasts_ns = 500 * kMs;  ///< from the fault to the end of the run
-        std::int64_t watched_on_ns = 0;     ///< from the first inhibit to an earlier end; 0 = none
+        std::int64_t lasts_ns = 500 * kMs;  ///< time from the fault to the end of the run
+        std::int64_t watched_on_ns = 0;     ///< first inhibit to an earlier end; 0 = none
         bool faulty = true;                 ///< false: a control run without a fault
         bool from_the_start = false;        ///< the fault exists before the gate starts
         double attestation_radius_m = 0.0;  ///< attested area; 0 = no operator attestation

@@ -64,12 +64,12 @@ struct Perceived {
         place.yaw_rad += std::atan2(m.sin_turn, m.cos_turn);
         return place;
     }
-    /// One landing foot, chosen at random.
+    /// Chooses one landing foot at random.
     [[nodiscard]] Place landing() {
         const GroundBox& foot = rng.below(2) == 0 ? machine.left_foot : machine.right_foot;
         return target().at(foot.center_x_tenth_mm * 1e-4, foot.center_y_tenth_mm * 1e-4);
     }
-    /// Whether a point lies under a standing foot, with a margin.
+    /// Returns true if a point lies under a standing foot, with a margin.
     [[nodiscard]] bool is_stood_on(const Eigen::Vector2d& p_m) const {
         constexpr double kMargin_m = 0.03;
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {

@@ -144,7 +144,7 @@ struct Fault {
     /// `k` counts from the first faulty frame.
     std::function<void(Shown&, int k, Bench&)> damage = {};
     std::function<void(camera::StereoRig&)> rig = {};
-    bool watched = true;  ///< as in the application: repeated and torn images are marked
+    bool watched = true;  ///< true as in the application: repeated and torn images are marked
     bool of_imu = false;
 };
 

@@ -65,7 +65,7 @@ struct Held final : sim::Motion {
 
 /// Camera, pose and images of one scene.
 struct Stage {
-    camera::StereoRig rig;  ///< as calibrated
+    camera::StereoRig rig;  ///< rig with its calibration
     Pose T_world_body;
     sim::Renderer renderer;
     pipeline::PipelineConfig config;

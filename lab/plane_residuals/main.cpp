@@ -38,7 +38,7 @@ struct Window {
     double grey_dn = 0.0;
     double density = 0.0;
     double residual_px = 0.0;  ///< 1.4826 median |residual|: one sigma of a normal scatter
-    double rms_px = 0.0;       ///< of all matched pixels, outliers too
+    double rms_px = 0.0;       ///< rms of all matched pixels, outliers too
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
     Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< disparity = plane . (u, v, 1), window
     std::vector<double> departure_px;  ///< disparity minus plane; NaN = no match or outlier

@@ -19,11 +19,11 @@ enum class Hazard : std::uint8_t {
     stairs_up,
     kerb,  ///< down or up
     hole,
-    platform,  ///< its edge: the lower level is 0.3 to 1.2 m down, or a void
+    platform,  ///< edge of a platform: the lower level is 0.3 to 1.2 m down, or a void
     wall,
     table,
     sill,
-    unseen,  ///< one of the others, in a region that the cameras never observed
+    unseen,  ///< one of the other hazards, in a region that the cameras never observed
     person,  ///< an upright column
 };
 inline constexpr int kHazards = 10;

@@ -15,9 +15,9 @@ namespace surefoot::experiments {
 
 /// Distribution of map errors. Source: `map_noise_fit` on maps at the end of whole runs, with the
 /// fitted ZED profile on a trolley that goes 1.3-2 m towards the hazard, seeds 21-28. Sample: 72
-/// runs, 192 348 cells of level ground that both cameras see from at least three poses, within 0.9
-/// m of the machine and 0.15 m from the hazard. Where runs differ, the constants take the value
-/// that is harder for the gate. docs/lab/gate_scenes.md lists the figures.
+/// runs, 192 348 cells of level ground. Both cameras see these cells from at least three poses,
+/// within 0.9 m of the machine and 0.15 m from the hazard. Where runs differ, the constants take
+/// the value that is harder for the gate. docs/lab/gate_scenes.md lists the figures.
 struct MapNoise {
     /// `share` of the cells state a sigma of at most `sigma_m`. Most cells are near the map's
     /// minimum of 3 mm. Cells beyond 6 mm have just rejected a measurement, which doubles sigma.
@@ -83,7 +83,7 @@ class SceneCells {
         float top_m = 0.0F;       ///< top of that thing
         float share_high = 0.0F;  ///< samples nearer to high_m than to low_m
         bool ground = false;      ///< at least one sample is not a void
-        bool seen = false;        ///< both cameras see its middle
+        bool seen = false;        ///< both cameras see the middle of the cell
         bool beside_seen = false;    ///< at least one of its 8 neighbours is seen
         float beside_high_m = 0.0F;  ///< highest of these neighbours
     };

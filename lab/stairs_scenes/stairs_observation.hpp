@@ -50,7 +50,7 @@ struct Observation {
     grid::Layer density_ratio;
     Image<std::uint32_t> observations;  ///< number of measurements of each cell
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    stairs::View view;  ///< camera view of this frame; disparities below likewise
+    stairs::View view;  ///< camera view of this frame, also for the disparities below
     Image<float> disparity_px;
     Image<float> disparity_sigma_px;
 

@@ -18,7 +18,7 @@ using Match = std::function<Image<float>(const TruePair&)>;
 
 /// The matcher of the pipeline with its default settings.
 [[nodiscard]] Match chain();
-/// The same without disparities of an outlier probability above kTrusted.
+/// The same matcher; drops disparities of an outlier probability above kTrusted.
 [[nodiscard]] Match trusted_chain();
 /// Largest outlier probability of a trusted match.
 inline constexpr float kTrusted = 0.5F;

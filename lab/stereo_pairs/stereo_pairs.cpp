@@ -51,7 +51,7 @@ GreyImage load(const std::string& path) {
     return image;
 }
 
-/// Whether both cameras see a pixel: their truths agree within 1 px.
+/// Returns true if both cameras see a pixel: their truths agree within 1 px.
 bool agrees(const GreyImage& right_truth, double scale, int u, int v, double disparity_px) {
     const int x = static_cast<int>(std::lround(u - disparity_px));
     return right_truth.contains(x, v) && right_truth.at(x, v) != 0 &&

@@ -17,7 +17,7 @@ struct TruePair {
     std::string name;
     GreyImage left;
     GreyImage right;
-    Image<float> truth_px;  ///< as published; NaN = unknown or excluded from scores
+    Image<float> truth_px;  ///< disparity as published; NaN = unknown or excluded from scores
     int disparities = 64;   ///< search range: 0 to disparities - 1
     double step_px = 0.0;   ///< quantization of the stored truth; 0 = exact
     double truth_offset_px =

@@ -114,8 +114,8 @@ elevation::AncestorConfig thesis_map() {
     return config;
 }
 
-/// Error of the body pose after the thesis' alignment: it takes the largest plane of the first
-/// depth image within the tolerance as level ground at the machine's feet.
+/// Error of the body pose after the alignment of the thesis. It takes the largest plane of the
+/// first depth image within the tolerance as level ground at the feet.
 Pose ground_error(const camera::RectifiedRig& rig,
                   const DepthImage& depth,
                   const Pose& T_world_body) {

@@ -14,12 +14,12 @@ namespace surefoot::app {
                                                                 const std::string& text,
                                                                 const std::string& meaning);
 
-/// Same for four numbers "a,b,c,d".
+/// Parses four numbers "a,b,c,d" in the same way.
 [[nodiscard]] Result<std::array<double, 4>> parse_four_numbers(const std::string& option,
                                                                const std::string& text,
                                                                const std::string& meaning);
 
-/// Same for two numbers "a,b".
+/// Parses two numbers "a,b" in the same way.
 [[nodiscard]] Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
                                                               const std::string& text,
                                                               const std::string& meaning);

@@ -41,7 +41,7 @@ struct SourceOptions {
     std::string source;    ///< path, sim:SCENE or v4l2:DEVICE
     std::string rig_file;  ///< calibration that replaces that of the source
     std::string imu_file;  ///< IMU samples of another device
-    double rate_hz = 0.0;  ///< of a source without time stamps; 0 = its own rate
+    double rate_hz = 0.0;  ///< rate of a source without time stamps; 0 = the rate of the source
     int max_frames = 0;    ///< 0 = all
 };
 

@@ -18,7 +18,7 @@
 
 namespace surefoot::app {
 
-/// Which source to open, and how.
+/// The source to open, and the way to open it.
 struct SourceRequest {
     std::string source;  ///< path, sim:SCENE or v4l2:DEVICE
     std::string rig_file;

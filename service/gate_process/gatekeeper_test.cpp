@@ -523,7 +523,7 @@ TEST_F(GatekeeperTest, a_frame_that_waits_is_dropped_when_something_else_was_rea
     map_->frame_time_ns = map_->pose_time_ns = now_ns_ + 20 * kMs;
     gate::testing::seal(*map_);
     writer_->publish(*map_);
-    keeper_->poll(now_ns_, now_ns_ + 17);  // it waits
+    keeper_->poll(now_ns_, now_ns_ + 17);  // the frame waits
     const std::string elsewhere = path_ + ".elsewhere";
     std::filesystem::rename(path_, elsewhere);
     now_ns_ += 5 * kMs;

@@ -60,7 +60,7 @@ TEST(QueryZone, cells_outside_of_it_never_change_a_verdict) {
         allowed += c.verdict.decision == gate::Decision::ok ? 1 : 0;
         attested += c.verdict.evidence.attested_cells > 0 ? 1 : 0;
     }
-    EXPECT_GT(allowed, 20);  // else the rounds prove nothing
+    EXPECT_GT(allowed, 20);  // otherwise the rounds prove nothing
     EXPECT_GT(attested, 20);
 }
 

@@ -49,7 +49,7 @@ struct GateReport {
     std::int64_t frame_age_ns = -1;  ///< age of the last snapshot; -1 = none yet
     std::int64_t pose_age_ns = -1;
     bool attestation = false;     ///< an operator attestation is valid
-    gate::AttestedArea attested;  ///< its area in odom; inactive without an attestation
+    gate::AttestedArea attested;  ///< attested area in odom; inactive without an attestation
     std::uint64_t asked = 0;
     std::uint64_t allowed = 0;
 };

@@ -145,7 +145,7 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     port_ = port_of(said);
     if (port_ != 0) return {};
     if (process_ > 0) {
-        ::kill(process_, SIGKILL);  // it may hang
+        ::kill(process_, SIGKILL);  // the gate may hang
         ::waitpid(process_, nullptr, 0);
     }
     process_ = -1;

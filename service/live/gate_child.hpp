@@ -22,9 +22,9 @@ class GateChild {
   public:
     /// Arguments and key for the gate process.
     struct Start {
-        std::vector<std::string> arguments;        ///< for every start
-        std::vector<std::string> first_arguments;  ///< for the first start only, after `arguments`
-        gate_process::ChecksumKey key;  ///< of the snapshot channel; sent through the socket pair
+        std::vector<std::string> arguments;        ///< arguments of every start
+        std::vector<std::string> first_arguments;  ///< for the first start, added to `arguments`
+        gate_process::ChecksumKey key;  ///< snapshot channel key; sent through the socket pair
     };
     /// Starts the program surefoot-gate from the folder of this program (or from its place in a
     /// build tree). Returns when it listens. Returns an error if it ends or is silent

@@ -31,7 +31,7 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
                                                 const std::optional<camera::StereoRig>& rig,
                                                 const pipeline::PipelineConfig& config,
                                                 Executor& executor);
-/// Same as measure_pair(), for two image files. The errors name the files.
+/// Measures two image files as measure_pair() does. The errors name the files.
 [[nodiscard]] Result<MeasuredPair> measure_files(const std::string& left,
                                                  const std::string& right,
                                                  const std::optional<camera::StereoRig>& rig,
@@ -50,7 +50,7 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
 struct PairFigures {
     double density_percent = 0.0;  ///< pixels with a match
     double trusted_percent = 0.0;  ///< pixels with a match of low outlier probability
-    double median_sigma_px = 0.0;  ///< of the trusted matches; NaN if there are no trusted matches
+    double median_sigma_px = 0.0;  ///< of the trusted matches; NaN = no trusted matches
 };
 [[nodiscard]] PairFigures figures_of(const DepthImage& depth);
 

@@ -56,8 +56,9 @@ double median(const std::deque<double>& values) {
     return upper_median(std::vector<double>(values.begin(), values.end()));
 }
 
-/// The part of a map that is shown: all of a small map, or the 64 x 64 cell blocks around the known
-/// cells of a large map. Whole blocks keep the size of the picture stable while cells are added.
+/// The part of a map that is shown. A small map is shown whole; of a large map, only the 64 x 64
+/// cell blocks around its known cells. Whole blocks keep the size of the picture
+/// stable while cells are added.
 eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer& height_m) {
     constexpr int kLarge = 512;
     constexpr int kBlock = 64;

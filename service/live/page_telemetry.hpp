@@ -34,8 +34,8 @@ namespace surefoot::app {
                                        std::uint16_t gate_port,
                                        double rate_hz);
 
-/// Passes the results of perception to the thread of the page: pose, map and state after every
-/// frame; images, layers and terrain features only when a page wants them, at the rates of the
+/// Passes the results of perception to the thread of the page. Pose, map and state follow every
+/// frame. Images, layers and terrain features follow only if a page wants them, at the rates of the
 /// feed.
 class PageTelemetry {
   public:

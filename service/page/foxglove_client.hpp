@@ -59,7 +59,7 @@ class FoxgloveClient {
     struct Subscription {
         std::uint32_t id = 0;                 ///< chosen by the client
         std::optional<std::uint64_t> seen;    ///< serial of the last message sent
-        std::optional<std::int64_t> sent_ns;  ///< when that message was sent
+        std::optional<std::int64_t> sent_ns;  ///< time at which that message was sent
     };
     using Slot = std::optional<Subscription>;
 

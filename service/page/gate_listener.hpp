@@ -31,7 +31,7 @@ struct GateNews {
 /// topics above.
 [[nodiscard]] std::optional<GateNews> read_gate_news(std::string_view text);
 
-/// Where the gate's rosbridge service listens.
+/// Address of the gate's rosbridge service.
 struct GateService {
     std::string address;     ///< numeric IP address; 0.0.0.0 and :: mean this machine
     std::uint16_t port = 0;  ///< 0 = not known yet

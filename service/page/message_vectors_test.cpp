@@ -23,7 +23,7 @@ const std::string kVectors =
 PageMap small_map() {
     PageMap map;
     map.version = 7;
-    // as in a recording: above 2^53, the limit of a page's integers
+    // stamp of a recording: above 2^53, the limit of a page's integers
     map.frame_time_ns = 1'403'636'579'763'555'584;
     map.origin_x_tenth_mm = -500;
     map.origin_y_tenth_mm = 1250;

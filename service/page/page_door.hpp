@@ -11,13 +11,13 @@
 namespace surefoot::page {
 
 /// The names under which the page is served. A request with any other name in its Host header gets
-/// no file and no socket: the name may belong to another site whose address was changed to this
+/// no file and no socket. Such a name may belong to another site whose address was changed to this
 /// machine (DNS rebinding).
 struct PageAddress {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 0;
     std::vector<std::string> names;    ///< names of this computer, e.g. "robot.local"; lower case
-    std::vector<std::string> origins;  ///< of a proxy or tunnel, e.g. "https://robot.example:444"
+    std::vector<std::string> origins;  ///< proxy or tunnel, e.g. "https://robot.example:444"
 };
 
 /// The parts of a Host header, for example of "localhost:8080".
@@ -33,8 +33,8 @@ struct HostAndPort {
 /// default port, but simple programs may always omit it. If the page is served beyond loopback,
 /// every IP address is accepted, because DNS rebinding needs a name.
 [[nodiscard]] bool is_own_host(const PageAddress& page, std::string_view host);
-/// True when `origin` is this page itself, so that its scripts may open a socket: same host and
-/// port as `host`, which must satisfy is_own_host(), or one of the page's origins. localhost,
+/// True if `origin` is this page, so that its scripts may open a socket. It must equal host and
+/// port of `host`, which must satisfy is_own_host(), or one of the page's origins. localhost,
 /// 127.0.0.1 and [::1] count as the same host. Another port on this machine is another page.
 [[nodiscard]] bool is_own_origin(const PageAddress& page,
                                  std::string_view host,

@@ -9,7 +9,7 @@ namespace surefoot::page {
 /// A file of the page, embedded when the program was built (tools/embed_page).
 struct PageFile {
     std::string_view path;  ///< "/index.html"
-    std::string_view gzip;  ///< its content, compressed with gzip
+    std::string_view gzip;  ///< content of the file, compressed with gzip
 };
 /// All embedded files. Without a built page (tools/build_page) there is one file, which says how to
 /// build the page.

@@ -88,7 +88,7 @@ struct Run {
     std::size_t first = 0;
     std::size_t count = 0;
 };
-/// As long as two cells: a gap up to that length is sent along.
+/// A run takes as many bytes as two cells, so gaps up to that length are sent too.
 constexpr std::size_t kRunBytes = 8;
 constexpr std::size_t kBridged = kRunBytes / sizeof(PageCell);
 

@@ -25,7 +25,7 @@ struct PageCell {
     static constexpr std::int16_t kUnknownHeight = std::numeric_limits<std::int16_t>::min();
     static constexpr std::uint8_t kSigmaSaturated_mm = 255;
 
-    std::int16_t height_mm = kUnknownHeight;  ///< above PageMap::base_z_tenth_mm
+    std::int16_t height_mm = kUnknownHeight;  ///< height above PageMap::base_z_tenth_mm
     std::uint8_t sigma_mm = kSigmaSaturated_mm;
     std::uint8_t state = 0;
     friend bool operator==(const PageCell&, const PageCell&) = default;
@@ -59,8 +59,8 @@ struct ColourLimits {
 };
 [[nodiscard]] ColourLimits colour_limits(const Machine& machine) noexcept;
 
-/// The colour class of a cell. It is for display only and is not a permission to step: it rates one
-/// cell and its four neighbours, while the gate rates whole feet, their paths and the body.
+/// The colour class of a cell, for display only, not a permission to step. It rates one cell and
+/// its four neighbours; the gate rates whole feet, their paths and the body.
 /// - unknown: the cell was never measured.
 /// - unsure: the cell's sigma exceeds the gate's limit for a cell.
 /// - unsafe: evidence of a drop; or an obstacle on or over the cell lower than the machine's

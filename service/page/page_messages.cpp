@@ -166,7 +166,7 @@ Result<PageRequest> read_record(const Json& json) {
     return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
-/// An integer from 0 to `most`; empty for anything else.
+/// An integer from 0 to `most`; empty for all other values.
 std::optional<int> read_count(const Json& value, int most) {
     if (!value.is_number_integer() || value < 0 || value > most) return std::nullopt;
     return value.get<int>();

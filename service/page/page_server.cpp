@@ -240,7 +240,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::optional<std::int64_t> write_since_ns_;  ///< start of the write in progress
     /// Sent a message: from now on each completed write counts as service in gate_process::Slots.
     bool has_asked_ = false;
-    bool looks_ = false;  ///< it is a WebSocket, not a request for a file
+    bool looks_ = false;  ///< true for a WebSocket, false for a request for a file
     bool open_ = false;   ///< the WebSocket's handshake is complete
     bool ended_ = false;
 

@@ -13,7 +13,7 @@ namespace surefoot::page {
 
 /// One setting of the run, with the same texts as `surefoot config` prints.
 struct PageSetting {
-    std::string key;    ///< with its groups, e.g. "elevation.length_m"
+    std::string key;    ///< key with its groups, e.g. "elevation.length_m"
     std::string value;  ///< the value in use now
     std::string unit;   ///< "m"; empty if the setting has no unit
     std::string range;
@@ -45,7 +45,7 @@ class PageSettings {
 
     /// Sets the list of settings, and the function that changes one.
     void offer(std::vector<PageSetting> settings, Change change);
-    /// Changes a setting, or says in words why it cannot be changed.
+    /// Changes a setting, or returns the reason why the setting cannot be changed.
     [[nodiscard]] SettingAnswer ask(const SettingWish& wish);
 
     [[nodiscard]] std::vector<PageSetting> all() const;

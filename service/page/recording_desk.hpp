@@ -9,11 +9,11 @@
 namespace surefoot::page {
 
 enum class RecordingStage : std::uint8_t {
-    off,    ///< recording is not possible; `text` says why
-    ready,  ///< `text` says how the last recording ended, if there was one
+    off,    ///< recording is not possible; `text` gives the reason
+    ready,  ///< `text` has the result of the last recording, if there was one
     recording,
     finishing,  ///< the queued frames are still being written
-    failed,     ///< `text` says why; a new recording may begin
+    failed,     ///< `text` gives the reason; a new recording may begin
 };
 
 /// The state of the current recording, or of the last one.
@@ -23,7 +23,7 @@ struct RecordingState {
     std::int64_t frames = 0;    ///< number of frames written
     std::int64_t left_out = 0;  ///< frames dropped because the disk was too slow
     std::int64_t bytes = 0;     ///< size of the images
-    double duration_s = 0.0;    ///< from the first frame's time stamp to the last one
+    double duration_s = 0.0;    ///< time from the first to the last stamp
     std::string text;
     friend bool operator==(const RecordingState&, const RecordingState&) = default;
 };

@@ -12,7 +12,7 @@
 namespace surefoot::page {
 namespace {
 
-/// After this time without a frame the status says so.
+/// After this time without a frame the status reports the missing frames.
 constexpr std::int64_t kLate_ns = kNanosecondsPerSecond;
 
 }  // namespace

@@ -285,7 +285,7 @@ class Schedule {
     }
 
     Rng rng_;
-    bool faithful_;  ///< nothing goes wrong: the link must move
+    bool faithful_;  ///< true if nothing goes wrong: the link must move
     bool held_;
     bool sleepy_;
     UnfaithfulProxy proxy_;

@@ -14,7 +14,7 @@ namespace surefoot::rex_link {
 /// One answer of the model gate as it was sent, before the proxy changes its bytes.
 struct Said {
     bool ok = false;
-    std::uint64_t nonce = 0;  ///< as the gate read it in the question
+    std::uint64_t nonce = 0;  ///< nonce that the gate read in the question
     std::uint64_t connection = 0;
     std::uint64_t sequence = 0;
     unsigned command = 0;

@@ -39,8 +39,8 @@ enum class AnswerVerdict : std::uint8_t { error = 0, not_traversable = 1, ok = 2
 struct Answer {
     std::uint64_t nonce = 0;       ///< the session's nonce, returned by the gate
     std::uint64_t connection = 0;  ///< the gate's own number of the connection, never 0
-    std::uint64_t sequence = 0;    ///< of the question
-    std::uint8_t command = 0;      ///< of the question
+    std::uint64_t sequence = 0;    ///< sequence number of the question
+    std::uint8_t command = 0;      ///< command of the question
     AnswerVerdict verdict = AnswerVerdict::error;
     /// Validity set by the gate, counted from the sending of the question.
     std::int64_t valid_for_ns = 0;
@@ -127,9 +127,9 @@ class RexLink {
         Question question;  ///< the last question sent
         /// First question; answers to it also belong to the attempt.
         std::uint64_t first_sequence = 0;
-        std::int64_t sent_ns = 0;          ///< when `question` was sent
+        std::int64_t sent_ns = 0;          ///< time at which `question` was sent
         std::uint64_t connection = 0;      ///< connection of the first OK; 0 = no OK yet
-        std::int64_t acknowledged_ns = 0;  ///< when the first OK arrived
+        std::int64_t acknowledged_ns = 0;  ///< time at which the first OK arrived
         std::int64_t first_valid_ns = 0;   ///< end of the first OK's validity
     };
 
@@ -149,7 +149,7 @@ class RexLink {
     LinkState state_ = LinkState::idle;
     Attempt attempt_;
     std::uint64_t last_sequence_ = 0;
-    std::optional<std::uint64_t> nonce_;  ///< of the session; empty = not connected
+    std::optional<std::uint64_t> nonce_;  ///< nonce of the session; empty = not connected
     std::uint8_t code_ = 0;               ///< joystick
     std::int64_t rest_since_ns_ = 0;
     std::bitset<256> refused_;  ///< codes refused until the joystick was at rest

@@ -236,7 +236,7 @@ TEST_F(RexLinkTest, LateAnswersOfEndedAttemptsMeanNothing) {
     late.verdict = AnswerVerdict::not_traversable;
     expect_nothing(say(late));
     EXPECT_EQ(say(ok_to(present)).tone, Tone::acknowledge);
-    late.nonce = kNonce + 1;  // of another session: a replayed old answer
+    late.nonce = kNonce + 1;  // a replayed old answer of another session
     expect_inhibit(say(late), Inhibit::mismatch);
 }
 

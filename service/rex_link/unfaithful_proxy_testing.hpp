@@ -57,8 +57,8 @@ class UnfaithfulProxy {
         return delivery;
     }
 
-    /// Changes the value of one byte. It never changes the digits of the validity and of the
-    /// connection: no other part of an answer repeats these two values, so that only TCP's checksum
+    /// Changes the value of one byte. Never changes the digits of the validity and of the
+    /// connection. No other part of an answer repeats these two values, so only TCP's checksum
     /// protects them.
     void alter(Delivery& delivery) {
         const std::size_t at = rng_.below(delivery.bytes.size());

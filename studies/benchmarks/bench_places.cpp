@@ -18,8 +18,8 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kCorridors = 50;
-constexpr int kKeyframes = 10;    ///< per corridor; together they fill the database
-constexpr int kQueries = 5;       ///< per corridor that is queried
+constexpr int kKeyframes = 10;    ///< keyframes per corridor; together they fill the database
+constexpr int kQueries = 5;       ///< queries per queried corridor
 constexpr int kGoneThrough = 12;  ///< corridors that are queried, of either kind
 constexpr double kApart_m = 100.0;
 static_assert(kCorridors * kKeyframes == place_recognition::kMostKeyframes);

@@ -44,8 +44,8 @@ struct BenchResult {
 [[nodiscard]] Timing timed_once(const std::function<void()>& work);
 
 /// Times the gate's verdicts on level ground for all movements: the first verdict of the process,
-/// verdicts with warm caches, with cold caches, and on a map with the largest allowed drift. Also
-/// times the push of one verdict into the audit log.
+/// then verdicts with warm caches and with cold caches. Also times verdicts on a map with the
+/// largest allowed drift, and the push of one verdict into the audit log.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_gate(const CommonOptions& common,
                                                           Executor& executor);
 

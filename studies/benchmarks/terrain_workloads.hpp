@@ -20,7 +20,7 @@ struct Workload {
     std::string name;
     int repeats = 1;  ///< repetitions for a stable time within a second or two
     Prepare prepare;
-    /// Same job by the reference implementation (Way::plain); may be empty.
+    /// The same job by the reference implementation (Way::plain); may be empty.
     Prepare prepare_plain = {};
     int queries = 1;  ///< queries per call; a single query is shorter than the clock resolution
 };

@@ -240,7 +240,7 @@ std::vector<Workload> footprints() {
     };
     const auto walk = [scratch = std::make_shared<PathScratch>()](
                           const Footprint& footprint, int i, const FootprintLayers& layers) {
-        constexpr int kPoses = 11;  // one every 0.1 m
+        constexpr int kPoses = 11;  // one pose every 0.1 m
         std::array<FootprintPose, kPoses> poses;
         for (int k = 0; k < kPoses; ++k) {
             const FootprintPose start = place(i);

@@ -49,7 +49,7 @@ struct DistanceAccuracy {
     int observations = 0;                     ///< number of image pairs
     std::optional<eval::BoardErrors> errors;  ///< nullopt if the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
-    std::optional<ThesisAccuracy> thesis;     ///< same camera, same distance
+    std::optional<ThesisAccuracy> thesis;     ///< accuracy in the thesis, same camera and distance
 };
 
 /// Measures depth accuracy on rendered boards, or on the images that `options.pairs_file` lists.

@@ -12,8 +12,8 @@ namespace surefoot::app {
 
 /// Images of a calibration recording that were taken at the same time.
 struct BoardImages {
-    std::string name;  ///< of the file or frame
-    GreyImage left;    ///< or the image of the only camera
+    std::string name;  ///< name of the file or frame
+    GreyImage left;    ///< left image, or the image of the only camera
     GreyImage right;   ///< empty for one camera
 };
 

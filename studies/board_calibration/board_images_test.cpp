@@ -17,7 +17,7 @@ namespace {
 
 using io::testing::TemporaryFolder;
 
-constexpr int kWidth = 32;  // of one image
+constexpr int kWidth = 32;  // width of one image
 constexpr int kHeight = 24;
 constexpr int kJpegError = 6;  // grey values
 

@@ -35,7 +35,7 @@ constexpr const char* kCharuco = "charuco:8x5:0.03:0.022";
 struct Case {
     const char* board;
     LensKind lens;
-    int scale = 1;  ///< of the image; ChArUco markers are detected from 640 x 480 px on
+    int scale = 1;  ///< scale of the image; ChArUco markers need at least 640 x 480 px
 };
 
 class CalibrateRendered : public ::testing::TestWithParam<Case> {};

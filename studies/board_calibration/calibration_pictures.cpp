@@ -55,7 +55,7 @@ void stripe(const calibration::Coverage& coverage, eval::Figure& figure) {
     }
 }
 
-/// For each view, whether the result uses it.
+/// One flag per view: true if the result uses the view.
 std::vector<bool> used_views(const CalibrationRun& run) {
     std::vector<bool> used(run.views.size(), true);
     for (const calibration::RejectedView& rejected : rejected_views(run))

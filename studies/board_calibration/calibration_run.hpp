@@ -15,7 +15,7 @@ namespace surefoot::app {
 /// Board points that were detected in the images of one moment.
 struct FoundView {
     std::string name;
-    calibration::BoardView left;  ///< or the only camera's; empty if `left_problem` is set
+    calibration::BoardView left;  ///< left or only camera; empty if `left_problem` is set
     calibration::BoardView right;
     std::string left_problem;  ///< why the detection failed; empty if it succeeded
     std::string right_problem;

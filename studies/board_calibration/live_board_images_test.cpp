@@ -14,7 +14,7 @@ using io::testing::FakeCamera;
 using io::testing::FakeEvent;
 using io::testing::FakeVideoDevice;
 
-constexpr int kWidth = 16;  // of one image
+constexpr int kWidth = 16;  // width of one image
 constexpr int kHeight = 8;
 
 /// A frame every 0.4 s. All pixels of frame i have grey i in the left image, 100 + i in the right.

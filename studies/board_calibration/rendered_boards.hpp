@@ -18,9 +18,9 @@ struct BoardCamera {
 };
 [[nodiscard]] std::vector<BoardCamera> cameras_of(const camera::StereoRig& rig);
 
-/// Returns `count` poses of the board in the left optical frame, as a careful operator shows it:
-/// all cameras see the whole board, near and far, turned by up to 40 deg about each axis. Returns
-/// fewer poses if too few positions fit into all images.
+/// Returns `count` poses of the board in the left optical frame, as a careful operator shows it.
+/// All cameras see the whole board. Some poses are near, some far; each is turned by up to 40 deg
+/// about each axis. Returns fewer poses if too few positions fit into all images.
 [[nodiscard]] std::vector<Pose> shown_poses(const calibration::Board& board,
                                             std::span<const BoardCamera> cameras,
                                             int count,

@@ -20,9 +20,9 @@ struct PlacedDistances {
     std::string subtitle;
 };
 
-/// Writes three files into `folder`: distances.png (view from above, each cell shows the mean of
-/// its points), histogram.svg, and distances.ply (the points with their distance, in the colours of
-/// the picture). `shift_m` is added to the points of distances.ply.
+/// Writes three files into `folder`: distances.png, histogram.svg and distances.ply. distances.png
+/// is a view from above of the mean distance in each cell. distances.ply has the points with
+/// distance and the colours of the picture. `shift_m` is added to the points of distances.ply.
 [[nodiscard]] Status write_cloud_pictures(const std::string& folder,
                                           const PlacedDistances& placed,
                                           const Eigen::Vector3d& shift_m);

@@ -244,7 +244,7 @@ Result<SurfaceDem> surface_dem(const eval::DemGrid& grid,
     });
     if (!counted) return counted.error();
     const CellReducer reducer(rules, geometry);
-    grid::Layer points_of(geometry.nx, geometry.ny, 0.0F);  // of the ground, and of any kind
+    grid::Layer points_of(geometry.nx, geometry.ny, 0.0F);  // points of the ground, and of any kind
     grid::Layer held(geometry.nx, geometry.ny, 0.0F);
     for (const Band& band : bands_of(points_of_row)) {
         // One more row on both sides, for the witnesses.

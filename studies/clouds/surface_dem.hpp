@@ -31,7 +31,7 @@ struct SurfaceRules {
 /// Ground heights of a cloud; NaN = no supported surface.
 struct SurfaceDem {
     grid::Layer height_m;
-    grid::Layer clearance_m;             ///< from the ground to the lowest overhanging points
+    grid::Layer clearance_m;             ///< ground to lowest overhanging points
     std::int64_t cut_points = 0;         ///< points outside the height limits
     std::int64_t unsupported_cells = 0;  ///< cells with points but without a supported surface
     std::int64_t overhung_cells = 0;

@@ -27,9 +27,9 @@ struct ThinnedCloud {
                                   const std::string& cloud);
 
 /// Writes the mean point of each voxel to `out_file`. A cloud with more than `most_in_memory`
-/// points is split into slabs along x in a temporary folder beside the output (12 bytes a point),
-/// which are processed one after the other; the output is the same. Memory: 40 bytes for each point
-/// in memory, or for each point of the fullest slab of 64 voxels along x if that is more.
+/// points is split into slabs along x, which are processed one after the other. The slabs lie in a
+/// temporary folder beside the output (12 bytes a point). The output is the same. Memory: 40 bytes
+/// for each point in memory, or of the fullest slab of 64 voxels along x if that is more.
 [[nodiscard]] Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                               double size_m,
                                               const std::string& out_file,

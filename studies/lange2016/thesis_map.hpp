@@ -38,7 +38,7 @@ struct RatedMap {
 /// A live map aligned with the scan of its place and compared with it as in section 9.2 of the
 /// reference thesis (Lange 2016).
 struct ComparedMap {
-    RatedMap live;            ///< on the grid of the truth
+    RatedMap live;            ///< live map on the grid of the truth
     grid::Layer m3c2_m;       ///< live - truth along the vertical; NaN = no value
     Image<eval::Call> calls;  ///< confusion of the ratings
     Pose T_truth_live;        ///< found by the alignment

@@ -71,7 +71,7 @@ struct ThesisRow {
     const char* run;
     const char* figure;
     FigureKind kind = FigureKind::length_m;
-    const char* thesis;           ///< as printed in the thesis; "-" = not stated
+    const char* thesis;           ///< value as printed in the thesis; "-" = not stated
     const char* truth = "";       ///< expression of the scene's parameters; "" = no exact value
     const char* divided_by = "";  ///< name of a run: the row shows the ratio to its figure
     /// Other figure for our column, if it has a better measurement.

@@ -25,7 +25,7 @@ struct DatasetFigures {
 /// All results of the report; unfinished parts are missing.
 struct ThesisResults {
     std::vector<DatasetFigures> datasets;
-    std::map<std::string, ThesisFigures> scans;  ///< by scene
+    std::map<std::string, ThesisFigures> scans;  ///< figures by scene
     /// By run name; array index as ThesisColumn.
     std::map<std::string, std::array<ThesisFigures, 2>> runs;
     ThesisFigures courtyard;

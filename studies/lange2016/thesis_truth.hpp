@@ -23,9 +23,9 @@ struct ScanArea {
 /// Area that the map of a run may cover: everything within half a map length of the path.
 [[nodiscard]] ScanArea area_around(const sim::ScriptedScene& script, double half_map_m);
 
-/// Laser scan of a place, processed as in chapter 8 of the reference thesis (Lange 2016), after
-/// removing the stray points of each station: stations registered, thinned to 1 mm, statistical
-/// outliers removed (7 points including the point itself, 4 sigma), heights on a grid.
+/// Laser scan of a place, processed as in chapter 8 of the reference thesis (Lange 2016). Steps:
+/// remove stray points of each station, register stations, thin to 1 mm, remove outliers (7 points
+/// including the point itself, 4 sigma), compute heights on a grid.
 struct ScannedPlace {
     std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in world coordinates
     grid::GridGeometry geometry;

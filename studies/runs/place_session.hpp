@@ -21,7 +21,7 @@ struct PlaceRecord {
     /// Number of keyframes by result of the recognition.
     std::array<int, place_recognition::kRefusals> refusals{};
     std::optional<std::int64_t> recognised_ns;  ///< time of the first T_map_odom
-    std::optional<Pose> T_map_odom;             ///< at the end of the run
+    std::optional<Pose> T_map_odom;             ///< value at the end of the run
     std::string left_as_it_was;  ///< reason why the file was not written; empty = it was written
 };
 

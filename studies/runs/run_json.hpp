@@ -27,7 +27,7 @@ struct ReportCamera {
 [[nodiscard]] double parse_report_tilt_sigma_rad(const std::string& report_json);
 /// The camera of a report.json; nullopt if it is missing or incomplete (an older or damaged file).
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
-/// As report_json, but without the list of frames, for stdout.
+/// Returns the content of report_json without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record,
                                    const pipeline::Pipeline& pipeline,
                                    const Status& written);

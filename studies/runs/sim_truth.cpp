@@ -45,9 +45,10 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
-/// Resamples the exact depth of a raw left image without distortion for the rectified camera, which
-/// is slightly rotated if the rig differs from that of the scene. Depth is along the optical axis
-/// of the rectified camera, taken from the nearest raw pixel. Empty for a lens with distortion.
+/// Resamples the exact depth of a raw left image without distortion for the rectified
+/// camera. That camera is slightly rotated if the rig differs from the rig of the scene. Depth
+/// is along the optical axis of the rectified camera, taken from the nearest raw pixel. Empty for
+/// a lens with distortion.
 Image<float> seen_by(const camera::RectifiedRig& rig,
                      const camera::StereoRig& raw_rig,
                      const Image<float>& raw_m) {

@@ -20,7 +20,7 @@ struct DepthFigures {
     double within_1_sigma = 0.0;
     double median_abs_error_px = 0.0;  ///< error of the disparity
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
-    double sigma_at_2_m_m = 0.0;       ///< at 1.9-2.1 m
+    double sigma_at_2_m_m = 0.0;       ///< mean reported sigma_z at 1.9-2.1 m
     double outlier_share = 0.0;        ///< pixels with an outlier probability above one half
 };
 
@@ -29,8 +29,8 @@ struct TruthFigures {
     eval::MapComparison maps;
     /// Share of known cells among the cells that both cameras saw within 2.5 m.
     double coverage_within_2_5_m = 0.0;
-    eval::TraversabilityErrors traversability;  ///< over the same cells
-    eval::TrajectoryErrors trajectory;          ///< without alignment
+    eval::TraversabilityErrors traversability;  ///< errors over the same cells
+    eval::TrajectoryErrors trajectory;          ///< errors without alignment
     DepthFigures depth;
     Trajectory truth_trajectory;
 };

@@ -250,7 +250,8 @@ Status stand_as_given(const std::string& from, TerrainMap& map) {
                     g.origin_m.y() + g.ny * g.resolution_m));
 }
 
-/// Default standing position: base_link of the run, else the origin, else the near border.
+/// Default standing position: base_link of the run, otherwise the origin, otherwise the
+/// near border.
 void stand_somewhere(TerrainMap& map) {
     if (map.T_odom_body) {
         map.stance_m = map.T_odom_body->translation_m.head<2>();

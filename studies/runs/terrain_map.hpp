@@ -14,7 +14,7 @@
 
 namespace surefoot::app {
 
-/// Which height map to load, and from where.
+/// The height map to load, and its source.
 struct TerrainRequest {
     std::string map;  ///< .asc, .png, a cloud, or the folder of a run
     /// Standing position "x,y" [m]; empty = chosen from the map, see load_terrain().
@@ -22,7 +22,7 @@ struct TerrainRequest {
     double scale_m_per_px = 0.0;       ///< PNG: metres per pixel
     double height_m = 0.0;             ///< PNG: height of the brightest value
     double resolution_m = 0.025;       ///< cell size for a cloud
-    std::optional<double> lowest_z_m;  ///< of a cloud's points
+    std::optional<double> lowest_z_m;  ///< lowest z of the points of a cloud
     std::optional<double> highest_z_m;
 };
 

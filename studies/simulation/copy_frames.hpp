@@ -14,7 +14,7 @@ namespace surefoot::app {
 struct Copied {
     int frames = 0;
     camera::BrokenFrames broken = {};  ///< frames that the source skipped
-    std::optional<Error> error;  ///< of source, recorder or `after_frame`, or a user interrupt
+    std::optional<Error> error;  ///< from source, recorder or `after_frame`, or a user interrupt
 };
 
 /// Creates a recording for the frames of `source`. A source without images is a usage error.

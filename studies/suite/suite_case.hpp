@@ -32,9 +32,9 @@ struct SuiteCase {
 /// Reads one of sim::kCarriedByNames.
 [[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
 
-/// Pipeline settings for a scene. The height of base_link above its ground is taken from the truth,
-/// because it is fixed by the construction of each motion model (the trolley is 4 cm lower than the
-/// walking machine).
+/// Pipeline settings for a scene. The height of base_link above its ground comes from the truth,
+/// because the construction of each motion model fixes it. The trolley is 4 cm lower than the
+/// walking machine.
 [[nodiscard]] pipeline::PipelineConfig config_on(const sim::SceneTruth& truth,
                                                  const Settings& settings);
 

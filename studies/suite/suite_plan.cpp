@@ -42,7 +42,7 @@ constexpr double kWalkRate_hz = 4.0;
 struct SuiteScene {
     std::string name;
     sim::MotionModel motion_model = sim::MotionModel::trolley;
-    double duration_s = 0.0;  ///< of the first seed; paths of other seeds differ
+    double duration_s = 0.0;  ///< duration of the first seed; paths of other seeds differ
 };
 
 bool is_scene_file(const std::string& name) {

@@ -300,7 +300,7 @@ Status SuiteTable::keep_thumbnail(const SuiteResult& result) {
 }
 
 std::string thumbnail_file(const std::string& folder, const std::string& scene) {
-    std::string name = scene;  // for a scene file this is a path
+    std::string name = scene;  // a path for a scene file
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '/' || c == '#'; }, '_');
     return fmt::format("{}/pictures/{}.png", folder, name);

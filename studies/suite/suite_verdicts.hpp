@@ -22,7 +22,7 @@ struct VerdictCounts {
     int safe_ok = 0;            ///< ... of these OK
     int unsafe = 0;             ///< clear-cut questions that are truly dangerous
     int unsafe_ok = 0;          ///< ... of these OK: missed hazards
-    int borderline = 0;         ///< not clear-cut
+    int borderline = 0;         ///< answers that are not clear-cut
     int borderline_ok = 0;      ///< ... of these OK
     int borderline_missed = 0;  ///< OK, but dangerous by the exact truth
 
@@ -71,9 +71,9 @@ struct AroundAnswers {
     std::vector<std::string> missed;  ///< one sentence for each clear-cut missed hazard
 };
 
-/// Asks the gate about every movement of the machine at its present pose, and at reachable poses
-/// around it: 0.2 m apart, within `reach_m`, with the present yaw. An operator attestation covers
-/// unmeasured ground under the standing feet, as in attest_start().
+/// Asks the gate about every movement of the machine at its present pose and at reachable poses
+/// around it. These are 0.2 m apart, within `reach_m`, with the present yaw. An operator
+/// attestation covers unmeasured ground under the standing feet, as in attest_start().
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const Pose& T_world_body_true,
                                              const Machine& machine,

@@ -18,7 +18,7 @@
 namespace surefoot::calibration {
 
 struct CalibrationOptions {
-    int least_points = 8;  ///< per view; a pose needs four, the others check it
+    int least_points = 8;  ///< points per view; a pose needs four, the others check the pose
     RobustLimits limits;
     SelectionLimits selection;
     /// Largest accepted standard deviation of the focal length, relative to it. ASSUMPTION: 5 %;

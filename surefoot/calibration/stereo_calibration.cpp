@@ -24,7 +24,7 @@ constexpr double kMadToSigma = 1.4826;
 /// less.
 constexpr double kLeastScatter = 1e-3;
 
-/// One pair with the results of the two separate cameras.
+/// An image pair with the results of the two separate cameras.
 struct Pair {
     std::size_t index = 0;
     const ViewFit* left = nullptr;

@@ -24,7 +24,7 @@ struct PairFit {
     Pose T_left_board;
     CameraFit left;
     CameraFit right;
-    double rms_px = 0.0;  ///< both images
+    double rms_px = 0.0;  ///< rms over both images
 };
 
 /// Depth error (one sigma) from the calibration alone.
@@ -39,7 +39,7 @@ struct StereoCalibration {
     /// Order: left lens, right lens (parameter_names), T_left_right (translation [m], rotation
     /// [rad]; right perturbation).
     Eigen::MatrixXd covariance;
-    double rms_px = 0.0;    ///< both images, as in OpenCV
+    double rms_px = 0.0;    ///< rms over both images, as in OpenCV
     double sigma_px = 0.0;  ///< noise of a coordinate, corrected for degrees of freedom
     /// Noise behind the covariance: `sigma_px`, or the scatter of the cameras between views if that
     /// is larger (`view_scatter.hpp`).

@@ -14,10 +14,10 @@ namespace surefoot::camera {
 ///
 /// Hashes every image row and compares it with the rows of the last few frames. A ring of buffers
 /// that is overwritten too early can repeat the frame of one round ago, not only the previous one.
-/// * Repeated: every row of all images equals that of one earlier frame, and a row has structure.
-///   Black or saturated images do not count: they are equal without being old.
-/// * Torn: in one image the first or last rows equal those of an earlier frame, and all others do
-///   not; or one camera's image is an old one and the other camera's image is new.
+/// * Repeated: every row of all images equals that of one earlier frame. At least one row has
+///   structure, because black or saturated images are equal without being old.
+/// * Torn, case 1: in one image the first or last rows equal those of an earlier frame, and all
+///   other rows differ. Case 2: the image of one camera is old, that of the other camera is new.
 /// Sensor noise makes two exposures differ in every row with structure, even in a still scene. Rows
 /// without structure (saturated, black, or grey from a decoder) do not count in the tearing test.
 /// Limit: video that is coded from frame to frame (H.264) copies still parts. If only a part of a

@@ -6,7 +6,7 @@
 namespace surefoot::camera {
 
 /// True if the polynomial sum c[i] s^i (at most 8 coefficients) is positive on all of [0, s_max].
-/// Lens models apply it to the derivative of their distortion: beyond the first root the image
+/// Lens models apply it to the derivative of their distortion. Beyond the first root the image
 /// folds back, and points far off the axis would appear inside the picture.
 ///
 /// Method: a polynomial lies between its smallest and largest Bernstein coefficients (Farouki 2012,

@@ -16,7 +16,7 @@ namespace surefoot::camera {
 /// give the same bytes.
 class RemapTable {
   public:
-    static constexpr int kUnits = 32;  ///< per pixel
+    static constexpr int kUnits = 32;  ///< units per pixel
 
     RemapTable() = default;
     /// Starts with no source for any pixel. `source_*`: size of the image to read, at least 2x2.

@@ -60,7 +60,7 @@ TEST(RigScaling, TheMiddleOfTheImageStaysTheMiddle) {
     StereoRig rig = test::zed_rig();
     for (Camera* camera : {&rig.left, &*rig.right}) {
         auto& lens = std::get<PinholeRadTan>(camera->model);
-        lens.cx_px = 335.5;  // of 672: pixels 0 .. 671
+        lens.cx_px = 335.5;  // the image is 672 px wide: pixels 0 .. 671
         lens.cy_px = 187.5;
     }
     const auto half = scaled_to(rig, 336, 188);

@@ -21,7 +21,7 @@ StereoRig with_right_camera(const StereoRig& nominal, const RightCameraCorrectio
             lens.fy_px *= longer;
         },
         rig.right->model);
-    rig.rectified = false;  // its rows no longer match those of the left camera
+    rig.rectified = false;  // its rows no longer match the rows of the left camera
     return rig;
 }
 

@@ -9,13 +9,13 @@ namespace surefoot {
 /// lets the gate say OK. The numeric values are part of the snapshot file format.
 enum class CameraState : std::uint8_t {
     unknown = 0,  ///< no image yet
-    frozen = 1,   ///< the same images repeat
+    frozen = 1,   ///< the camera delivers the same images again
     corrupt = 2,  ///< torn or damaged images
     ok = 3,
     overexposed = 4,  ///< too many image pixels are saturated
     dark = 5,         ///< most image pixels are black
-    moved = 6,        ///< its mounting pose on the machine has changed; this state stays
-    leaning = 7,      ///< its tilt shows that the machine is in mid-step or was knocked
+    moved = 6,        ///< the mounting pose on the machine has changed; this state stays
+    leaning = 7,      ///< the camera's tilt shows that the machine is in mid-step or was knocked
 };
 [[nodiscard]] const char* to_string(CameraState state) noexcept;
 

@@ -50,7 +50,7 @@ struct MotionEstimate {
     std::int64_t time_ns = 0;
     Pose T_odom_body;                               ///< continuous: odom never jumps
     Pose T_previous_body;                           ///< motion since the previous frame
-    Matrix6 relative_covariance = Matrix6::Zero();  ///< of T_previous_body; see pose.hpp
+    Matrix6 relative_covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
     Health health = Health::lost;
     HealthReason reason = HealthReason::first_frame;
     int tracks = 0;            ///< points tracked into this frame
@@ -62,7 +62,7 @@ struct MotionEstimate {
 /// measures it: with its joints over the standing foot, or with its wheels.
 struct MachineMotion {
     Pose T_previous_body;
-    Matrix6 covariance = Matrix6::Zero();  ///< of T_previous_body; see pose.hpp
+    Matrix6 covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
 };
 
 /// How a frame was delivered: the evidence for a stopped, frozen or torn camera (hazards H1 and H2
@@ -74,7 +74,7 @@ struct FrameStatus {
     int reconnected = 0;  ///< number of times the device was reopened
     /// Number of consecutive frames, up to this one, whose image is not new; 0 = new image.
     int repeated = 0;
-    bool torn = false;  ///< one part is new, the rest comes from an earlier image
+    bool torn = false;  ///< one part of the image is new, the rest comes from an earlier image
 
     /// True if the frame counts as an observation at its time stamp.
     [[nodiscard]] bool is_new_and_whole() const noexcept { return repeated == 0 && !torn; }

@@ -31,7 +31,7 @@ struct Body {
     static constexpr int kMaxParts = 8;
     std::array<BodyPart, kMaxParts> parts{};
     std::int32_t count = 0;
-    std::int32_t sway_tenth_mm = 0;  ///< for motion that no trace covers
+    std::int32_t sway_tenth_mm = 0;  ///< allowance for motion that no trace covers
 
     [[nodiscard]] constexpr std::span<const BodyPart> all() const noexcept {
         const bool sound = count >= 0 && count <= kMaxParts;
@@ -55,7 +55,7 @@ inline constexpr int kMovementClassCount = 2;
 struct Movement {
     bool configured = false;
     MovementClass movement_class = MovementClass::walk;
-    std::array<char, 8> name{};  ///< for people and logs, zero-terminated
+    std::array<char, 8> name{};  ///< name for people and logs, zero-terminated
     std::int32_t forward_tenth_mm = 0;
     std::int32_t left_tenth_mm = 0;
     double cos_turn = 1.0;  ///< cosine of the change of yaw; left turns are positive
@@ -102,7 +102,7 @@ struct Machine {
     std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
     GroundBox left_foot;                   ///< the feet before and after a movement
     GroundBox right_foot;
-    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< of both feet: this part must stand on the tread
+    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< the tread must carry this part of a foot
     Body body;
     std::array<Movement, kMovementCodes> movements{};
     GateLimits limits;

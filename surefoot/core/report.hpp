@@ -51,7 +51,7 @@ struct GroundObservation {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, points to the sensor
     double height_m = 0.0;                              ///< distance from the sensor to the plane
     double inlier_ratio = 0.0;
-    double rms_m = 0.0;  ///< of the inliers
+    double rms_m = 0.0;  ///< rms distance of the inliers
 };
 
 /// All values of one frame that a dashboard, a log or a benchmark shows.

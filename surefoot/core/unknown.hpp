@@ -7,7 +7,7 @@ namespace surefoot {
 
 /// Value of a number that is not known. Comparisons with it are false; test with std::isnan.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Same for the float images and map layers.
+/// Value of an unknown pixel of a float image, and of an unknown cell of a map layer.
 inline constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace surefoot

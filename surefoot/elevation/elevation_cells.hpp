@@ -78,9 +78,9 @@ class ElevationCells {
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// Writes the highest visible surface of each cell: the height, or the lowest observed top of
-    /// an object that stands on known ground in two frames (a person stepped in). NaN = unknown
-    /// cell. `out_m` takes the size of the layers.
+    /// Writes the height of the highest visible surface of each cell. This may be the lowest
+    /// observed top of an object that stands on known ground in two frames (a person stepped in).
+    /// NaN = unknown cell. `out_m` takes the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// Notes that a line of sight passed through the lowest object above a cell.
     void see_no_more_above(std::size_t cell);
@@ -129,7 +129,7 @@ class ElevationCells {
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
-    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
+    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< viewpoint of the last such fusion
     /// Lowest surface observed above the height, and the trust in it.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;

@@ -14,7 +14,7 @@ struct ElevationLayers {
     using Layer = grid::SlidingLayer<float>;
 
     Layer height_m;                           ///< highest observed surface, in odom
-    Layer height_var_m2;                      ///< of the height relative to the present body
+    Layer height_var_m2;                      ///< variance relative to the present body
     grid::SlidingLayer<std::uint32_t> count;  ///< measurements fused since the height was set
     grid::SlidingLayer<std::int64_t>
         seen_ns;               ///< last time that a measurement agreed with the height; 0 = never
@@ -22,8 +22,8 @@ struct ElevationLayers {
     Layer highest_m;           ///< robust extremes of all points in the cell since the height
     Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
     Layer clearance_m;         ///< from the height to the lowest object above; NaN = none
-    /// Unknown cells only: lines of sight passed at this height or lower in at least two frames
-    /// (one may hold a wrong match), so the ground lies lower. This is evidence of drops that the
+    /// Unknown cells only: lines of sight passed here in at least two frames, because one may hold
+    /// a wrong match. The ground is lower than this height. This is evidence of drops that the
     /// camera never observes directly. NaN = no line of sight passed.
     Layer free_above_m;
     /// Share of agreeing observations among about the last four of the cell; 1/2 right after the

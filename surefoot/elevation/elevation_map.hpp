@@ -114,8 +114,8 @@ class ElevationMap {
     /// One row of cells per block, or all cells if heights are aligned.
     std::vector<CellMeasurement> measured_;
     VisibilityCleanup sight_;
-    float lowest_z_m_ = 0.0F;                 ///< of this frame: the lower height cut in odom
-    std::vector<FusionCounts> block_counts_;  ///< per block
+    float lowest_z_m_ = 0.0F;                 ///< lower height cut of this frame, in odom
+    std::vector<FusionCounts> block_counts_;  ///< one count per block
     HeightResiduals residuals_;
     HeightDrift drift_;
     HeightDriftReport height_drift_;

@@ -410,7 +410,7 @@ TEST_F(Overhead, AKerbHangsOverNothing) {
 TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
     look(0.7);
     look(0.7);
-    while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {  // also while it is unknown
+    while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {  // continues while the height is unknown
         ASSERT_LT(observations_, 40);
         look(0.0);
     }

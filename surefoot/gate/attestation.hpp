@@ -26,9 +26,9 @@ class Attestation {
                               const grid::MapSnapshot& map,
                               std::int64_t radius_tenth_mm,
                               std::int64_t now_ns) noexcept;
-    /// Checks the position of the machine. If the pose is lost for longer than the largest age of a
-    /// pose (`pose_age` of the machine file), the attestation ends; a later valid pose does not
-    /// restore it.
+    /// Checks the position of the machine. Ends the attestation if the pose is lost for longer than
+    /// the largest age of a pose (`pose_age` of the machine file). A later valid pose does not
+    /// restore the attestation.
     void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
     /// Ends the attestation: after a fault, a restart, or on request.
     void revoke() noexcept { *this = Attestation{}; }

@@ -164,7 +164,7 @@ TEST(Attestation, the_area_lies_around_the_machine_wherever_that_is) {
     attestation.observe(*map, kNowNs);
     EXPECT_TRUE(attestation.area().active);
     const auto away = std::make_unique<grid::MapSnapshot>(*map);
-    away->body_y_tenth_mm = 2'500;  // as far from the origin of odom, but outside the area
+    away->body_y_tenth_mm = 2'500;  // same distance from the origin of odom, but outside the area
     attestation.observe(*away, kNowNs);
     EXPECT_FALSE(attestation.area().active);
 }

@@ -61,8 +61,8 @@ void make_level(grid::MapSnapshot& map) noexcept {
     grid::seal(map);
 }
 
-/// A point well inside a landing foot, as far as possible from its present position: after a short
-/// step the middle of the foot would be ground that carries already.
+/// A point well inside a landing foot, as far as possible from its present position. After a short
+/// step the middle of the foot would be ground that already carries the machine.
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
     const auto from_stance =

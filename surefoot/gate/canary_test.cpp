@@ -59,7 +59,7 @@ TEST(Canaries, ask_each_usable_movement_once_and_break_rules_with_the_longest) {
     set(6, 2600, -300);
     set(9, 0, 2700);
     set(20, 4000, 0);
-    machine.movements[20].movement_class = MovementClass::stair;  // which is off
+    machine.movements[20].movement_class = MovementClass::stair;  // this class is off
     const auto canaries = canaries_of(machine);
     const auto all = canaries_of(rex())->count() - 26;
     ASSERT_EQ(canaries->count(), all + 4);
@@ -147,7 +147,7 @@ TEST(Canaries, they_follow_the_limits_of_the_machine) {
     const Canaries::Outcome outcome = canaries->judge_all();
     EXPECT_TRUE(outcome.passed) << outcome.name << ", found " << to_string(outcome.found);
     machine = rex();
-    machine.limits.step[0].up_tenth_mm = 100;  // and 200 down
+    machine.limits.step[0].up_tenth_mm = 100;  // the limit of a step down is 200
     EXPECT_TRUE(canaries_of(machine)->judge_all().passed);
 }
 

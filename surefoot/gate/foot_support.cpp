@@ -35,7 +35,7 @@ struct Sums {
 struct PatchSums {
     std::int64_t n = 0;
     double weight = 0.0;
-    double x = 0.0, y = 0.0, z = 0.0;  ///< as in Sums, weighted
+    double x = 0.0, y = 0.0, z = 0.0;  ///< weighted sums, like those in Sums
     double variance = 0.0;             ///< sum with squared weights
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma, std::int64_t sure) noexcept {
@@ -249,9 +249,9 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
 struct FootCells {
     Sums all{};
     Patches patches;
-    bool has_pebble = false;   ///< one cell stood alone (stands_alone)
+    bool has_pebble = false;   ///< one cell stands alone (stands_alone)
     std::int64_t grounds = 0;  ///< number of the other cells
-    Finding lowest{};          ///< of the other cells; value = height above the stance
+    Finding lowest{};          ///< lowest of the other cells; value = height above the stance
     Finding highest{};
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {

@@ -82,11 +82,11 @@ struct PlainPatch {
     double n = 0.0, weight = 0.0, x = 0.0, y = 0.0, z = 0.0, variance = 0.0;
 };
 
-/// The same rule in plain floating point, as the reference for the integers.
+/// Computes the same rule in plain floating point, as the reference for the integers.
 struct PlainFoot {
     double height = 0.0, tilt_tan_sq = 0.0, largest_variance = 0.0;
-    double largest_residual = 0.0, second_residual = 0.0;  ///< of rough patches
-    double rough_x = 0.0, rough_y = 0.0;  ///< of the largest residual among rough patches
+    double largest_residual = 0.0, second_residual = 0.0;  ///< values of rough patches
+    double rough_x = 0.0, rough_y = 0.0;  ///< place of the largest residual among rough patches
     bool rough = false, unsure = false;
     double nearest_to_a_limit =
         1e9;  ///< where rounding could decide otherwise, nothing is compared
@@ -291,7 +291,7 @@ TEST(FootSupport, the_limits_are_those_of_the_class_of_the_movement) {
 TEST(FootSupport, a_single_cell_beyond_the_step_limits_counts_when_it_is_no_pebble) {
     struct Case {
         std::int32_t height;
-        std::int32_t beside;  // of one of the eight
+        std::int32_t beside;  // height of one of the eight neighbours
         Reason reason;
     };
     const Case cases[] = {{200, 0, Reason::none},

@@ -166,7 +166,7 @@ TEST(GateBounds, coordinates_in_metres_are_rounded_to_the_nearest_tenth_of_a_mil
         EXPECT_EQ(make_query(kForward, 0.0, c.m, 0.6, 0.8).cos_yaw, 0.6);
         EXPECT_EQ(make_query(kForward, c.m, 0.0, 0.6, 0.8).sin_yaw, 0.8);
     }
-    for (const double far_m : {1.00001e5, -1.00001e5}) {  // then the pose is none
+    for (const double far_m : {1.00001e5, -1.00001e5}) {  // such a pose is invalid
         for (const Query& query : {make_query(kForward, far_m, 0.0, 1.0, 0.0),
                                    make_query(kForward, 0.0, far_m, 1.0, 0.0)}) {
             EXPECT_EQ(query.command, kForward);
@@ -234,7 +234,7 @@ TEST(GateBounds, a_refusal_says_what_was_not_proven_and_lives_for_nothing) {
 }
 
 TEST(GateBounds, where_no_ground_is_known_under_the_feet_the_rest_is_not_asked) {
-    Terrain blind;  // and a wall behind, which a step backwards would hit
+    Terrain blind;  // the wall behind would stop a step backwards
     blind.box(-0.2, 0.4, -0.5, 0.5, static_cast<double>(kNanF));
     blind.box(-0.6, -0.5, -0.5, 0.5, 0.7);
     const Verdict verdict = ask(blind, kBackward);

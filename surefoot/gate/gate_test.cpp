@@ -486,7 +486,7 @@ TEST(Gate, one_unsure_cell_among_sure_ones_need_not_be_as_sure_as_they) {
                           {0.030, 0.0, 0.004, false},  // by less
                           {0.010, 0.020, 0.005, true},
                           {0.010, 0.020, 0.006, false},     // one neighbour is uncertain too
-                          {0.010, 0.027, 0.004, false}}) {  // for it is higher
+                          {0.010, 0.027, 0.004, false}}) {  // the same neighbour is higher
         Terrain floor;
         const auto paint = [&](double x, double y, double height_m, double sigma_m) {
             floor.box(x, x + 0.025, y, y + 0.025, height_m);
@@ -575,8 +575,8 @@ TEST(Gate, one_cell_alone_above_or_below_the_step_is_no_step_but_two_are) {
 // The stance height is the mean of both feet, but each foot must keep the limits alone, too.
 TEST(Gate, a_foot_that_stood_high_may_not_step_down_by_twice_the_limit) {
     struct Case {
-        double left_m, right_m;            // where the feet stand
-        double left_then_m, right_then_m;  // where they land
+        double left_m, right_m;            // positions of the feet
+        double left_then_m, right_then_m;  // positions of the feet after the landing
         Reason reason;
     };
     const Case cases[] = {{0.0, 0.0, 0.0, 0.0, Reason::none},

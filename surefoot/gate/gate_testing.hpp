@@ -131,8 +131,8 @@ struct Terrain {
     Terrain& box(double x0, double x1, double y0, double y1, double height_m) {
         return paint(height, x0, x1, y0, y1, height_m);
     }
-    /// Draws a map seen from above, forward = up, one character = 0.2 x 0.2 m, machine in the
-    /// middle: '.' floor, '?' unknown, digit = tenths of a metre up, 'd' = 0.3 m down.
+    /// Draws a map seen from above, forward = up, machine in the middle. One character = 0.2 x 0.2
+    /// m: '.' floor, '?' unknown, digit = tenths of a metre up, 'd' = 0.3 m down.
     Terrain& draw(const std::vector<std::string>& rows) {
         const double top_m = 0.1 * static_cast<double>(rows.size());
         for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -11,7 +11,8 @@
 namespace surefoot::gate {
 namespace {
 
-/// Requires that the surfaces under the goal's feet are connected to the present ones.
+/// Requires that the surfaces under the goal's feet are connected to the surfaces under its feet
+/// now.
 void check_joined(const Machine& machine,
                   const Query& here,
                   const Sweep& there,

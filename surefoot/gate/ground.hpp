@@ -127,7 +127,7 @@ class ReachableSurfaces {
     void add_beside_attested(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
 
   private:
-    std::array<std::uint64_t, 1024> bits_{};  // one for each of 65536 labels
+    std::array<std::uint64_t, 1024> bits_{};  // one bit for each of 65536 labels
 };
 
 }  // namespace surefoot::gate

@@ -41,7 +41,7 @@ TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) 
         const Ground ground(*map, query, rex().limits);
         for (std::int64_t iy = 0; iy < 240; ++iy) {
             for (std::int64_t ix = 0; ix < 240; ++ix) {
-                double farthest = 0.0;  // of the four corners from the centre, squared, 0.1 mm
+                double farthest = 0.0;  // squared distance of the farthest of four corners, 0.1 mm
                 for (const std::int64_t corner : {0, 1, 2, 3}) {
                     const auto x = static_cast<double>(-30000 + 250 * (ix + corner % 2) -
                                                        query.attested.center_x_tenth_mm);
@@ -65,7 +65,7 @@ TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) 
     Terrain nothing;
     nothing.height.fill(kNanF);
     const auto map = nothing.snapshot();
-    const Query query = attestation(0.0, 0.0, 0.5, 0.0, 0.0);  // of ground at -123
+    const Query query = attestation(0.0, 0.0, 0.5, 0.0, 0.0);  // the ground is at -123
     const Ground ground(*map, query, rex().limits);
     const Ground nobody(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const std::size_t at = cell_at(*map, 0.1, 0.1);

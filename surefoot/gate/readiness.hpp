@@ -99,8 +99,8 @@ class Readiness {
     Machine machine_;
     ReadinessLimits limits_;
     GateState state_ = GateState::init;
-    ReasonSet latched_;  ///< of FAULT
-    ReasonSet present_;  ///< of the last snapshot, and of passing time
+    ReasonSet latched_;  ///< latched reasons of FAULT
+    ReasonSet present_;  ///< reasons of the last snapshot and of passing time
     Sighting last_;
     std::int64_t now_ns_ = 0;
     std::int64_t entered_ns_ = 0;     ///< time at which the present state began

@@ -22,7 +22,7 @@ class Station {
         : map(Terrain{}.snapshot()), readiness(machine, limits) {
         map->version = 0;
     }
-    /// One frame: a newer snapshot, with the stamps of perception.
+    /// Passes one frame: a newer snapshot, with the stamps of perception.
     void frame(std::int64_t age_ns = 50 * kMs) {
         now_ns += kFrameNs;
         ++map->version;
@@ -338,7 +338,7 @@ TEST(Readiness, a_walk_is_no_jump_and_the_bounds_hold_both_ways) {
             const auto step = static_cast<std::int64_t>(std::llround(share * reach_m * 1e4));
             if (direction == 0) station.map->body_x_tenth_mm += step;
             if (direction == 1) station.map->body_y_tenth_mm -= step;
-            if (direction == 4) {  // and the ground with it, else it is not where the soles are
+            if (direction == 4) {  // the ground moves too; otherwise it is not under the soles
                 station.map->body_z_tenth_mm += step;
                 station.map->height_tenth_mm.fill(static_cast<std::int32_t>(step));
             }
@@ -460,7 +460,7 @@ TEST(Readiness, time_that_runs_backwards_is_a_fault_whoever_brings_it) {
     for (const auto& happen : cases) {
         Station station;
         station.become_ready();
-        station.readiness.tick(station.now_ns);  // the same moment again is none
+        station.readiness.tick(station.now_ns);  // a second tick at the same moment does not count
         ASSERT_EQ(station.readiness.state(), GateState::ready);
         happen(station);
         EXPECT_EQ(station.readiness.state(), GateState::fault);

@@ -18,7 +18,7 @@ struct Scene {
     const Ground& ground;
     const Sweep& sweep;
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
-    /// The same under each foot alone; empty if no cell there is known.
+    /// Odom z of the ground under each foot alone; empty if no cell there is known.
     std::array<std::optional<std::int64_t>, 2> foot_stance_tenth_mm{};
     std::int64_t lift_tenth_mm = 0;  ///< height of the body at the target minus its height now
 };

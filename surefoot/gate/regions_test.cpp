@@ -297,12 +297,12 @@ TEST(Regions, a_height_must_keep_its_limit_by_3_4_sigma_or_one_where_all_beside_
                           {161, 100, 161, 100, false},
                           {400, 100, 0, 0, true},  // alone: one sigma of slack
                           {401, 100, 0, 0, false},
-                          {400, 100, 160, 100, true},  // and those beside by 3.4
+                          {400, 100, 160, 100, true},  // cells beside: 3.4 sigma of slack
                           {400, 100, 161, 100, false}};
     for (const Case& c : cases) {
         for (const bool up : {false, true}) {
             Floor floor;
-            floor.machine.limits.swing_clearance_tenth_mm = 500;  // as far as a drop
+            floor.machine.limits.swing_clearance_tenth_mm = 500;  // as high as a drop
             const std::int32_t sign = up ? 1 : -1;
             const double x = kUnderLeftX;
             const double y = kUnderLeftY;

@@ -32,8 +32,8 @@ namespace surefoot::gate {
     return bound_rad * (1.0 + 0.5 * bound_rad * bound_rad);
 }
 
-/// Squared tangent of the steepest possible tilt against the vertical, for ground whose tilt
-/// against odom's z axis has the squared tangent `tan_sq`: tan(a + b) = (tan a + tan b) / (1 - tan
+/// Squared tangent of the steepest possible tilt against the vertical. `tan_sq` is the squared
+/// tangent of the ground's tilt against odom's z axis. Uses tan(a + b) = (tan a + tan b) / (1 - tan
 /// a tan b). For a bound of zero the result is exactly `tan_sq`. Infinite from a right angle on,
 /// and for NaN.
 [[nodiscard]] constexpr double steepest_tan_sq(double tan_sq, double bound_tan) noexcept {

@@ -218,7 +218,7 @@ TEST(TreadBounds, one_cell_under_the_ankle_is_a_tread_and_none_is_not) {
         ++found;
         EXPECT_EQ(tread.rise_tenth_mm, 123);
     }
-    EXPECT_EQ(found, 1);  // where the middle of a cell is that of the ankle
+    EXPECT_EQ(found, 1);  // only where the middle of a cell is the middle of the ankle
 }
 
 TEST(TreadBounds, a_drop_begins_a_tenth_of_a_millimetre_beyond_its_limit) {

@@ -9,7 +9,7 @@
 
 namespace surefoot::gate {
 
-/// The tread under the ankle of a landing foot, for movements of class stair: a foot of 0.37 m does
+/// The tread under the ankle of a landing foot, for movements of class stair. A foot of 0.37 m does
 /// not fit wholly on a tread of 0.3 m. Positions along the foot count forward from its middle and
 /// are doubled, so that cell centres are exact integers.
 struct Tread {
@@ -31,8 +31,8 @@ using Treads = std::array<Tread, 2>;
 /// Rise of the body at the target above its present height; 0 for a movement down.
 [[nodiscard]] std::int64_t lift_of(const Treads& treads) noexcept;
 
-/// For a movement down, tests the body at its lower height: at the target nothing may be as high
-/// above the treads as the lower edge of a part of the body.
+/// Tests the body at its lower height, for a movement down. At the target, everything must be lower
+/// above the treads than the lower edge of each part of the body.
 void check_body_lowered(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the drop bands of landing feet on treads. Like check_bands, with these differences:
@@ -43,12 +43,12 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the ground under one landing foot on a tread:
-/// 1. The tread ends where the first lower cell begins, minus an uncertainty: one cell, because the
-/// map can show objects up to a cell beside their position, and `sigma_factor` times the drift. If
-/// the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces the cell where
-/// that is less.
-/// 2. The rest carries the ankle and at least `tread_share` of the foot, and no end overhangs by
-/// more than `tread_overhang`: else SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks the
+/// 1. The tread ends where the first lower cell begins, minus an uncertainty. This is one cell,
+/// because the map can show objects up to a cell beside their position, and `sigma_factor` times
+/// the drift. If the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces
+/// the cell if that is less.
+/// 2. The rest carries the ankle and at least `tread_share` of the foot. No end overhangs by more
+/// than `tread_overhang`. Otherwise SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks the
 /// rule.
 /// 3. That part of the foot passes the rules of flat ground (check_landing).
 void check_tread(const Scene& scene,
@@ -58,8 +58,8 @@ void check_tread(const Scene& scene,
                  const ReachableSurfaces& reachable,
                  Findings& findings) noexcept;
 
-/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` one and at
-/// most one step of the class higher or lower: one step, not a whole flight.
+/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` one. They
+/// are at most one step of the class higher or lower: one step, not a whole flight.
 void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept;
 
 }  // namespace surefoot::gate

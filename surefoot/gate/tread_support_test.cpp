@@ -19,8 +19,8 @@ namespace {
 constexpr double kRise_m = 0.15;
 constexpr double kToe_m = 0.24;
 constexpr double kHeel_m = 0.126;
-constexpr double kUp_m = 0.42;    ///< of the step up
-constexpr double kDown_m = 0.45;  ///< of the step back and down
+constexpr double kUp_m = 0.42;    ///< length of the step up
+constexpr double kDown_m = 0.45;  ///< length of the step back and down
 constexpr std::uint8_t kDownAhead = 1;
 
 /// The REX on stairs with a third movement for the way down ahead.
@@ -36,7 +36,7 @@ Machine climbing_rex() {
 struct Flight {
     double near_m = 0.0;
     double going_m = 0.0;
-    double rise_m = kRise_m;  ///< of every step, seen from the machine: negative goes down
+    double rise_m = kRise_m;  ///< rise of every step, seen from the machine: negative leads down
 
     void paint(Terrain& t) const {
         const double way = near_m < 0.0 ? -1.0 : 1.0;
@@ -155,7 +155,7 @@ TEST(GateTreads, toes_may_hang_over_as_heels_do) {
     machine.limits.tread_overhang_tenth_mm = 470;
     expect_refused(ask_stair(*map, kDownAhead, machine), Reason::edge_margin);
     machine = climbing_rex();
-    machine.ankle_from_heel_tenth_mm = 3000;  // its ground ends 41 mm from the toes
+    machine.ankle_from_heel_tenth_mm = 3000;  // the ground ends 41 mm from the toes
     expect_refused(ask_stair(*map, kDownAhead, machine), Reason::edge_margin);
 }
 

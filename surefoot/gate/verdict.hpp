@@ -45,7 +45,7 @@ struct Evidence {
     Foot foot = Foot::none;           ///< the landing foot that the primary reason is about
     std::int64_t value_tenth_mm = 0;  ///< the value at that cell, in the unit of the limit
     std::int64_t limit_tenth_mm = 0;  ///< the limit that it breaks; both are 0 if no length decides
-    bool overhead = false;            ///< it hangs: the value is the height of its lower side
+    bool overhead = false;            ///< hanging object: the value is the height of its lower side
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
                                  ///< not read, and no proof about it holds
@@ -53,8 +53,8 @@ struct Evidence {
     bool stance_known = false;
     std::int64_t stance_height_tenth_mm = 0;  ///< odom z of the ground under the present feet
     std::int64_t cells = 0;                   ///< cells read; a cell counts once per test
-    std::int64_t known_cells = 0;             ///< of these, cells that are measured or attested
-    std::int64_t attested_cells = 0;          ///< of these, cells known only by an attestation
+    std::int64_t known_cells = 0;             ///< cells that are measured or attested
+    std::int64_t attested_cells = 0;          ///< cells that only an attestation makes known
     std::int64_t height_delta_tenth_mm = 0;   ///< landing foot with the largest height difference
     /// Squared tangent of the steeper foot plane's tilt, with the uncertainty of the vertical
     /// added.

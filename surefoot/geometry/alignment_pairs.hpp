@@ -70,7 +70,7 @@ class SurfacePairs {
     const AlignmentConfig& config_;
     Executor& executor_;
     std::vector<Pair> pairs_;
-    std::vector<Known> nearest_;  ///< per moved point: mostly valid for the next step too
+    std::vector<Known> nearest_;  ///< one per moved point, mostly valid for the next step too
 };
 
 /// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the mean of

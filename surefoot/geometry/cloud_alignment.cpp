@@ -56,8 +56,8 @@ std::int64_t points_paired_with(std::span<const Pair> pairs) {
     return std::unique(points.begin(), points.end()) - points.begin();
 }
 
-/// Share of the moved points that lie at points of the reference: not farther from the nearest
-/// reference point than its neighbours, plus the scatter of the surfaces.
+/// Share of the moved points that lie at points of the reference. The limit is the distance of the
+/// nearest reference point to its neighbours, plus the scatter of the surfaces.
 double overlap_of(std::span<const Pair> pairs, double rms_m) {
     std::int64_t there = 0;
     for (const Pair& pair : pairs) {

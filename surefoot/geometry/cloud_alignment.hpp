@@ -34,8 +34,8 @@ struct AlignmentConfig {
 struct AlignmentStep {
     std::int64_t pairs = 0;
     std::int64_t borders = 0;    ///< points on a border of both clouds
-    double rms_m = 0.0;          ///< of the distances across the reference's surface
-    double nearest_rms_m = 0.0;  ///< of the distances between the points of a pair
+    double rms_m = 0.0;          ///< rms of the distances across the surface of the reference
+    double nearest_rms_m = 0.0;  ///< rms of the distances between the points of a pair
     double step_m = 0.0;
     double step_rad = 0.0;
 };
@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Directions of the six (three of them rotations) that surfaces do not fix: those fixed by
-    /// edges, where surfaces end between points (faces of steps in a height map); those fixed only
-    /// by borders of the clouds; and free ones, where the guess stays unchanged. On a bare floor
-    /// the three numbers add up to three.
+    /// Numbers of directions of the six (three of them rotations) that surfaces do not fix. First:
+    /// directions fixed by edges, where surfaces end between points (faces of steps in a height
+    /// map). Second: fixed only by borders of the clouds. Third: free, the guess stays unchanged.
+    /// On a bare floor the three numbers add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

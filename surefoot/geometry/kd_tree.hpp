@@ -81,7 +81,7 @@ class KdTree {
     void runs_near_ball(const Eigen::Vector3f& middle_m, float radius_m, Visit&& visit) const {
         walk_ball(middle_m, radius_m, OnRun(visit));
     }
-    /// The same for a cylinder instead of a ball.
+    /// Calls `visit` in the same way, with the runs near a cylinder.
     template <typename Visit>
     void runs_near_cylinder(const Cylinder& cylinder, Visit&& visit) const {
         walk_cylinder(cylinder, OnRun(visit));

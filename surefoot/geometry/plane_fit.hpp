@@ -16,7 +16,7 @@ struct Plane {
     [[nodiscard]] double signed_distance_m(const Eigen::Vector3d& p) const {
         return normal.dot(p) + offset_m;
     }
-    /// The same plane; its normal points to the side of `direction`.
+    /// Returns this plane with its normal pointing to the side of `direction`.
     [[nodiscard]] Plane facing(const Eigen::Vector3d& direction) const {
         return normal.dot(direction) < 0.0 ? Plane{-normal, -offset_m} : *this;
     }
@@ -38,7 +38,7 @@ struct PlaneFit {
 /// across the line below a millionth of that along it).
 [[nodiscard]] std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points);
 
-/// The same for the points at `indices`.
+/// Fits a plane to the points at `indices`, with the rules of the function above.
 [[nodiscard]] std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points,
                                                 std::span<const int> indices);
 

@@ -18,7 +18,7 @@ template <typename T>
     return *middle;
 }
 
-/// Same, for values that keep their order.
+/// The median of a copy, so that the caller's values keep their order.
 template <typename T>
 [[nodiscard]] T upper_median(std::vector<T> values) {
     return upper_median_in_place(values);

@@ -119,8 +119,8 @@ SmallestAxis smallest_axis(const Symmetric3& m) noexcept {
     // A poor root leaves a residual A v - l v. It rotates v by at most residual / (middle - l).
     const double inverse = 1.0 / length;
     const Vec v{best.x * inverse, best.y * inverse, best.z * inverse};
-    const double sum = 1.0 - smallest;           // of the other two eigenvalues
-    const double product = c1 - smallest * sum;  // of the other two eigenvalues
+    const double sum = 1.0 - smallest;           // sum of the other two eigenvalues
+    const double product = c1 - smallest * sum;  // product of the other two eigenvalues
     const double root = std::sqrt(std::max(sum * sum - 4.0 * product, 0.0));
     const double middle = 2.0 * product / (sum + root);
     const Vec residual{r0.x * v.x + r0.y * v.y + r0.z * v.z,

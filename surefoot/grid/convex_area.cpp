@@ -120,8 +120,8 @@ void ConvexArea::take_rows() noexcept {
     end_row_ = rows.end;
 }
 
-/// Reach of the area at y, to the right (side = 1) or left (-1): the farthest point that an edge or
-/// a circle around a corner has at that y.
+/// Reach of the area at y, to the right (side = 1) or to the left (-1). This is the farthest point
+/// at that y of an edge or of a circle around a corner.
 double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) const noexcept {
     double farthest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < count; ++i) {

@@ -25,8 +25,8 @@ class ConvexArea {
     /// Largest distance from the grid's origin, so that counting cells has no rounding.
     static constexpr double kMaxReach_cells = 1 << 20;
 
-    /// The area is empty (no rows) without points, with more than kMaxPoints, with a negative
-    /// radius, with a value that is not finite, or if it lies beyond kMaxReach_cells.
+    /// The area is empty (no rows) without points, with more than kMaxPoints or with a negative
+    /// radius. It is also empty if a value is not finite or the area lies beyond kMaxReach_cells.
     ConvexArea(std::span<const Eigen::Vector2d> points_m,
                double radius_m,
                const GridGeometry& geometry) noexcept;

@@ -96,7 +96,7 @@ struct MapSnapshot {
     /// One checksum for all layers of a block of cells, so that readers of a part of the map check
     /// only this part.
     std::array<std::uint64_t, kBlocks> block_checksum{};
-    std::uint64_t checksum = 0;  ///< of the header, the edges and the checksums of the blocks
+    std::uint64_t checksum = 0;  ///< covers the header, the edges and the checksums of the blocks
 
     /// True if the ground height of the cell (element of the layers) was measured.
     [[nodiscard]] bool is_measured(std::size_t cell) const noexcept {

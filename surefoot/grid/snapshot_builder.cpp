@@ -18,11 +18,11 @@ constexpr double kTenthMmPerM = 1e4;
 constexpr double kFarthestM = 1e5;    ///< largest distance of pose, map and edges from odom
 constexpr double kHighestM = 1000.0;  ///< a larger height is a damaged number, not ground
 
-/// For lengths within kFarthestM; check() and is_sound() ensure this.
+/// Needs lengths within kFarthestM; check() and is_sound() ensure this.
 std::int64_t tenth_mm(double length_m) {
     return std::llround(length_m * kTenthMmPerM);  // in range: at most 10^9
 }
-/// For heights within kHighestM.
+/// Needs heights within kHighestM.
 std::int32_t height_tenth_mm(double height_m) {
     return static_cast<std::int32_t>(tenth_mm(height_m));  // in range: at most 10^7
 }
@@ -38,7 +38,7 @@ std::uint16_t saturated_up(double length_m) {
     return static_cast<std::uint16_t>(scaled);  // in range, as checked
 }
 
-/// The same for an angle. Unknown and too large angles become unknown.
+/// Rounds an angle up to microradians. Unknown and too large angles become unknown.
 std::uint32_t microradians_up(double angle_rad) {
     const double scaled = std::ceil(angle_rad * 1e6);
     constexpr double kLargest = 1e9;

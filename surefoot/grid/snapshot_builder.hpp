@@ -17,7 +17,7 @@ namespace surefoot::grid {
 struct SnapshotInput {
     GridGeometry geometry;  ///< in odom; the resolution must be a whole number of 0.1 mm
     ImageView<const float> height_m;
-    ImageView<const float> variance_m2;  ///< of the height
+    ImageView<const float> variance_m2;  ///< variance of the height
     /// 1-sigma horizontal drift of the pose since the last observation of the cell. Without this
     /// layer the drift is unknown and the gate refuses. Offline callers pass zeros and report this
     /// assumption.

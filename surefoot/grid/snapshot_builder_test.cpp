@@ -333,7 +333,7 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
     free_m.at(2, 0) = 0.48F;
     free_m.at(4, 0) = 0.44F;  // 60 mm below the edges on both sides
     free_m.at(10, 0) = 0.46F;
-    free_m.at(1, 0) = -1.0F;  // of a known cell: ignored
+    free_m.at(1, 0) = -1.0F;  // ignored, because the cell is known
     SnapshotInput input = map.input();
     input.free_above_m = std::as_const(free_m).view();
     ASSERT_TRUE(build_snapshot(input, *map.out).ok());
@@ -346,7 +346,7 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
 TEST(SnapshotBuilder, what_lines_of_sight_left_for_unknown_ground_is_kept_and_is_no_measurement) {
     TestMap map({"5???5"});
     Layer free_m(5, 1, kNanF);
-    free_m.at(0, 0) = -1.0F;     // of a known cell: ignored
+    free_m.at(0, 0) = -1.0F;     // ignored, because the cell is known
     free_m.at(1, 0) = 0.12341F;  // rounded up: the ground lies lower
     free_m.at(3, 0) = 2000.0F;   // too large for a height
     SnapshotInput input = map.input();

@@ -14,7 +14,7 @@ namespace surefoot::ground {
 struct Cloud {
     std::vector<Eigen::Vector3d> points;
     std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;                 ///< per point, see `judge_noise`; may be empty
+    std::vector<double> tolerance_m;                 ///< per point (see `judge_noise`), or empty
     double band_m = 0.0;                             ///< points farther off a plane are not on it
     Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is asked for
 

@@ -19,11 +19,11 @@ struct Surface {
     double max_x_m = 10.0;
     double min_y_m = -10.0;
     double max_y_m = 10.0;
-    double rise = 0.0;  ///< per metre of x
+    double rise = 0.0;  ///< rise per metre of x
 };
 
 struct FrameOptions {
-    double camera_height_m = 1.0;  ///< of base_link and camera; they have the same origin
+    double camera_height_m = 1.0;  ///< height of base_link and camera; they have the same origin
     double pitch_deg = 32.0;
     double noise_px = 0.4;  ///< 1 sigma of the disparity, as of the real ZED
     std::uint64_t seed = 1;

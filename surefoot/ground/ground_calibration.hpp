@@ -28,8 +28,8 @@ struct GroundAlignment {
     int agreeing = 0;  ///< number of observations averaged
     int rejected = 0;  ///< observations in the window that disagree with them
     Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();  ///< unit, up
-    double tilt_rad = 0.0;  ///< between the normal and the body's z axis
-    double height_m = 0.0;  ///< of the body's origin above the plane
+    double tilt_rad = 0.0;  ///< angle between the normal and the body's z axis
+    double height_m = 0.0;  ///< height of the body's origin above the plane
     /// Of `normal_body` and `height_m`: the mean uncertainty of the observations plus their
     /// scatter. More observations do not reduce it, because errors of calibration and matching are
     /// the same in all images of one place.

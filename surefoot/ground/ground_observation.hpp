@@ -30,7 +30,7 @@ enum class GroundReason : std::uint8_t {
 struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
-    double tilt_rad = 0.0;  ///< between normal and hint
+    double tilt_rad = 0.0;  ///< angle between normal and hint
     double area_m2 = 0.0;   ///< occupied squares of two voxel sides, projected along the normal
     /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
     double image_share = 0.0;

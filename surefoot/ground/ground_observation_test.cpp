@@ -175,7 +175,7 @@ TEST(GroundObservation, OfTwoFloorsTheOneThatFitsTheKnownHeightWins) {
                     kSensorHeight_m + (is_step ? 0.0 : rise_m),
                     kHeightLimit_m)
             << "the lowest plane; a step lower, it is not the machine's ground";
-        config.expected_height_m = kSensorHeight_m + 0.04;  // as precisely as a mount is known
+        config.expected_height_m = kSensorHeight_m + 0.04;  // typical precision of a known mount
         const auto known = sight(points, config).observation;
         ASSERT_TRUE(known.accepted);
         EXPECT_NEAR(known.height_m, kSensorHeight_m, kHeightLimit_m);

@@ -62,7 +62,7 @@ struct Candidate {
     double inlier_ratio = 0.0;
     double rms_m = 0.0;
     double area_m2 = 0.0;
-    double support = 0.0;  ///< of its points; compares the bands of one plane
+    double support = 0.0;  ///< weight of the points; compares the bands of one plane
     Eigen::Matrix3d covariance_of_m = Eigen::Matrix3d::Zero();
     double tilt_sigma_rad = 0.0;
 
@@ -235,7 +235,7 @@ double roughness_m(const Census& census) {
     return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
 }
 
-/// Whether a point certainly lies more than `step_m` below a plane.
+/// Returns true if a point certainly lies more than `step_m` below a plane.
 bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m) {
     if (-plane.signed_distance_m(all.points[i]) <= step_m) return false;
     // First order in the inverse range, as `Sighting::off_m`: a far point that only noise puts
@@ -277,7 +277,7 @@ GroundReason judge(const GroundConfig& config,
                    const Census& census,
                    const Candidate& candidate) {
     constexpr double kMinContrast = 3.0;  // an even slab has at most 2
-    constexpr double kMostBelow = 0.03;   // of the inliers; wrong matches lie anywhere
+    constexpr double kMostBelow = 0.03;   // share of the inliers; wrong matches lie anywhere
     if (census.inliers.size() < kLeastPoints || candidate.image_share < config.min_image_share)
         return GroundReason::few_inliers;
     const double contrast = static_cast<double>(census.inliers.size()) /

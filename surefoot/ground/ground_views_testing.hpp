@@ -62,14 +62,14 @@ struct Errors {
     double white_px = 0.15;        ///< independent for each pixel
     double together_px = 0.15;     ///< correlated over about 40 px
     double calibration_px = 0.05;  ///< constant, and growing toward the image border
-    double matched_share = 0.8;    ///< of the pixels, in patches
-    double wrong_share = 0.01;     ///< of these, with a random disparity
+    double matched_share = 0.8;    ///< share of the pixels with a match, in patches
+    double wrong_share = 0.01;     ///< share of the matches with a random disparity
     double relief_m = 0.0;         ///< roughness of the floor, over about 0.15 m
 };
 
 struct View {
     FramePoints seen;
-    double floor_share = 0.0;  ///< of the image, matched or not
+    double floor_share = 0.0;  ///< share of the image that shows the floor, matched or not
     Eigen::Vector3d up =
         Eigen::Vector3d::UnitZ();  ///< in camera body axes: x along the optical axis
 };
@@ -135,7 +135,7 @@ inline View view_of(const std::vector<Block>& blocks,
     view.up = R_world_body.transpose() * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d from_m(0.0, 0.0, camera.height_m);
     const double sigma_px = std::hypot(errors.white_px, errors.together_px);
-    // Of a bilinear lattice the variance is 4 / 9 on the average.
+    // The average variance of a bilinear lattice is 4 / 9.
     const double together_px = errors.together_px * 1.5;
     // Share of a normal distribution below the threshold, by bisection.
     double low = -4.0;

@@ -17,7 +17,7 @@ namespace {
 constexpr int kStrips = 32;             ///< number of positions at which the points may be split
 constexpr double kRim = 0.02;           ///< share of the points outside the first and last position
 constexpr int kLeastPoints = 100;       ///< on either side
-constexpr double kLeastLength_m = 0.3;  ///< of the side that is returned
+constexpr double kLeastLength_m = 0.3;  ///< least length of the returned side
 /// Two planes count as two if they reduce the squared noise by this share. A step of four times a
 /// point's noise leaves a third; the distortion of a lens reduces less. ASSUMPTION.
 constexpr double kLeastGain = 0.25;

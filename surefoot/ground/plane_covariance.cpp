@@ -18,14 +18,14 @@ namespace {
 constexpr double kTile_rad = 0.2;  ///< 70 px of a ZED
 constexpr double kBump_m = 0.2;    ///< one bump of uneven ground; at short range it fills more ...
 constexpr double kLargestTile_rad = 0.6;  ///< ... but no more than this
-constexpr double kPriorShare = 0.6;       ///< of the stated sigma: error of a whole tile
+constexpr double kPriorShare = 0.6;       ///< share of the stated sigma: error of a whole tile
 constexpr double kPriorTiles = 4.0;       ///< weight of that assumption, in tiles
 constexpr double kUnknowns = 3.0;
 
 struct Member {
     std::array<std::int64_t, 3> tile;
     Eigen::Vector3d ray;
-    double sigma;     ///< of the inverse range
+    double sigma;     ///< sigma of the inverse range
     double residual;  ///< in sigmas
 };
 

@@ -13,13 +13,13 @@ constexpr int kRounds = 8;
 constexpr double kSettled_m = 2e-5;  // a metre away
 constexpr std::size_t kLeastPoints = 20;
 constexpr double kTukey = 4.685;            // sigmas: 95 % efficient for normal noise
-constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
-constexpr double kLeastScale = 0.1;         // of the stated sigmas
+constexpr double kSigmaPerMedian = 1.4826;  // sigma / median of a normal distribution
+constexpr double kLeastScale = 0.1;         // relative to the stated sigmas
 
 struct Sample {
     Eigen::Vector3d ray;
     double inverse_range;
-    double sigma;     ///< of it
+    double sigma;     ///< sigma of inverse_range
     double residual;  ///< in sigmas
 };
 

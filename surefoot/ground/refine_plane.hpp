@@ -15,10 +15,10 @@ namespace surefoot::ground {
 ///
 /// Along the unit ray r, a plane n . p + h = 0 appears at the inverse range w = -(n . r) / h. This
 /// is linear in m = -n / h, as in v-disparity (Labayrade et al. 2002). The noise of stereo in w
-/// does not depend on the distance, so this least squares problem has no bias by distance and gives
-/// far points their correct small weight. The three unknowns are solved repeatedly with Tukey's
-/// biweight until they converge. Points farther than `band_m` from the plane, or too noisy to
-/// decide this, are left out.
+/// does not depend on the distance. So this least squares problem has no bias by distance and gives
+/// far points their correct small weight. Tukey's biweight is used until the three unknowns
+/// converge. Points farther than `band_m` from the plane, or too noisy to decide this, are left
+/// out.
 ///
 /// Nothing if too few points are near or they do not determine a plane in front of the camera.
 [[nodiscard]] std::optional<geometry::Plane> refine_plane(
@@ -38,7 +38,7 @@ inline constexpr double kNoisiest = 0.67;
 struct Sighting {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]
-    double expected_inverse_range = 0.0;            ///< of the plane; 0 = the ray does not meet it
+    double expected_inverse_range = 0.0;            ///< value of the plane; 0 = no hit by the ray
     /// Distance from the plane and its one sigma, to first order in the inverse range. It is
     /// symmetric in the noise, so a limit on it causes no bias.
     double off_m = 0.0;

@@ -11,8 +11,8 @@
 /// Tables in text files: separators and named columns.
 namespace surefoot::io {
 
-/// Separator of the fields of a line: ';' if the line has one, else ',' if it has one, else ' '
-/// (white space, any number of characters).
+/// Separator of the fields of a line: ';' if the line has one, otherwise ',' if the line has one.
+/// Otherwise ' ', which means white space of any length.
 [[nodiscard]] char separator_of(std::string_view line) noexcept;
 
 /// Splits a line into fields without surrounding white space and quotes. Fields between two ';',
@@ -28,7 +28,7 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 
 /// One column of a header line.
 struct Column {
-    std::string name;  ///< as written, without quotes
+    std::string name;  ///< name as written, without quotes
     std::string key;   ///< in lower case, without its unit
     std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty without a unit
 };

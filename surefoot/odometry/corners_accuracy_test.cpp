@@ -25,7 +25,7 @@ constexpr std::int64_t kGapEnds_ns = 1'404'733'462'682'800'128;
 
 struct Followed {
     std::vector<MotionEstimate> motions;
-    std::vector<Eigen::Vector3d> positions;  ///< of the left camera, in odom
+    std::vector<Eigen::Vector3d> positions;  ///< positions of the left camera, in odom
 };
 
 /// Over the frames from `first_ns` to `last_ns`.

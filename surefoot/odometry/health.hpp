@@ -27,9 +27,9 @@ struct HealthEvidence {
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
-    bool imu_disagrees = false;        ///< for several frames in a row
+    bool imu_disagrees = false;        ///< the IMU disagrees for several frames in a row
     bool imu_gap = false;              ///< samples are missing, for more than a frame
-    bool machine_disagrees = false;    ///< for several frames in a row
+    bool machine_disagrees = false;    ///< the machine disagrees for several frames in a row
     bool beyond_machine = false;       ///< faster than the machine can move
 };
 
@@ -54,8 +54,8 @@ struct HealthVerdict {
                                       double before_s,
                                       double after_s);
 
-/// Motion estimate for a frame at `time_ns` that is repeated or torn (`frame_status`), after
-/// `last`: the pose of `last`, health LOST, and the covariance of the motion since then.
+/// Motion estimate for a frame at `time_ns` after `last` that is repeated or torn (`frame_status`).
+/// It has the pose of `last`, health LOST, and the covariance of the motion since then.
 [[nodiscard]] MotionEstimate unseen_motion(const OdometryConfig& config,
                                            const MotionEstimate& last,
                                            std::int64_t time_ns,

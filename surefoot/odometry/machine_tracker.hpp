@@ -30,10 +30,10 @@ class MachineTracker {
 
   private:
     Pose T_body_camera_;
-    Pose T_odom_camera_;                        ///< of the last `place`
-    std::optional<MachineMotion> since_place_;  ///< of base_link
+    Pose T_odom_camera_;                        ///< result of the last `place`
+    std::optional<MachineMotion> since_place_;  ///< motion of base_link since the last `place`
     bool placed_ = false;
-    int contradictions_ = 0;  ///< in a row
+    int contradictions_ = 0;  ///< number of consecutive contradictions
 };
 
 }  // namespace surefoot::odometry

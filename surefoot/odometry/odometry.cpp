@@ -130,14 +130,14 @@ struct Odometry::Impl {
     MachineTracker machine;
     PoseSolverConfig solver;
 
-    Pose T_odom_camera;                           ///< as in the last estimate
+    Pose T_odom_camera;                           ///< pose of the last estimate
     Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera, given the landmarks
     Matrix6 lost_body = Matrix6::Zero();          ///< of the motion since the last good frame
     Vector6 velocity = Vector6::Zero();           ///< per second, camera frame
-    std::int64_t time_ns = 0;                     ///< of the previous frame
-    std::int64_t good_time_ns = 0;                ///< of the last frame with a pose
+    std::int64_t time_ns = 0;                     ///< stamp of the previous frame
+    std::int64_t good_time_ns = 0;                ///< stamp of the last frame with a pose
     Pose T_odom_good;                             ///< camera pose at that time
-    double sharpness = 0.0;                       ///< of the image at that time
+    double sharpness = 0.0;                       ///< sharpness of the image at that time
     double usual_gap_s = 0.0;                     ///< between the two frames before the present one
     bool was_unsure = false;                      ///< the previous frame gave no pose
     bool without_depth = false;                   ///< the present frame measured too little depth

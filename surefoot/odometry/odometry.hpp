@@ -42,17 +42,17 @@ struct OdometryConfig {
 };
 
 /// Stereo (or RGB-D) visual odometry on the raw images of both cameras; only points are
-/// undistorted. Order of a frame: track the landmarks by Lucas-Kanade from the predicted motion,
-/// find the pose (P3P and RANSAC), align the landmarks' patches in both cameras, refine the pose.
-/// At keyframes add landmarks and adjust the last keyframes together (bundle adjustment).
+/// undistorted. For each frame: track the landmarks by Lucas-Kanade from the predicted motion, then
+/// find the pose (P3P and RANSAC). Then align the landmarks' patches in both cameras and refine the
+/// pose. At keyframes add landmarks and adjust the last keyframes together (bundle adjustment).
 ///
 /// Standing still causes no drift: a frame whose pose does not differ significantly from the pose
 /// at the stop keeps that pose. While lost, the pose coasts to a halt with growing covariance.
 /// Landmarks are kept for `bridge_s` to recover the pose; then new landmarks are seeded.
 ///
-/// If the rig states the readout time of its rolling shutter, the motion of the frame moves points
-/// to the frame's stamp: the IMU's motion, else the mean motion since the previous frame. The first
-/// frame is treated as a frame of a camera at rest.
+/// If the rig states the readout time of its rolling shutter, points are moved to the frame's
+/// stamp. The IMU gives the motion; without an IMU, the mean motion since the previous frame is
+/// used. The first frame is treated as a frame of a camera at rest.
 ///
 /// With an IMU, the samples of a frame predict the motion, and points and preintegrated readings
 /// together give the pose (`inertial_solver`). The first second of vision only serves to find
@@ -83,7 +83,7 @@ class Odometry {
     /// happened. A frame with repeated or torn images is LOST and skipped
     /// (camera::FrameIntegrityCheck).
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
-    /// The same for a frame that has already passed the frame integrity check.
+    /// Processes a frame that has already passed the frame integrity check.
     [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
     /// The same for points from another source, all of which are used with the noise `sigma_px`. A
     /// change between images and points costs one LOST frame, which seeds new landmarks.

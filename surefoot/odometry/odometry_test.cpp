@@ -222,7 +222,7 @@ TEST(Odometry, FollowsAHandHeldCurve) {
     EXPECT_LT(worst_m, 0.010);  // 0.3 m path, walls up to 3 m away, 352 px wide images
 }
 
-/// The same curve, started from rest within half a second.
+/// Follows the same curve, started from rest within half a second.
 Pose from_rest(double index) {
     const double t = 0.05 * std::max(index, 0.0);
     return truth_at(20.0 * (t - 0.2 * std::tanh(t / 0.2)));
@@ -439,7 +439,7 @@ TEST(Odometry, WhatNoMachineCanDoIsNotBelieved) {
             EXPECT_EQ(m.health, Health::lost);
             EXPECT_EQ(m.reason, HealthReason::beyond_machine);
             EXPECT_LT((before.inverse() * m.T_odom_body).translation_m.norm(), 0.03);
-        } else if (i > 0 && (i < 10 || i > 14)) {  // it can have moved that far by then
+        } else if (i > 0 && (i < 10 || i > 14)) {  // the camera can have moved that far by then
             EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
             EXPECT_LT((run.left_camera(m).translation_m - T.translation_m).norm(), 0.01) << i;
         }

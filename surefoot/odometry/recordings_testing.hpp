@@ -29,7 +29,7 @@ struct PointRecording {
     std::vector<std::optional<Pose>> T_world_camera;
 };
 
-/// SUREFOOT_DATA_DIR, else the folder beside the sources.
+/// SUREFOOT_DATA_DIR if it is set, otherwise the folder beside the sources.
 [[nodiscard]] std::string data_folder();
 
 // Each function returns nothing when its data are not there.

@@ -32,7 +32,7 @@ struct Settings {
 
 /// Sources of the settings. A later source wins: defaults, preset, file, overrides.
 struct SettingsRequest {
-    std::string preset;                  ///< of traversability, see traversability::kPresetNames
+    std::string preset;                  ///< traversability preset, one of kPresetNames
     std::string config_file;             ///< YAML, as `surefoot config` writes it
     std::vector<std::string> overrides;  ///< "elevation.resolution_m=0.02"
 };

@@ -18,7 +18,7 @@ struct AlignmentConfig {
     double pitch_deg = 0.0;          ///< base_link below the horizon if not measured
     double still_gyro_rad_s = 0.15;  ///< MEMS bias (EuRoC 0.08) plus noise. Above it,
                                      ///< the accelerometer does not measure gravity
-    double still_force_m_s2 = 0.3;   ///< as above: deviation of the mean force from 9.81
+    double still_force_m_s2 = 0.3;   ///< largest deviation of the mean force from 9.81 at rest
     GravityConfig gravity;           ///< uncertainty of the plane and the accelerometer
     /// The mount counts as moved (mount_monitor.hpp) if base_link leans by over `max_lean_deg` from
     /// its first attitude for `max_lean_still_s` at rest, or `max_lean_walking_s` in all without an
@@ -39,14 +39,14 @@ struct AlignmentConfig {
 /// Placement of odom. z points against gravity and x along the first heading. The origin lies on
 /// the ground under the first base_link if the ground was found, else at the first base_link.
 struct Alignment {
-    Pose T_odom_body;  ///< of the first frame
+    Pose T_odom_body;  ///< pose of the first frame
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     bool has_ground = false;
     double ground_height_m = 0.0;  ///< base_link above the ground; 0 without ground
     /// One sigma of the angle between odom's z axis and the vertical, about any horizontal axis.
     /// NaN if gravity is assumed.
     double tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
-    double ground_lean_rad = 0.0;  ///< of the ground in odom, if an IMU measures gravity
+    double ground_lean_rad = 0.0;  ///< tilt of the ground in odom, if an IMU measures gravity
     std::string reason;            ///< sources used and not used, with the causes
 };
 
@@ -54,8 +54,8 @@ struct Alignment {
 struct GroundView {
     bool searched = false;  ///< mounting unknown: searched over `ground.search_down_deg`
     double search_down_deg = 0.0;
-    double image_share = 0.0;  ///< of the best plane in any frame
-    ground::GroundReason reason = ground::GroundReason::few_points;  ///< of that plane
+    double image_share = 0.0;  ///< image share of the best plane in any frame
+    ground::GroundReason reason = ground::GroundReason::few_points;  ///< reason of that plane
 };
 
 /// Returns the up direction in base_link of a level machine with the configured pitch.

@@ -27,8 +27,8 @@ class CameraMonitor {
 
   private:
     CameraState state_ = CameraState::unknown;
-    int bad_ = 0;    ///< in a row
-    int fresh_ = 0;  ///< in a row
+    int bad_ = 0;    ///< number of consecutive bad frames
+    int fresh_ = 0;  ///< number of consecutive fresh frames
 };
 
 }  // namespace surefoot::pipeline

@@ -14,7 +14,7 @@ namespace surefoot::pipeline {
 /// A direction in base_link with its uncertainty.
 struct Direction {
     Eigen::Vector3d unit_body = Eigen::Vector3d::UnitZ();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the unit vector [rad^2], rank 2
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< for the unit vector [rad^2], rank 2
 
     /// One sigma about any axis across the direction: root of the mean of the two variances.
     [[nodiscard]] double sigma_rad() const;
@@ -43,9 +43,9 @@ struct GravityConfig {
 
 /// Returns the up direction that the accelerometer measures while the rig stands still. Empty
 /// without samples, if the rig turns faster than `still_gyro_rad_s`, or if the force differs from
-/// 9.81 m/s^2 by more than `still_force_m_s2`. The uncertainty covers a constant error, which grows
-/// if the length of the force shows a larger one, and the change of direction between the two
-/// halves of the samples.
+/// 9.81 m/s^2 by more than `still_force_m_s2`. The uncertainty covers two errors: a constant error,
+/// which grows if the force has a wrong length, and the change of direction between the two halves
+/// of the samples.
 [[nodiscard]] std::optional<Direction> up_from_imu(const GravityConfig& config,
                                                    double still_gyro_rad_s,
                                                    double still_force_m_s2,

@@ -40,7 +40,7 @@ double nees(const Direction& found, const Eigen::Vector3d& truth) {
 }
 
 struct Outcome {
-    double mean_deg = 0.0;  ///< of the error
+    double mean_deg = 0.0;  ///< mean of the error
     double nees_per_unknown = 0.0;
     double sigma_deg = 0.0;
 };

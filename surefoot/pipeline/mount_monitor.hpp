@@ -45,10 +45,10 @@ class MountMonitor {
     Eigen::Vector3d up_body_ = Eigen::Vector3d::UnitZ();      ///< odom's z axis at the start
     Eigen::Vector3d normal_body_ = Eigen::Vector3d::UnitZ();  ///< the ground's normal at the start
     std::optional<std::int64_t> last_ns_;
-    double upright_s_ = 0.0;  ///< until now
-    double leaning_s_ = 0.0;  ///< at rest, until now
-    double swaying_s_ = 0.0;  ///< beyond `max_sway_deg`, until now
-    double away_s_ = 0.0;     ///< leaning in all since the last upright phase
+    double upright_s_ = 0.0;  ///< upright time until now
+    double leaning_s_ = 0.0;  ///< leaning time at rest until now
+    double swaying_s_ = 0.0;  ///< time beyond `max_sway_deg`, until now
+    double away_s_ = 0.0;     ///< leaning time in all since the last upright phase
     double lean_rad_ = 0.0;
     bool leans_ = false;
     bool moved_ = false;

@@ -41,9 +41,10 @@ class StageTimer {
     std::int64_t start_ns_ = 0;
 };
 
-/// A camera that is alive and blind delivers frames all the same (hazards H3 and H20): a frame that
-/// measures less than so much of the map is no look at the ground. ASSUMPTION: a tenth of a sole; a
-/// wall half a metre ahead that fills the view measures several times as much.
+/// A camera that works but shows nothing useful still delivers frames (hazards H3 and
+/// H20). A frame that measures a smaller area of the map does not count as an observation.
+/// ASSUMPTION: a tenth of a sole; a wall half a metre ahead that fills the view measures several
+/// times as much.
 constexpr double kLeastMeasured_m2 = 0.01;
 
 bool shows_ground(const FusionCounts& counts, double resolution_m) {

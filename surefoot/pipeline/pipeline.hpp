@@ -36,19 +36,19 @@ namespace surefoot::pipeline {
 /// Clock for stage times [ns]; the library has no own clock. Null leaves the times at zero.
 using Clock = std::int64_t (*)();
 
-/// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
-/// bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep them.
-/// Frames with a repeated or torn image (camera::FrameIntegrityCheck) are reported, and nothing
-/// else: the odometry would take a frozen picture for a machine that stands still. The snapshot
-/// keeps the stamps of the last good frame, so that the gate sees it grow old, and says what is
-/// wrong with the camera when there are several in a row.
+/// Turns stereo frames into a rated map of the ground; one frame is one call of `process`. Frames
+/// that bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep
+/// them. Frames with a repeated or torn image (camera::FrameIntegrityCheck) are only reported: the
+/// odometry would mistake a frozen picture for a machine at rest. Then the snapshot keeps the
+/// stamps of the last good frame, so that the gate notices its age. After several bad frames in a
+/// row, it also names the problem of the camera.
 ///
-/// Frames too bright or too dark get odometry only; several in a row are said likewise. A frame
-/// whose depth measures nothing of the map leaves the stamp of the last one that did.
+/// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
+/// A frame whose depth updates no map cell leaves the stamp of the last frame that did.
 ///
-/// Order of calls: `make`, `align` with the first frames (start.hpp says which) and, if it found no
-/// ground, perhaps with later ones; then `process` for every frame in time order (those used for
-/// the alignment included). One thread at a time.
+/// Order of calls: `make`, then `align` with the first frames (start.hpp says which). If it finds
+/// no ground, `align` may be called with later frames. Then `process` for every frame in time
+/// order, the aligned frames included. One thread at a time.
 class Pipeline {
   public:
     /// Fails with the first problem of the rig or the configuration.
@@ -75,7 +75,7 @@ class Pipeline {
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
-    /// What was corrected; nothing where the calibration fits or nothing could be said.
+    /// The applied correction; empty if no significant error of the calibration was found.
     [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
         const noexcept {
         return self_calibration_;
@@ -124,7 +124,7 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
+    /// The frame's own motion, or the odometry's estimate; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);

@@ -50,14 +50,14 @@ class TiltDriftCorrection {
 
   private:
     LevelConfig config_;
-    Pose T_odom_body_;  ///< of the last frame
+    Pose T_odom_body_;  ///< pose of the last frame
     Health health_ = Health::lost;
-    std::int64_t time_ns_ = 0;                        ///< of the last frame; 0 = none
-    std::int64_t seen_ns_ = 0;                        ///< of the last sighting; 0 = none
+    std::int64_t time_ns_ = 0;                        ///< stamp of the last frame; 0 = none
+    std::int64_t seen_ns_ = 0;                        ///< stamp of the last sighting; 0 = none
     Eigen::Vector2d lean_ = Eigen::Vector2d::Zero();  ///< horizontal part of the mean normal
     double level_share_ = 0.0;                        ///< share of nearly level sightings
     double seen_s_ = 0.0;                             ///< averaged time so far
-    bool is_floor_level_ = true;                      ///< where the run began
+    bool is_floor_level_ = true;                      ///< true if the run began on level floor
 };
 
 }  // namespace surefoot::pipeline

@@ -18,10 +18,10 @@ constexpr double kRounding_deg_s = 1e-9;
 /// A machine that sways while it walks ahead, an odometry with growing tilt, and a plane measured
 /// with noise.
 struct World {
-    double drift_deg_s = 0.0;  ///< of the odometry, about x
+    double drift_deg_s = 0.0;  ///< drift of the odometry, about x
     double start_deg = 0.0;    ///< initial tilt of odom
-    double slope_deg = 0.0;    ///< of the ground, about x
-    double noise_deg = 0.2;    ///< of a plane
+    double slope_deg = 0.0;    ///< slope of the ground, about x
+    double noise_deg = 0.2;    ///< noise of a plane
     double lost_share = 0.0;   ///< share of lost frames
     double wall_share = 0.0;   ///< share of steep planes
 
@@ -32,7 +32,7 @@ struct World {
 };
 
 struct Walked {
-    double tilt_deg = 0.0;       ///< of odom at the end
+    double tilt_deg = 0.0;       ///< tilt of odom at the end
     double fastest_deg_s = 0.0;  ///< turn in addition to the odometry's own
     double displaced_m = 0.0;    ///< largest position error against the chained motions
 };

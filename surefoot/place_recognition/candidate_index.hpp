@@ -39,7 +39,7 @@ class CandidateIndex {
     static_assert(sizeof(Chunk) == 32);
 
     std::vector<std::int32_t> first_;   ///< chunk of each bucket, -1 = none; table by table
-    std::vector<std::uint16_t> sizes_;  ///< of the buckets, at most kCrowded
+    std::vector<std::uint16_t> sizes_;  ///< sizes of the buckets, at most kCrowded
     std::vector<Chunk> chunks_;
 };
 

@@ -20,7 +20,7 @@ struct DescribeConfig {
     /// Limit per cell. The cells of a floor (about two thirds of the image) cannot fill the list
     /// alone, so that walls, doors and objects always contribute.
     int cell_features = 6;
-    double max_outlier_probability = 0.3;  ///< of a feature's disparity
+    double max_outlier_probability = 0.3;  ///< outlier probability of a feature's disparity
     double min_disparity_px = 2.0;         ///< excludes points beyond about 20 m of a ZED
 };
 

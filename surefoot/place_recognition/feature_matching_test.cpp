@@ -49,7 +49,7 @@ TEST(FeatureMatching, WhatIsThereTwiceTellsNothingUnlessItIsTheSameCornerOnceMor
     EXPECT_EQ(matches.size(), 19U);
     EXPECT_TRUE(std::none_of(
         matches.begin(), matches.end(), [](const FeatureMatch& m) { return m.candidate == 7; }));
-    // The same in the other image.
+    // The same features in the other image.
     EXPECT_EQ(match_features({}, query, candidate).size(), 19U);
 }
 

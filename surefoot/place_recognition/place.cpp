@@ -8,7 +8,7 @@
 namespace surefoot::place_recognition {
 namespace {
 
-constexpr double kUnitTolerance = 1e-6;  ///< of a quaternion's norm
+constexpr double kUnitTolerance = 1e-6;  ///< tolerance of a quaternion's norm
 
 bool is_rigid(const Pose& T) {
     return T.all_finite() && std::abs(T.rotation.norm() - 1.0) < kUnitTolerance &&

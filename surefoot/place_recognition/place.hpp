@@ -68,8 +68,8 @@ struct Place {
 
 /// Limits of a place. They also bound the time of a query.
 inline constexpr int kMostKeyframes = 500;
-inline constexpr int kMostFeatures = 400;  ///< per view
+inline constexpr int kMostFeatures = 400;  ///< features per view
 inline constexpr double kMostImage_px = 16384.0;
-inline constexpr double kMostDistance_m = 1e4;  ///< of a keyframe from the origin
+inline constexpr double kMostDistance_m = 1e4;  ///< distance of a keyframe from the origin
 
 }  // namespace surefoot::place_recognition

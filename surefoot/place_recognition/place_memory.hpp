@@ -38,7 +38,7 @@ class PlaceMemory {
     void add(Keyframe keyframe);
     /// Sets a better pose of a keyframe, which the pose graph has computed.
     void move(int keyframe, const Pose& T_map_body);
-    /// Whether a stored keyframe lies within the given distance and angle of a pose.
+    /// Returns true if a stored keyframe lies within the given distance and angle of a pose.
     [[nodiscard]] bool covers(const Pose& T_map_body, double near_m, double near_deg) const;
     [[nodiscard]] const std::vector<Keyframe>& keyframes() const noexcept { return keyframes_; }
 

@@ -29,7 +29,7 @@ struct TrackerConfig {
     /// Error of a recognition beyond its covariance: landmarks of one view share their errors.
     double extra_sigma_m = 0.01;
     double extra_sigma_deg = 0.2;
-    double max_chi2 = 40.0;  ///< of a recognition against the whole graph, 6 degrees of freedom
+    double max_chi2 = 40.0;  ///< largest chi^2 of a recognition in the graph, 6 degrees of freedom
 };
 
 /// Result of the recognition of one keyframe.
@@ -37,7 +37,7 @@ struct Sighting {
     std::int64_t time_ns = 0;
     Refusal refusal = Refusal::none;
     int keyframe = -1;   ///< the best stored keyframe
-    bool saved = false;  ///< it belongs to the saved place, not to this run
+    bool saved = false;  ///< true for the saved place, false for this run
     Comparison comparison;
     std::optional<Pose> T_map_odom;  ///< set if the refusal is none
 };
@@ -111,7 +111,7 @@ class PlaceTracker {
     MotionEstimate last_;
     Pose T_odom_keyframe_;                  ///< the last keyframe
     Pose T_keyframe_body_;                  ///< motion since then
-    Matrix6 covariance_ = Matrix6::Zero();  ///< of it
+    Matrix6 covariance_ = Matrix6::Zero();  ///< covariance of T_keyframe_body_
     bool lost_ = false;                     ///< odometry was lost since the last keyframe
 };
 

@@ -15,7 +15,7 @@ enum class Refusal : std::uint8_t {
     poor_spread,   ///< the inliers cover too little of the image
     imprecise,     ///< the inliers do not determine the pose well enough
     tilted,        ///< gravity would have another direction
-    contradicted,  ///< parts of the image show something else than the stored place
+    contradicted,  ///< parts of the image show something other than the stored place
     floor_only,    ///< the inliers lie on one level surface; a printed floor may repeat
     ambiguous,     ///< another place explains the view nearly as well
     unconfirmed,   ///< accepted so far, but later views have not confirmed it yet

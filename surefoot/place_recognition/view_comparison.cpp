@@ -242,7 +242,7 @@ Comparison compare(const ComparisonConfig& config,
     out.inliers = solution.inliers;
     if (!solution.found || out.inliers < config.min_inliers) return out;
 
-    const Pose& T_candidate_query = solution.T_world_camera;  // of the cameras
+    const Pose& T_candidate_query = solution.T_world_camera;  // pose between the cameras
     out.T_candidate_query =
         candidate.rig.T_body_camera * T_candidate_query * query.rig.T_body_camera.inverse();
     out.covariance =

@@ -11,8 +11,8 @@ namespace surefoot::place_recognition {
 struct ComparisonConfig {
     MatchConfig matching;
     int min_matches = 15;
-    int min_inliers = 25;   ///< after the search at the known pose
-    double sigma_px = 1.0;  ///< of a matched corner; corners of higher levels are coarse
+    int min_inliers = 25;   ///< inliers after the search at the known pose
+    double sigma_px = 1.0;  ///< sigma of a matched corner; corners of higher levels are coarse
     int ransac_rounds = 300;
     double ransac_threshold_px = 4.0;
     // Check at the known pose: every feature is searched and agrees or contradicts.
@@ -24,32 +24,32 @@ struct ComparisonConfig {
     int part_rows = 3;
     int min_asked = 8;               ///< checked features that a part needs to count
     double min_agreeing = 0.25;      ///< share of a part's features; below it the part contradicts
-    double min_agreeing_all = 0.35;  ///< the same for all checked features
+    double min_agreeing_all = 0.35;  ///< smallest agreeing share of all checked features
     double max_parts_against = 0.2;  ///< largest share of the parts that may contradict
     // Features off the level surface on which most features agree (the floor) must agree too.
     int min_asked_off_floor = 15;          ///< fewer do not suffice
     double min_agreeing_off_floor = 0.15;  ///< least share that agrees; near 0 if the floor moved
     double level_m = 0.01;                 ///< unevenness of a floor, in addition to disparity_px
     int min_parts = 5;                     ///< least number of parts with an inlier
-    double max_sigma_m = 0.05;             ///< of the position
+    double max_sigma_m = 0.05;             ///< sigma of the position
     double max_sigma_deg = 1.5;
-    double max_tilt_deg = 3.0;  ///< between the up directions of the two views
+    double max_tilt_deg = 3.0;  ///< angle between the up directions of the two views
 };
 
 /// Result of comparing a keyframe (candidate) with a view (query).
 struct Comparison {
     Refusal refusal = Refusal::few_matches;
     Pose T_candidate_query;                ///< base_link of the query in base_link of the candidate
-    Matrix6 covariance = Matrix6::Zero();  ///< of T_candidate_query; valid if the refusal is none
+    Matrix6 covariance = Matrix6::Zero();  ///< for T_candidate_query; valid if refusal is none
     int matches = 0;
     int inliers = 0;
     double tilt_deg = 0.0;
     int asked = 0;               ///< features of both views that should be visible in the other
-    int agreeing = 0;            ///< of these, those that are found
+    int agreeing = 0;            ///< number of these features that are found
     int parts = 0;               ///< parts of the image with enough checked features
-    int parts_against = 0;       ///< of these, those with too few agreeing features
+    int parts_against = 0;       ///< number of these parts with too few agreeing features
     int asked_off_floor = 0;     ///< checked features that do not lie on the floor
-    int agreeing_off_floor = 0;  ///< of these, those that agree
+    int agreeing_off_floor = 0;  ///< number of these features that agree
     [[nodiscard]] double agreeing_share() const noexcept {
         return asked > 0 ? static_cast<double>(agreeing) / asked : 0.0;
     }

@@ -72,7 +72,7 @@ TEST(ViewComparison, RefusesALookAlikeOfWhichOnlyEveryThirdCornerIsTheSame) {
     EXPECT_LT(c.agreeing_share(), 0.4);
 }
 
-constexpr double kFloor_m = -0.95;  ///< its height in the map
+constexpr double kFloor_m = -0.95;  ///< height of the floor in the map
 const Pose kLookingDown{exp_so3({0.0, 0.5, 0.0}), {0.0, 0.0, 0.0}};
 
 /// A floor before the machine, and `things` corners of objects that stand on it.
@@ -90,7 +90,7 @@ std::vector<Corner> room(int things, std::uint64_t seed) {
     return corners;
 }
 
-/// The same with all objects moved on the floor.
+/// Returns the corners with all objects moved on the floor.
 std::vector<Corner> moved(std::vector<Corner> corners, const Eigen::Vector3d& way_m) {
     for (Corner& corner : corners)
         if (corner.p_map_m.z() > kFloor_m) corner.p_map_m += way_m;

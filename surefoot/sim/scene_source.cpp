@@ -85,7 +85,7 @@ camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) 
     return single;
 }
 
-/// The renderer needs pairs: it gets a right camera that nobody uses.
+/// The renderer needs pairs: a depth camera gets an unused right camera.
 camera::StereoRig as_pair(const camera::StereoRig& single) {
     camera::StereoRig pair = single;
     pair.right = single.left;

@@ -43,7 +43,7 @@ struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";         ///< ignored if `rig` is set
     std::optional<camera::StereoRig> rig;       ///< any stereo rig; keeps its T_body_left
-    std::uint64_t seed = 1;                     ///< for textures, noise, offsets of the path
+    std::uint64_t seed = 1;                     ///< seed of textures, noise and path offsets
     CarriedBy motion_model = CarriedBy::scene;  ///< error if it cannot follow the scene's path
     /// A REX under live command: it stands at the start of the scene's path and takes its steps
     /// from `SceneSource::commanded`. The run ends only after `frames`.
@@ -56,7 +56,7 @@ struct SceneOptions {
     double noise = 1.0;                  ///< factor on every noise amplitude of images and depths
     CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
     double contrast = 1.0;               ///< factor on the contrast of every material
-    CalibrationError calibration_error;  ///< of the images; `rig()` stays nominal
+    CalibrationError calibration_error;  ///< error of the images; `rig()` stays nominal
     ImageFaultConfig faults;
     KnockConfig knock;  ///< the true poses are the machine's, before and after the knock
     ImuNoiseConfig imu_noise = imu_noise_of(imu);
@@ -142,14 +142,14 @@ class SceneSource final : public camera::FrameSource {
 
     camera::SourceInfo info_;
     SceneTruth truth_;
-    std::shared_ptr<const Motion> motion_;  ///< of the camera
-    std::shared_ptr<const Motion> walker_;  ///< of the machine, which a knock does not move
+    std::shared_ptr<const Motion> motion_;  ///< motion of the camera
+    std::shared_ptr<const Motion> walker_;  ///< motion of the machine, which a knock does not move
     std::shared_ptr<CommandedMotion> commanded_;
     double rate_hz_ = 0.0;
     std::size_t frame_limit_ = 0;
-    std::optional<Renderer> renderer_;         ///< both image sensors
-    std::optional<DepthCamera> depth_camera_;  ///< that sensor only
-    std::optional<AnalyticStereo> analytic_;   ///< that sensor only
+    std::optional<Renderer> renderer_;         ///< used for the sensors stereo and depth_camera
+    std::optional<DepthCamera> depth_camera_;  ///< used for the depth camera only
+    std::optional<AnalyticStereo> analytic_;   ///< used for the analytic stereo sensor only
     std::optional<ModelledOdometry> odometry_;
     std::optional<ModelledOdometry> machine_;
     std::optional<ExposureControl> control_;
@@ -159,12 +159,12 @@ class SceneSource final : public camera::FrameSource {
     Executor* executor_ = nullptr;
     CleanPair clean_;
     Shot shot_;
-    RenderedPair pair_;     ///< of the last exposure, without faults
-    GreyImage older_left_;  ///< of the exposure before
+    RenderedPair pair_;     ///< images of the last exposure, without faults
+    GreyImage older_left_;  ///< left image of the exposure before
     GreyImage older_right_;
-    GreyImage shown_left_;  ///< as delivered
+    GreyImage shown_left_;  ///< left image as delivered
     GreyImage shown_right_;
-    DepthFrame measured_;  ///< of the last exposure
+    DepthFrame measured_;  ///< depth frame of the last exposure
     Image<float> older_depth_m_;
     Image<float> shown_depth_m_;
     AnalyticStereo::View view_;

@@ -296,7 +296,7 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
 TEST(SceneSourceTest, TheMachineMaySayHowItMoves) {
     SceneOptions options = small("floor");
     options.frames = 4;
-    options.rate_hz = 0.5;  // it moves
+    options.rate_hz = 0.5;  // the camera moves between frames
     options.machine_motion = true;
     auto source = open_scene(options).value();
     const auto& poses = source->truth().trajectory;
@@ -316,7 +316,7 @@ TEST(SceneSourceTest, TheMachineMaySayHowItMoves) {
 TEST(SceneSourceTest, ImagesMayComeWithTheirTrueMotion) {
     SceneOptions options = small("floor");
     options.frames = 3;
-    options.rate_hz = 0.5;  // it moves
+    options.rate_hz = 0.5;  // the camera moves between frames
     options.known_motion = true;
     options.drift = {0.0, 0.0};
     auto source = open_scene(options).value();

@@ -37,10 +37,10 @@ void laplacian(const Image<float>& grey, Image<float>& out) {
 }
 
 struct Strength {
-    float sum = 0.0F;  ///< of absolute values
+    float sum = 0.0F;  ///< sum of absolute values
     float known = 0.0F;
 
-    /// One standard deviation; NaN where too few cells are known.
+    /// One standard deviation; NaN if too few cells are known.
     [[nodiscard]] float sigma() const {
         return known >= kLeastInTile && sum > 0.0F ? kSigmaOfMean * sum / known : kNanF;
     }

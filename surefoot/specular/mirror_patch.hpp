@@ -23,7 +23,7 @@ struct PatchDetail {
     int line_cells = 0;
     std::vector<std::int16_t> values;  ///< 0 = unknown
     std::vector<std::int16_t> known;   ///< number of known cells in each block of each line
-    double mean_square = 0.0;          ///< of the known values
+    double mean_square = 0.0;          ///< mean square of the known values
 
     void resize(int new_lines, int new_line_cells);
     [[nodiscard]] const std::int16_t* line(int i) const {
@@ -34,8 +34,8 @@ struct PatchDetail {
     }
 };
 
-/// A rectangle of the floor picture, rotated so that its lines are counted along the normal of the
-/// mirror lines of the search. No allocation after construction.
+/// A rectangle of the floor picture, rotated so that its rows are parallel to the mirror lines of
+/// the search. Never allocates after construction.
 class MirrorPatch {
   public:
     static constexpr int kLines = 256;
@@ -50,7 +50,7 @@ class MirrorPatch {
                 const Eigen::Vector2d& middle_m,
                 double angle_rad);
 
-    [[nodiscard]] const PatchDetail& fine() const noexcept { return fine_; }  ///< as the picture
+    [[nodiscard]] const PatchDetail& fine() const noexcept { return fine_; }      ///< full detail
     [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half of it
 
   private:

@@ -11,9 +11,9 @@ namespace surefoot::specular {
 
 /// The most likely mirror line of a patch.
 struct PatchLine {
-    double score = 0.0;        ///< in standard deviations of the noise of other lines
+    double score = 0.0;        ///< score in standard deviations of the noise of other lines
     double unique = 0.0;       ///< score over the second best score of the patch
-    double correlation = 0.0;  ///< between the cells before and behind the line
+    double correlation = 0.0;  ///< correlation of the cells before and behind the line
     double at = 0.0;           ///< in fine cells across the lines, at the middle of the patch
     double lean_rad = 0.0;     ///< rotation of its normal from that of the patch, counter-clockwise
     int first_cell = 0;        ///< the visible part of the line, in fine cells
@@ -41,12 +41,12 @@ class MirrorScan {
     [[nodiscard]] PatchLine rated(PatchLine line, int first, int last, double raw);
 
     std::vector<int> candidates_;     ///< lines of the fine detail
-    std::vector<PairSums> coarse_;    ///< of each line of the coarse detail
-    std::vector<double> stands_out_;  ///< the same: largest excess of one of its runs
+    std::vector<PairSums> coarse_;    ///< one per line of the coarse detail
+    std::vector<double> stands_out_;  ///< one per line of the coarse detail: excess of its best run
     std::vector<double> scores_;
-    std::vector<PairSums> beside_;  ///< of the lines beside a candidate
+    std::vector<PairSums> beside_;  ///< sums of the lines beside a candidate
     std::vector<double> noise_;
-    double mean_square_ = 0.0;  ///< of the fine detail
+    double mean_square_ = 0.0;  ///< mean square of the fine detail
 };
 
 }  // namespace surefoot::specular

@@ -24,11 +24,11 @@ namespace surefoot::specular {
 struct SuspectedPane {
     Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
     double offset_m = 0.0;
-    double from_m = 0.0;  ///< its observed part, along the left of the normal
+    double from_m = 0.0;  ///< start of the observed part, along the left of the normal
     double to_m = 0.0;
-    double score = 0.0;        ///< of the last observation; see PatchLine
-    double correlation = 0.0;  ///< the same; near 1 for a mirror, near 0.1 for glass
-    int low_looks = 0;         ///< in a row, below the score that keeps it
+    double score = 0.0;        ///< score of the last observation; see PatchLine
+    double correlation = 0.0;  ///< last observation: near 1 for a mirror, near 0.1 for glass
+    int low_looks = 0;         ///< consecutive observations below the score that keeps the pane
 
     [[nodiscard]] Eigen::Vector2d left() const { return {-normal.y(), normal.x()}; }
 };
@@ -42,7 +42,7 @@ struct SuspectedPane {
 /// Not thread-safe. Frames must come in time order. Allocates only to add a pane.
 class MirrorWatch {
   public:
-    static constexpr int kDirections = 180;  ///< one degree apart
+    static constexpr int kDirections = 180;  ///< directions one degree apart
     static constexpr std::size_t kMostPanes = 8;
 
     explicit MirrorWatch(const SpecularConfig& config);
@@ -79,7 +79,7 @@ class MirrorWatch {
     std::vector<SuspectedPane> panes_;
     Eigen::Vector2d body_m_ = Eigen::Vector2d::Zero();
     std::vector<Eigen::Vector2d> way_m_;                  ///< path of the body, newest last
-    Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< of the patches of this frame
+    Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< middle of the patches of this frame
     double heading_rad_ = 0.0;
     std::optional<double> floor_z_m_;  ///< mean of the last frames
     double picture_z_m_ = 0.0;

@@ -12,12 +12,12 @@ namespace surefoot::specular {
 /// noise, which is measured on other lines of the same floor.
 struct SpecularConfig {
     bool enabled = true;
-    double cell_m = 0.01;              ///< of the floor picture
+    double cell_m = 0.01;              ///< cell size of the floor picture
     double range_m = 3.2;              ///< floor farther from the camera is too coarse
-    double mirror_correlation = 0.35;  ///< between floor and image; at least this: mirror
+    double mirror_correlation = 0.35;  ///< least correlation of floor and image for a mirror
     double mirror_score = 7.0;  ///< score from which a line with such a correlation is suspected
-    double glass_score = 11.0;  ///< the same for any other line: glass reflects 5 to 15 %
-    double keep_score = 3.5;    ///< below it for `forget_looks` observations: forgotten
+    double glass_score = 11.0;  ///< needed score of any other line: glass reflects 5 to 15 %
+    double keep_score = 3.5;    ///< panes below it for `forget_looks` observations are forgotten
     int forget_looks = 4;
     /// Least ratio of the best line's score to that of any other line of the same direction. Tiled
     /// floors are symmetric about many lines; a mirror makes one line.

@@ -71,7 +71,7 @@ class FeatureFinder {
     std::vector<Edge> guesses_;  ///< lines whose lower ground the map does not show
     std::vector<Edge> from_above_;
     std::vector<Edge> seen_;
-    std::vector<std::vector<Edge>> chains_;  ///< of steps that were placed together
+    std::vector<std::vector<Edge>> chains_;  ///< edges of steps that were placed together
     std::vector<bool> in_flight_;
 };
 

@@ -15,8 +15,8 @@ struct Tracked {
     int observations = 1;           ///< number of observations that found the feature
     std::int64_t last_seen_ns = 0;  ///< stamp of the last observation that found it
     bool seen_now = true;           ///< the newest observation found it
-    /// The final map of a run shows the feature by itself, without images (`surefoot stairs` on the
-    /// folder of the run). Empty = not checked.
+    /// True if the final map of a run shows the feature without the images (`surefoot stairs` on
+    /// the folder of the run). Empty = not checked.
     std::optional<bool> in_final_map = std::nullopt;
 
     /// A single observation may be a wrong match.

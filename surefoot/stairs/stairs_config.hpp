@@ -34,7 +34,7 @@ struct StairsConfig {
     double max_going_m = 0.55;
     double min_width_m = 0.45;     ///< least width of a flight
     double max_turn_deg = 40.0;    ///< between neighbouring edges; a flight above 10 is a spiral
-    double max_facing_deg = 60.0;  ///< of a single step: angle between its normal and the path
+    double max_facing_deg = 60.0;  ///< angle between the normal of a single step and the path
     double walk_step_m = 0.03;     ///< height differences up to this are walked over without a step
     double kerb_m = 0.20;          ///< highest kerb
     double drop_m = 0.05;          ///< a fall by more than this is a drop (the limit of the gate)

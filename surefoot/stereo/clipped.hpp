@@ -29,7 +29,7 @@ class ClippedFilter {
 
   private:
     Image<std::uint8_t> ends_;           ///< bit 0: white, bit 1: black
-    std::vector<std::uint8_t> row_has_;  ///< of each row: the bits that any of its pixels has
+    std::vector<std::uint8_t> row_has_;  ///< one per row: the bits that any pixel of the row has
     Image<std::uint8_t> columns_;        ///< bits that all pixels of a window's column have
 };
 

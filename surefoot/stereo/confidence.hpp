@@ -12,8 +12,8 @@ struct MatchEvidence {
     float residual_grey = 0.0F;     ///< see RefinedRow
     float gradient_grey_px = 0.0F;  ///< see RefinedRow
     float shift_px = 0.0F;          ///< see RefinedRow
-    int jump_distance_px = 255;     ///< to the nearest disparity jump
-    float unknown_share = 0.0F;     ///< of the 9x9 neighbours, [0, 1]
+    int jump_distance_px = 255;     ///< distance to the nearest disparity jump
+    float unknown_share = 0.0F;     ///< share of the 9x9 neighbours, [0, 1]
 };
 
 /// One sigma [px] of the disparity of a correct match. The squares of five terms add up: errors

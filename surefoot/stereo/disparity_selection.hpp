@@ -12,9 +12,9 @@ struct SelectionConfig {
     int left_right_px = 1;       ///< largest difference to the best claim on the right pixel
 };
 
-/// Turns winners into disparities [px]. A pixel is NaN when its match is not unique, when another
-/// left pixel matches the same right pixel at lower cost, outside the right image, and at disparity
-/// 0 (infinitely far). The vertex of a parabola through three costs gives the fraction of a pixel.
+/// Turns winners into disparities [px]. NaN if the match is not unique, is outside the right image
+/// or has disparity 0 (infinitely far), or if another left pixel has the same match at lower cost.
+/// A parabola through three costs gives the fraction of a pixel.
 void select_disparities(const SelectionConfig& config,
                         const Winners& winners,
                         Executor& executor,

@@ -16,7 +16,7 @@
 namespace surefoot::stereo {
 namespace {
 
-/// One row in which every pixel clearly won at disparity 2.
+/// A row in which every pixel clearly wins at disparity 2.
 Winners clear_row(int width) {
     Winners winners;
     winners.resize(width, 1);
@@ -41,7 +41,7 @@ TEST(Refine, VertexOfTheParabola) {
     winners.cost_above.at(5, 0) = 10;   // equal to the next cost: half way
     winners.cost_below.at(6, 0) = 255;  // end of the range
     const Image<float> d = selected(winners);
-    EXPECT_TRUE(std::isnan(d.at(0, 0)));  // its right pixel is outside
+    EXPECT_TRUE(std::isnan(d.at(0, 0)));  // the right pixel is outside the image
     EXPECT_TRUE(std::isnan(d.at(1, 0)));
     EXPECT_FLOAT_EQ(d.at(3, 0), 2.0F);
     EXPECT_FLOAT_EQ(d.at(4, 0), 2.0F - 1.0F / 6.0F);

@@ -26,7 +26,7 @@ class Divisor {
         return high * upper_ + (high * lower_ + (x - high) * inverse_);
     }
 
-    // For callers that divide many numbers side by side in a register.
+    // These members are for callers that divide many numbers side by side in a register.
     static constexpr std::uint32_t kUpperHalf = 0xfffff000U;  ///< bits of a float
     [[nodiscard]] constexpr float inverse() const noexcept { return inverse_; }
     [[nodiscard]] constexpr float upper() const noexcept { return upper_; }

@@ -55,8 +55,8 @@ struct Score {
     double density = 0.0;
     double bad_1 = 0.0;
     double bad_2 = 0.0;
-    double rms_px = 0.0;   ///< of errors below 1 px
-    double mean_px = 0.0;  ///< of errors below 1 px
+    double rms_px = 0.0;   ///< rms of errors below 1 px
+    double mean_px = 0.0;  ///< mean of errors below 1 px
     double within_3_sigma = 0.0;
 };
 
@@ -356,7 +356,7 @@ struct RealPair {
     double truth_scale;
     int disparities;
     double max_bad_2;     ///< measured value plus 10 %
-    double max_bad_2_bm;  ///< the same for block matching, which is worse than SGBM
+    double max_bad_2_bm;  ///< limit for block matching, which is worse than SGBM
 };
 
 GreyImage load(const std::string& file) {

@@ -13,7 +13,7 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kHalf_px = kShiftHalf_px;  ///< of the window around a corner
+constexpr int kHalf_px = kShiftHalf_px;  ///< half size of the window around a corner
 constexpr int kMaxCorners = 300;
 constexpr double kCornerQuality = 0.01;  ///< relative to the best corner
 constexpr double kMinCorrelation = 0.9;

@@ -12,10 +12,10 @@ namespace surefoot::stereo {
 /// the right image, a few rows up and down and in both directions along the row.
 struct PairCheck {
     int corners = 0;             ///< found in the left image
-    int matched = 0;             ///< of these, found again with a clear match
+    int matched = 0;             ///< corners that are found again with a clear match
     double row_offset_px = 0.0;  ///< median row in the right image minus row in the left one
     double row_error_px = 0.0;   ///< median of its absolute value
-    int backward = 0;            ///< of the matched: more than 1 px to the right in the right image
+    int backward = 0;            ///< matches more than 1 px to the right in the right image
 
     /// The medians are meaningful from this many matched corners on.
     static constexpr int kEnough = 20;
@@ -33,14 +33,14 @@ struct PairSearch {
 
 /// A corner of the left image with a clear match in the right image.
 struct CornerShift {
-    double u_px = 0.0;  ///< in the left image
+    double u_px = 0.0;  ///< column in the left image
     double v_px = 0.0;
     double columns_px = 0.0;  ///< right minus left
     double rows_px = 0.0;
 };
 
 struct Corners {
-    int found = 0;  ///< in the left image
+    int found = 0;  ///< number of corners in the left image
     std::vector<CornerShift> matched;
 };
 

@@ -29,7 +29,7 @@ struct RefineConfig {
 /// Filter that runs on the found disparities before any other step.
 enum class Filter : std::uint8_t {
     none,
-    median,  ///< of 3 x 3 pixels
+    median,  ///< median of 3 x 3 pixels
 };
 
 /// By-products of the refinement for one row, besides the disparities; NaN = unknown.

@@ -38,7 +38,7 @@ inline constexpr std::int32_t kUnused = std::numeric_limits<std::int32_t>::min()
 
 struct WarpRow {
     const std::int16_t* left = nullptr;   ///< smoothed, 1/16 grey level
-    const std::int16_t* right = nullptr;  ///< the same; one more pixel stands before the row
+    const std::int16_t* right = nullptr;  ///< smoothed, with one more pixel before the row
     const float* disparity_px = nullptr;
     const std::uint8_t* jump_distance_px = nullptr;
     int jump_margin_px = 0;
@@ -76,7 +76,7 @@ struct SolveRow {
     float min_noise_grey = 0.0F;
     float prior_sigma_px = 0.0F;
     float max_step_px = 0.0F;
-    float* disparity_px = nullptr;  ///< NaN = unknown, stays unknown; else moved by the shift
+    float* disparity_px = nullptr;  ///< moved by the shift; NaN = unknown, stays unknown
     float* shift_px = nullptr;
     float* residual_grey = nullptr;
     float* gradient_grey_px = nullptr;

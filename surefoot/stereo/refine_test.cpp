@@ -147,7 +147,7 @@ TEST(SmoothDown, TakesWhatTheSearchIsLateFor) {
 
 TEST(SmoothDown, DoesNotMoveEdgesAndKeepsTheUnknownUnknown) {
     std::vector<float> step(14, 5.0F);
-    std::fill(step.begin() + 7, step.end(), 6.0F);  // the same surface for the mean, not ahead
+    std::fill(step.begin() + 7, step.end(), 6.0F);  // same surface for the mean, but not ahead
     std::vector<float> out = smoothed_down(step, 2);
     EXPECT_FLOAT_EQ(out[4], 5.0F + 4.0F / 9.0F) << "rows 2 to 10";
     EXPECT_FLOAT_EQ(out[5], 5.0F + 4.0F / 9.0F) << "rows 3 to 11 as seen from row 5";

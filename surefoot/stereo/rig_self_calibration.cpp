@@ -12,7 +12,7 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kRounds = 8;      ///< of re-weighting; it converges in four or five
+constexpr int kRounds = 8;      ///< rounds of re-weighting; four or five are enough
 constexpr double kHuber = 1.5;  ///< sigmas
 /// Corners within a few degrees of each other share lens errors: this many count as one.
 constexpr double kCornersPerIndependent = 4.0;

@@ -14,7 +14,7 @@ namespace surefoot::stereo {
 
 struct SelfCalibrationConfig {
     bool enabled = true;
-    int min_corners = 150;  ///< below this no estimate is made
+    int min_corners = 150;  ///< fewer corners give no estimate
     /// Larger corrections are rejected: the rig then needs a new calibration.
     double max_turn_deg = 0.6;
     double max_focal_share = 0.01;
@@ -25,10 +25,10 @@ struct SelfCalibrationConfig {
 /// Correction of the right camera, estimated from the row errors of a rectified pair.
 struct RigSelfCalibration {
     camera::RightCameraCorrection camera;             ///< yaw stays 0
-    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of roll, pitch [rad] and focal share
+    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< roll, pitch [rad] and focal share
     int corners = 0;
     double row_error_px = 0.0;       ///< median of the absolute value, before the correction
-    double row_error_left_px = 0.0;  ///< the same after the correction
+    double row_error_left_px = 0.0;  ///< median after the correction
     double significance = 0.0;       ///< chi square of the three parameters together
 
     /// A chi square with 3 degrees of freedom exceeds this by chance once in 1000 cases.

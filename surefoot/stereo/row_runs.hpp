@@ -49,7 +49,7 @@ class RowRuns {
   private:
     // Bit u % 64 of word u / 64 for column u.
     std::vector<std::uint64_t> known_;
-    std::vector<std::uint64_t> linked_;  ///< this pixel and the next are known and within the limit
+    std::vector<std::uint64_t> linked_;  ///< pixel pairs that are known and within the limit
 };
 
 }  // namespace surefoot::stereo

@@ -30,7 +30,7 @@ struct SceneConfig {
     double pitch_rad = 0.5585;  ///< 32 deg down
     double roll_rad = 0.0;
     double noise_grey = 2.0;
-    double contrast_grey = 9.0;  ///< of each octave of the texture
+    double contrast_grey = 9.0;  ///< contrast of each octave of the texture
     double right_gain = 1.0;     ///< exposure of the right camera
     std::uint64_t seed = 1;
     std::vector<Box> boxes;

@@ -131,7 +131,7 @@ struct Strip {
     AlignedBytes grey;
     PathStates from_left;  ///< state at the start of each block of 64 columns
     PathStates from_right;
-    AlignedBytes sums;  ///< of one block, then its matching costs; a free group before each
+    AlignedBytes sums;  ///< sums of one block, then its matching costs; a free group before each
 };
 
 /// Number of finished blocks of 64 columns of each strip. A thread that has finished a strip begins
@@ -207,7 +207,7 @@ struct SemiGlobalSearch::Workspace {
     Strip strips[kMaxStrips];  ///< one for each thread that works at the same time
     std::ptrdiff_t sums_size = 0;
     Progress progress;
-    PathStates from_above;  ///< per 64 columns
+    PathStates from_above;  ///< one state per 64 columns
 
     [[nodiscard]] int column_blocks() const { return padded(width) / kLanes; }
 

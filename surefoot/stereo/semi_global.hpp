@@ -31,13 +31,13 @@ inline constexpr int kCensusBits = 30;
 /// 0.01 px (docs/lab/matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
 inline constexpr int kSearchLag_rows = 2;
 
-/// Result of the search for every pixel of the left image: the disparity of least cost, the costs
-/// there and beside it, and the least cost at least 2 disparities away (255 = no such disparity).
+/// Result of the search for every pixel of the left image: the disparity of least cost, and the
+/// costs there and beside it. Also the least cost at least 2 disparities away (255 = none).
 struct Winners {
     Image<std::uint8_t> disparity;
     Image<std::uint8_t> cost;
-    Image<std::uint8_t> cost_below;  ///< at disparity - 1
-    Image<std::uint8_t> cost_above;  ///< at disparity + 1
+    Image<std::uint8_t> cost_below;  ///< cost at disparity - 1
+    Image<std::uint8_t> cost_above;  ///< cost at disparity + 1
     Image<std::uint8_t> second_cost;
 
     void resize(int width, int height);

@@ -47,7 +47,7 @@ void transpose(const std::uint8_t* in,
 /// A block of up to 64 columns of 64 rows; the rows lie side by side in the lanes.
 struct RowBlock {
     const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
-    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more columns precede column 0
+    const std::uint8_t* right = nullptr;  ///< `disparities` more columns precede column 0
     const std::uint8_t* grey = nullptr;   ///< [column] kLanes
     /// Of the previous column on the path; at the image edge, of the path's first column.
     const std::uint8_t* grey_before = nullptr;
@@ -67,9 +67,9 @@ void pass_right(const RowBlock& block);
 /// The same, and writes the path's costs to `sums`. Also stores the matching costs in `match` for
 /// the next two paths, except on processors that count bits quickly.
 void follow_right(const RowBlock& block);
-/// Runs the path from the right, adds its costs to `sums` and transposes them: column u of row v
-/// moves to the place of row u of column v, one group of disparities earlier. `match` moves in the
-/// same way. The first group needs room before `sums`.
+/// Runs the path from the right, adds its costs to `sums` and transposes them. Column u of row v
+/// moves to row u of column v, one group of disparities earlier. `match` moves in the same way. The
+/// first group needs room before `sums`.
 void follow_left(const RowBlock& block);
 
 /// Output of the winners of 64 columns: kLanes values each, at any alignment.

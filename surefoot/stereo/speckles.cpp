@@ -121,7 +121,7 @@ void SpeckleFilter::remove_islands(int first_row,
                                    int min_size,
                                    Image<float>& disparity_px) {
     const Band& band = band_of(first_row);
-    int parent = -1;  // of the previous run: usually also that of the next one
+    int parent = -1;  // parent of the previous run: usually also that of the next run
     bool small = false;
     for (int v = first_row; v < last_row; ++v) {
         float* const d = disparity_px.row(v);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kHalf = kShiftHalf_px;
 constexpr int kSide = 2 * kHalf + 1;
-constexpr int kTaps = 6;    ///< of the interpolation, from 2 before to 3 behind
-constexpr int kBefore = 2;  ///< of them
+constexpr int kTaps = 6;    ///< taps of the interpolation, from 2 before to 3 behind
+constexpr int kBefore = 2;  ///< taps before the position
 constexpr int kMaxRounds = 20;
 constexpr double kRefined_px = 0.003;
 constexpr double kFarthest_px = 1.0;  ///< from the whole-pixel match

@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct Share {
     const float* rating;
     double weight;
-    bool dominates;  ///< its exact 0 forces 0
+    bool dominates;  ///< an exact 0 of this rating forces the result to 0
 };
 
 template <class D>

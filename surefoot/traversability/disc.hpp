@@ -56,7 +56,7 @@ class PaddedLayer {
 
 /// A cell of a disc, relative to its centre.
 struct DiscCell {
-    std::ptrdiff_t offset = 0;  ///< in elements of a PaddedLayer
+    std::ptrdiff_t offset = 0;  ///< offset in elements of a PaddedLayer
     double x_m = 0.0;
     double y_m = 0.0;
 };

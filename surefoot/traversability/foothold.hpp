@@ -20,7 +20,7 @@ namespace surefoot::traversability {
 /// one movement; this search judges every cell, for a foot with any yaw.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
-    double foot_width_m = 0.190;   ///< its shorter side
+    double foot_width_m = 0.190;   ///< shorter side of the foot
     double margin_m = 0.05;        ///< edges may be two cells off in the map
     double band_m = 0.10;          ///< required solid ground beyond the foot
     /// Where two edges meet, a matcher puts the nearer ground up to three cells too far over the
@@ -51,7 +51,7 @@ enum class Foothold : std::uint8_t {
     safe,         ///< proven at `sigma_factor`
     unsure,       ///< heights too uncertain to prove safe or unsafe
     unreachable,  ///< safe, but no known way leads there from the stance
-    drop,         ///< this and the following: proven unsafe, with the cause
+    drop,         ///< this value and the following: proven unsafe, with the cause
     tilted,
     rough,
     low,  ///< too little room above
@@ -158,12 +158,12 @@ class FootholdFinder {
     int ny_ = 0;
     double resolution_m_ = 0.0;
     std::vector<int> foot_;  ///< half widths of the rows 0 ... reach of F [cells]
-    std::vector<int> band_;  ///< of B
-    std::vector<int> near_;  ///< of B and the corners beyond it
+    std::vector<int> band_;  ///< half widths of the rows of B [cells]
+    std::vector<int> near_;  ///< half widths of the rows of B and the corners beyond it
     std::array<TurnedFoot, kYaws> turned_;
     int patch_cells_ = 1;
     double overhead_cells_ = 0.0;    ///< cells of a square of `overhead_side_m`
-    double foot_cells_ = 0.0;        ///< of F
+    double foot_cells_ = 0.0;        ///< number of cells of F
     double foot_moment_ = 0.0;       ///< sum of x^2 over F [cells^2]
     double slope_sigmas_per_m_ = 0;  ///< k sigma of the slope for each metre of sigma of a cell
     std::vector<Sums> sums_;         ///< (nx + 1) a row

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kCell_m = 0.025;
 constexpr int kSide = 64;
-constexpr double kFootLength_m = 0.366;  ///< of the REX
+constexpr double kFootLength_m = 0.366;  ///< foot of the REX
 constexpr double kFootWidth_m = 0.190;
 constexpr int kYaws = 24;  ///< over half a turn, after which the outline repeats
 
@@ -146,7 +146,7 @@ double share_carried(const Ground& ground,
 /// Smallest shares over all yaws, with the middle of the foot near a corner of the cell.
 struct Shares {
     double least_of_disc = 1.0;  ///< within the limit of the plane of the disc
-    double least = 1.0;          ///< of the foot's own plane
+    double least = 1.0;          ///< least value of the foot's own plane
     double most = 0.0;
 };
 Shares shares_at(const Ground& ground, int ix, int iy, const FootholdConfig& config) {

@@ -370,7 +370,7 @@ TEST(Foothold, UnderATableThereIsNoRoom) {
     };
     hang(0.7F);
     EXPECT_EQ(found(table).at(31 + 8, 30), Foothold::low);
-    // Its rim may lie farther than observed: narrow() has a band of four cells.
+    // The rim of the table may lie farther than observed: narrow() has a band of four cells.
     EXPECT_EQ(found(table).at(31 + 10, 30), Foothold::unsure);
     EXPECT_EQ(found(table).at(31 + 14, 30), Foothold::safe);
     hang(2.06F);

@@ -72,14 +72,14 @@ enum class FootprintOutcome : std::uint8_t {
 struct FootprintReport {
     FootprintOutcome outcome = FootprintOutcome::invalid_pose;
     std::int64_t cells = 0;           ///< overlapped by the shape, each counted once
-    std::int64_t outside = 0;         ///< of these, beyond the map
-    std::int64_t unknown = 0;         ///< of these, without a rating (those outside included)
+    std::int64_t outside = 0;         ///< cells beyond the map
+    std::int64_t unknown = 0;         ///< cells without a rating (cells outside included)
     std::int64_t without_height = 0;  ///< of these, without a height (those outside included); 0
                                       ///< when no height layer was given
-    float worst_rating = std::numeric_limits<float>::quiet_NaN();   ///< of the rated cells
+    float worst_rating = std::numeric_limits<float>::quiet_NaN();   ///< worst of the rated cells
     std::optional<grid::Cell> worst_cell;                           ///< first one, by rows
-    double mean_rating = std::numeric_limits<double>::quiet_NaN();  ///< of the rated cells
-    float lowest_m = std::numeric_limits<float>::quiet_NaN();       ///< of the known heights
+    double mean_rating = std::numeric_limits<double>::quiet_NaN();  ///< mean of the rated cells
+    float lowest_m = std::numeric_limits<float>::quiet_NaN();       ///< lowest known height
     float highest_m = std::numeric_limits<float>::quiet_NaN();
 
     /// 1 if nothing is known, also if there are no cells.
@@ -93,7 +93,7 @@ struct FootprintReport {
 /// Treatment of unknown cells under a footprint.
 enum class UnknownPolicy : std::uint8_t {
     unsafe,   ///< refuse if one cell has no rating, no height or lies outside
-    ignored,  ///< only rated cells decide: for far planning, never for a step
+    ignored,  ///< only rated cells decide; use it for far planning, never for a step
 };
 
 /// True if every rated cell has a rating above 0 of at least `threshold`, and the policy accepts

@@ -94,11 +94,11 @@ class RatingConfidence {
     int ny_ = 0;
     int margin_ = 0;                     ///< cells beyond the map that runs may cover
     std::vector<std::uint64_t> before_;  ///< sums before a cell in its row: known cells, variances
-    std::vector<std::uint64_t> sum_;     ///< one row of discs
+    std::vector<std::uint64_t> sum_;     ///< sums of one row of discs
     std::vector<float> known_;           ///< known cells of `sum_`
     std::vector<float> variance_m2_;
     grid::Layer sigma_m_;          ///< sqrt(v)
-    grid::Layer slope_sigma_rad_;  ///< of level ground
+    grid::Layer slope_sigma_rad_;  ///< slope sigma of level ground
     grid::Layer roughness_sigma_m_;
     grid::Layer flips_;  ///< Q
 };

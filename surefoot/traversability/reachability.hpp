@@ -14,7 +14,7 @@ namespace surefoot::traversability {
 /// Place where the machine is assumed to stand.
 struct Stance {
     int cells = 0;          ///< start cells of the ways; 0 if the map has no known cell
-    double lowest_m = 0.0;  ///< of these cells, in the frame of the map; 0 without cells
+    double lowest_m = 0.0;  ///< lowest of these cells, in the frame of the map; 0 without cells
     double radius_m = 0.0;  ///< search radius around the body
 };
 
@@ -92,11 +92,11 @@ class Reachability {
     std::int32_t max_step_;  ///< 0.1 mm
     int nx_ = 0;
     int ny_ = 0;
-    int stride_ = 0;                    ///< of `cells_`
-    std::vector<Cell> cells_;           ///< with a rim of unknown cells
+    int stride_ = 0;                    ///< row stride of `cells_`
+    std::vector<Cell> cells_;           ///< cells with a rim of unknown cells
     std::vector<std::int32_t> stance_;  ///< candidates, then the cells of the stance
     std::vector<std::int32_t> sorted_;  ///< heights of the candidates
-    std::vector<double> distance_m_;    ///< of all known cells from the body
+    std::vector<double> distance_m_;    ///< distances of all known cells from the body
     std::vector<std::int32_t>
         bucket_;  ///< first entry per step; the last buckets discard their entries
     std::vector<Waiting> waiting_;

@@ -27,9 +27,9 @@ namespace {
 struct RatingConstants {
     float largest_below;   ///< largest float that is not above the critical step
     float smallest_above;  ///< smallest float that is not below it
-    float inverse;         ///< of the critical step
+    float inverse;         ///< 1 / critical step
     float enough;          ///< critical cells
-    float share;           ///< of one critical cell
+    float share;           ///< share of one critical cell
 };
 
 }  // namespace
@@ -210,8 +210,8 @@ HWY_EXPORT(rate_step_block);
 
 namespace {
 
-/// Comparing a float with the limit as double equals comparing it with the floats next to the
-/// limit.
+/// Holds the limit as the two floats next to it. Comparing a float with them gives the same result
+/// as comparing it with the double limit.
 RatingConstants constants_of(const TraversabilityConfig::Step& config) {
     const auto nearest = static_cast<float>(config.critical_m);
     const double rounded = static_cast<double>(nearest);

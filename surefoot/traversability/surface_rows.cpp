@@ -71,7 +71,7 @@ struct Split {
 /// Splits value >= 0 into two parts; the first is a multiple of 2^-20 (or of its last digit, if
 /// that is larger).
 HWY_INLINE Split split(Doubles value) {
-    const Doubles shift = set(0x1.8p32);  // its last digit is 2^-20
+    const Doubles shift = set(0x1.8p32);  // the last digit of this number is 2^-20
     const Doubles high = hn::Sub(hn::Add(value, shift), shift);
     return {high, hn::Sub(value, high)};
 }
@@ -300,7 +300,7 @@ struct Axis {
 /// plain version.
 HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
     constexpr int kMaxSteps = 6;
-    constexpr double kSmallStep = 1e-3;  // its cube is the turn that the next root leaves
+    constexpr double kSmallStep = 1e-3;  // the next root leaves a turn error of kSmallStep^3
     constexpr double kMinLength = 1e-4;  // rounding 1e-16 over it turns the axis by 1e-12 rad
     constexpr double kMaxTurn = 1e-10;
     const auto mul = [](Doubles a, Doubles b) { return hn::Mul(a, b); };

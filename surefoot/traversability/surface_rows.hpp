@@ -31,10 +31,10 @@ struct alignas(64) RunSums {
 struct Surface {
     const PaddedLayer& height_m;
     double resolution_m;
-    const RunsOfDiscs& widths;  ///< of both discs
+    const RunsOfDiscs& widths;  ///< run widths of both discs
     const DiscRuns& normals;
     const DiscRuns& roughness;
-    const Disc& plain_normals;  ///< for the cells whose plane is poorly determined
+    const Disc& plain_normals;  ///< used for cells whose plane is poorly determined
     TraversabilityConfig::Slope slope_config;
     TraversabilityConfig::Roughness roughness_config;
 };

@@ -98,7 +98,7 @@ class Traversability {
     DiscRuns first_step_runs_;
     DiscRuns second_step_runs_;
     DiscRuns roughness_runs_;
-    RunsOfDiscs surface_runs_;  ///< of normals and roughness
+    RunsOfDiscs surface_runs_;  ///< runs for normals and roughness
     RunsOfDiscs first_runs_;
     RunsOfDiscs second_runs_;
     // Kept runs, one part for each block of rows.

@@ -194,7 +194,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "laser") {  // for ground truth by the laser scanner
+    if (name == "laser") {  // preset for ground truth by the laser scanner
         return Config{{0.1},
                       {1.5708},
                       {0.1, 0.075, 0.10, 5},

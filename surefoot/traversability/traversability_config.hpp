@@ -19,8 +19,8 @@ enum class Combine : std::uint8_t {
 
 /// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius needs
 /// at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
-/// unknown. Defaults: the critical values of `ethz`, with radii between the centre distances of a
-/// 25 mm grid (no cell on the rim) that average stereo noise over 29, 21 and 29 cells.
+/// unknown. Defaults: the critical values of `ethz`. The radii lie between the centre distances of
+/// a 25 mm grid (no cell on the rim) and average stereo noise over 29, 21 and 29 cells.
 struct TraversabilityConfig {
     struct Normals {
         double radius_m = 0.08;
@@ -58,8 +58,8 @@ struct TraversabilityConfig {
 
     /// See rating_confidence.hpp.
     struct Confidence {
-        double safe_threshold = 0.80;  ///< as `eval.maps.safe_threshold`
-        int independent_cells = 4;     ///< as the REX gate's patches
+        double safe_threshold = 0.80;  ///< same value as `eval.maps.safe_threshold`
+        int independent_cells = 4;     ///< same number as in the patches of the REX gate
         void describe(ConfigVisitor& visitor);
     };
     struct Resolve {

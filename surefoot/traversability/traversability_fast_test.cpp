@@ -26,7 +26,7 @@ constexpr double kNormalTolerance = 1e-7;
 /// happen in these maps.
 constexpr double kSlopeTolerance = 1.2e-6;
 constexpr double kStepTolerance = 3e-7;       // five roundings of 6e-8
-constexpr double kRoughnessTolerance = 3e-7;  // likewise
+constexpr double kRoughnessTolerance = 3e-7;  // five roundings of 6e-8
 
 struct Case {
     std::string name;

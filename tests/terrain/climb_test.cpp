@@ -85,7 +85,7 @@ struct Tread {
     int passed = 0;                ///< cells behind the body
     int passed_known = 0;          ///< known cells among these
     int misplaced = 0;             ///< known cells whose height is nearer to another tread
-    std::vector<double> errors_m;  ///< of the known cells
+    std::vector<double> errors_m;  ///< errors of the known cells
     [[nodiscard]] double median_m() { return upper_median_in_place(errors_m); }
 };
 
@@ -131,7 +131,7 @@ std::map<int, Tread> treads(const Climb& climb,
 
 struct Wanted {
     double ahead_m = 3.0;    ///< going down, farther treads are seen edge-on
-    double median_m = 0.01;  ///< of the errors on one tread, in every check
+    double median_m = 0.01;  ///< median of the errors on one tread, in every check
     double known = 0.99;     ///< share of a tread behind the body
 };
 
@@ -141,7 +141,7 @@ void check_treads(const Climb& climb,
                   double s_m,
                   const Wanted& wanted,
                   std::set<int>& passed) {
-    constexpr int kFew = 40;  ///< of about 170 to 250 cells of a tread
+    constexpr int kFew = 40;  ///< a tread has about 170 to 250 cells
     for (auto& [number, tread] : treads(climb, map, s_m, wanted.ahead_m)) {
         const auto where = testing::Message() << "tread " << number << " seen from " << s_m;
         const auto known = static_cast<int>(tread.errors_m.size());

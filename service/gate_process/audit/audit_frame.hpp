@@ -24,7 +24,7 @@ struct FrameHeader {
     std::uint32_t stored_bytes = 0;         ///< size of the payload in the file
     std::uint32_t plain_bytes = 0;          ///< size of the unpacked payload
     std::uint64_t sequence = 0;             ///< increases by one with every frame of a run
-    std::uint64_t previous_hash = 0;        ///< of the previous frame; 0 = first frame of a run
+    std::uint64_t previous_hash = 0;        ///< hash of the previous frame; 0 = first of a run
     std::uint32_t version = kFrameVersion;  ///< format version of the frame
 };
 
@@ -44,7 +44,7 @@ enum class HeaderState : std::uint8_t { sound, no_frame, other_version, damaged 
 
 /// The content of the first frame of a file.
 struct FileHead {
-    std::uint64_t run_id = 0;  ///< of one gate process
+    std::uint64_t run_id = 0;  ///< id of one gate process
     std::uint64_t number = 0;  ///< index of the file in its folder
     std::uint64_t machine_hash = 0;
     Machine machine;

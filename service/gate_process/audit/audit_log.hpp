@@ -45,11 +45,11 @@ struct AuditReport {
 };
 
 /// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate
-/// thread writes, so a disk never delays a verdict. Waiting entries stay in memory. If the memory
-/// is full, verdicts are dropped and counted, and the log gets a gap entry at their position.
-/// Machine and memory size are fixed at `start`.
+/// thread writes, so a slow disk never delays a verdict. Waiting entries stay in memory. If the
+/// memory is full, verdicts are dropped and counted, and the log gets a gap entry at their
+/// position. Machine and memory size are fixed at `start`. Format: audit_format.md.
 ///
-/// One thread calls start, push, state and stop; any calls `report`. Format: audit_format.md.
+/// One thread must call start, push, state and stop. Any thread may call `report`.
 class AuditLog {
   public:
     AuditLog(const Machine& machine, std::unique_ptr<AuditDisk> disk, const AuditConfig& config);

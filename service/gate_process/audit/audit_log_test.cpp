@@ -137,7 +137,7 @@ TEST(AuditLog, a_gap_is_written_once_though_the_verdict_after_it_had_to_wait) {
     const std::uint64_t lost = bench.log.report().lost;
     bench.release();
     bench.await([&] { return bench.log.report().written == 500 - lost; });
-    constexpr std::uint64_t kGapFits = 200;  // and no verdict
+    constexpr std::uint64_t kGapFits = 200;  // room for gap entries, but for no verdict
     bench.platter->set([](Platter& p) { p.room = p.used() + kGapFits; });
     bench.push(1);
     bench.await([&] { return bench.log.state(kNowNs) == AuditState::failing; });
@@ -215,7 +215,7 @@ TEST(AuditLog, a_folder_that_cannot_be_written_is_failing_though_nobody_asks) {
     Bench bench;
     bench.platter->fails_create = true;
     AuditConfig config = small_config();
-    config.sync_ns = 1;  // what is not there is synced at once
+    config.sync_ns = 1;  // an absent file is synced at once
     AuditLog log(rex(), std::make_unique<MemoryDisk>(bench.platter), config);
     ASSERT_TRUE(log.start());
     const auto tries = [&] {

@@ -17,7 +17,7 @@ namespace surefoot::gate_process {
 struct AuditDamage {
     std::string file;
     std::uint64_t offset = 0;               ///< begin of the frame [bytes]
-    std::optional<std::uint64_t> sequence;  ///< of the frame, if its header is readable
+    std::optional<std::uint64_t> sequence;  ///< sequence of the frame, if its header is readable
     std::string what;
 
     [[nodiscard]] std::string text() const;
@@ -87,7 +87,7 @@ class AuditReader {
     AuditSummary summary_;
     std::string file_;
     std::uint64_t offset_ = 0;
-    std::optional<FileHead> head_;  ///< of the last file with a head
+    std::optional<FileHead> head_;  ///< head of the last file that has a head
     Link link_;
     std::string plain_;
     AuditRecord record_;

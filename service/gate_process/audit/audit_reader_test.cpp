@@ -111,7 +111,7 @@ TEST(AuditReader, an_end_that_was_cut_is_unfinished_and_no_damage) {
         const bool at_frame = std::find(frames.begin(), frames.end(), size) != frames.end();
         ASSERT_EQ(summary.unfinished.size(), at_frame && size > 0 ? 0U : 1U) << size;
     }
-    log.file(last) = whole + std::string(4096, '\0');  // as after a loss of power
+    log.file(last) = whole + std::string(4096, '\0');  // zeros at the end, as after a loss of power
     EXPECT_EQ(log.damage(), "");
     EXPECT_EQ(log.platter->read().unfinished.size(), 1U);
     log.file(last) = whole + "junk";
@@ -245,7 +245,7 @@ TEST(AuditReader, another_version_is_named) {
     EXPECT_TRUE(contains(log.damage(), "version 4")) << log.damage();
 }
 
-/// The same log in an earlier format version, with version, checks and chain.
+/// Writes the same log in an earlier format version, with version, checks and chain.
 std::string as_version(const std::string& file, char version, std::uint64_t& previous_hash) {
     constexpr std::size_t kVersionAt = 3;
     constexpr std::size_t kPreviousAt = 24;

@@ -34,7 +34,7 @@ struct AuditRecord {
     /// True if the whole snapshot was intact. Copied from the verdict, because the record does not
     /// contain all cells.
     bool snapshot_intact = false;
-    bool cells_intact = false;  ///< the same for the cells that the decision reads
+    bool cells_intact = false;  ///< the cells that the decision reads are intact
     CellBox zone;
     /// Checksum of the whole snapshot: identifies the map in a recording.
     std::uint64_t map_checksum = 0;

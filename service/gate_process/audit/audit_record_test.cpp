@@ -32,7 +32,7 @@ TEST(AuditRecord, the_zone_alone_gives_every_verdict_again) {
                                    << gate::testing::words(c.verdict);
         (c.verdict.decision == gate::Decision::ok ? allowed : refused) += 1;
     }
-    EXPECT_GT(allowed, 25);  // else the rounds prove nothing
+    EXPECT_GT(allowed, 25);  // otherwise the rounds prove nothing
     EXPECT_GT(refused, 100);
 }
 
@@ -126,7 +126,7 @@ TEST(AuditRecord, edges_and_header_of_the_snapshot_are_kept) {
     const auto first = static_cast<std::size_t>(zone.y * c.map->nx + zone.x);
     EXPECT_EQ(record.map->sigma_tenth_mm[first], c.map->sigma_tenth_mm[first]);
     EXPECT_EQ(record.map->source[first + static_cast<std::size_t>(zone.nx)],
-              grid::EvidenceSource::unknown);  // one cell beyond
+              grid::EvidenceSource::unknown);  // one cell beyond the zone
 }
 
 TEST(AuditRecord, nothing_of_a_record_is_left_in_the_next_one) {

@@ -29,9 +29,9 @@ class ChannelFile {
     /// Opens an existing regular file for reading.
     [[nodiscard]] static Result<ChannelFile> open(const std::string& path);
     /// Opens the file for the only writer: creates it (rights 0600) if it is missing, and locks it.
-    /// The lock ends with the process; the file keeps the process id. Errors: another process holds
-    /// the lock (the message names it), or the file is not regular, belongs to another user, or is
-    /// not empty and does not begin with `magic`.
+    /// The lock ends with the process; the file keeps the process id. Error if another process
+    /// holds the lock (the message names it). Error if the file is not regular, belongs to another
+    /// user, or is not empty and does not begin with `magic`.
     [[nodiscard]] static Result<ChannelFile> lock(const std::string& path, std::uint64_t magic);
 
     /// Returns true if all bytes were read.

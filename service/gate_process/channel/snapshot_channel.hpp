@@ -64,7 +64,7 @@ class SnapshotReader {
 
     enum class Read : std::uint8_t {
         nothing,  ///< this writer has not published a snapshot
-        same,     ///< nothing new since the last fresh one; `out` is unchanged
+        same,     ///< no new snapshot since the last fresh one; `out` is unchanged
         fresh,    ///< `out` is the newest snapshot
         torn,     ///< overwritten during the copy, three times; `out` is invalid
         forged,   ///< made without the key, or older than the last one; `out` is invalid

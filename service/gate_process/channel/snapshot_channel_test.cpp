@@ -161,10 +161,10 @@ TEST_F(SnapshotChannel, what_is_no_channel_is_refused_in_words) {
     { std::ofstream(path_) << "something else of mine"; }
     EXPECT_FALSE(SnapshotReader::open(address_).ok());
     EXPECT_FALSE(SnapshotReader::open({folder_.string(), {}}).ok());
-    // Of the right size, but not a channel.
+    // A file of the right size that is not a channel.
     std::filesystem::remove(path_);
     ASSERT_TRUE(SnapshotWriter::create(address_).ok());
-    change(16, "x");  // its layout
+    change(16, "x");  // layout of the channel
     const auto foreign = SnapshotReader::open(address_);
     ASSERT_FALSE(foreign.ok());
     EXPECT_NE(foreign.error().message.find("restart both programs"), std::string::npos);

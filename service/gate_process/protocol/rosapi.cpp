@@ -45,7 +45,7 @@ Json topics_from(bool from_client) {
     return names;
 }
 
-/// The list of nodes: the only node if `involved`, else empty.
+/// The list of nodes: the only node if `involved`, otherwise empty.
 Json node_if(bool involved) {
     return involved ? Json::array({kNode}) : Json::array();
 }

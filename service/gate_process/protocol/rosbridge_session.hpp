@@ -34,8 +34,8 @@ struct SessionRights {
 
 /// The effects of one message.
 struct Reaction {
-    std::vector<std::string> replies;     ///< to this connection, before all other texts
-    std::vector<TopicMessage> published;  ///< to the subscribers of all connections
+    std::vector<std::string> replies;     ///< texts to this connection, before all other texts
+    std::vector<TopicMessage> published;  ///< messages to the subscribers of all connections
     bool drop = false;                    ///< disconnect: the client exceeded its limits
 };
 

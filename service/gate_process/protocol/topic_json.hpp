@@ -15,7 +15,7 @@ namespace surefoot::gate_process {
 /// An age is null before the first snapshot. `vouched`: the attested area in odom {x_m, y_m, z_m,
 /// radius_m}, or null.
 [[nodiscard]] Json health_object(const GateReport& report);
-/// The same on one line of text, for clients without a JSON reader.
+/// Writes the same data as one line of text, for clients without a JSON reader.
 [[nodiscard]] std::string health_text(const GateReport& report);
 
 /// A diagnostic_msgs/DiagnosticArray with one status, stamped with the steady clock.

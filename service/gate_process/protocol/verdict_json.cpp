@@ -11,7 +11,7 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-constexpr std::int64_t kOpenTenthMm = 0xffff;  // of Evidence::min_clearance_tenth_mm
+constexpr std::int64_t kOpenTenthMm = 0xffff;  // open value of Evidence::min_clearance_tenth_mm
 
 // Divides instead of multiplying by 1e-4: the quotient is the double nearest to the decimal number,
 // so 0.2311 m is written as 0.2311.

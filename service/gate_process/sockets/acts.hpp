@@ -27,7 +27,7 @@ struct Act {
     Role role = Role::none;            ///< role of the client at that time
     std::uint64_t connection = 0;      ///< 0: starter of the process, or not yet admitted
     std::int64_t time_ns = 0;          ///< steady clock
-    std::int32_t radius_tenth_mm = 0;  ///< of an attestation
+    std::int32_t radius_tenth_mm = 0;  ///< radius of an attestation
     std::uint32_t left_out = 0;        ///< refused acts before this one that are not in the log
     std::string text;                  ///< cause of a refusal, and the client's computer
 };

@@ -16,7 +16,7 @@ enum class Admission : std::uint8_t { welcome, wrong_token, wrong_origin };
 /// The parts of a client's HTTP request that decide admission.
 struct Knock {
     std::string_view target;                        ///< "/?token=..."
-    std::optional<std::string_view> origin;         ///< of the requesting web page
+    std::optional<std::string_view> origin;         ///< origin of the requesting web page
     std::optional<std::string_view> authorization;  ///< "Bearer ..."
 };
 struct Entrance {

@@ -17,7 +17,7 @@ struct PortHolder {
 /// The process that listens on this port of this computer. Empty if there is none, or if the system
 /// hides it (a process of another user). Reads /proc: takes milliseconds.
 [[nodiscard]] std::optional<PortHolder> holder_of_port(std::uint16_t port);
-/// For messages: "process 1234 (surefoot-gate)".
+/// Text for messages: "process 1234 (surefoot-gate)".
 [[nodiscard]] std::string words_of(const PortHolder& holder);
 
 }  // namespace surefoot::gate_process

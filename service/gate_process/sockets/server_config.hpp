@@ -36,14 +36,14 @@ struct ServerConfig {
     /// WebSockets included. The client with the least use is served first; messages beyond the
     /// limit wait.
     int guest_work_us = 1500;
-    int door_work_us = 750;                 ///< the same for accepting and reading requests
+    int door_work_us = 750;                 ///< time for accepting and reading requests
     int handshake_ms = 2000;                ///< time limit for the complete WebSocket handshake
-    int idle_ms = 10000;                    ///< without data from the client; a ping at half of it
+    int idle_ms = 10000;                    ///< longest time without data; a ping at half of it
     int message_ms = 2000;                  ///< from the first to the last byte of a message
-    int write_ms = 2000;                    ///< for sending one text
+    int write_ms = 2000;                    ///< time limit for sending one text
     std::size_t max_queue_bytes = 1 << 20;  ///< texts waiting for a client that does not read
     std::size_t max_read_bytes_per_s = 1 << 20;
-    RateLimit control_frames{5, 10};  ///< of one client, before it is disconnected
+    RateLimit control_frames{5, 10};  ///< largest rate from one client, before the disconnection
     SessionLimits session;
 
     /// The first problem, as a message.

@@ -13,7 +13,7 @@ namespace surefoot::gate_process {
 /// Numbers of connections that a service keeps, by rank.
 struct SlotLimits {
     std::size_t max_clients = 64;
-    std::size_t reserved = 8;  ///< of these, reserved for clients of high rank
+    std::size_t reserved = 8;  ///< part of max_clients that is reserved for clients of high rank
     /// Limit of connections without a complete request; beyond it one is closed. It is large, so
     /// that many new connections do not displace a client before its request arrives.
     std::size_t max_handshakes = 256;
@@ -29,10 +29,10 @@ struct SlotLimits {
 /// `high`: the client sent the token of a rider or of an operator.
 enum class Rank : std::uint8_t { low, high };
 
-/// Decides which connection gets a slot and which one is closed for it. Bookkeeping only: no
+/// Decides which connection gets a slot and which connection is closed for it. Bookkeeping only: no
 /// socket, clock or thread. A service calls `arrive` for every accepted connection, `enter` after
-/// reading its request, `served` after each piece of work, and `leave` when the connection has
-/// ended for any reason.
+/// reading its request, and `served` after each piece of work. It calls `leave` when the connection
+/// has ended for any reason.
 ///
 /// A returned `Id` is a connection that the caller must close now, followed by `leave`. Low-rank
 /// clients are closed in this order:

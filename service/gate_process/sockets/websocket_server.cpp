@@ -131,7 +131,7 @@ class SocketServer {
     std::vector<std::shared_ptr<Connection>> waiting_;      // clients that wait for their turn
     std::unique_ptr<TlsDoor> tls_door_;
     std::int64_t tick_ended_ns_ = 0;  // processor time
-    std::int64_t poll_ended_ns_ = 0;  // the same, if the owner has its own loop
+    std::int64_t poll_ended_ns_ = 0;  // processor time, if the owner has its own loop
     Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
@@ -159,7 +159,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void on_tick(std::int64_t now_ns);
     /// Closes the connection at once, whatever is in transit.
     void end();
-    /// The same, and tells the client the reason if it reads.
+    /// Closes the connection at once; sends the reason if the client reads.
     void end_for_another();
     /// Continues the work that waited for a turn.
     void take_turn();
@@ -203,7 +203,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
-    std::optional<Entrance> entrance_;  // of a WebSocket that waits for its turn
+    std::optional<Entrance> entrance_;  // entrance of a WebSocket that waits for its turn
     Role role_ = Role::none;
     bool has_token_ = false;  // the request had a valid token
     std::optional<RosbridgeSession> session_;

@@ -15,7 +15,7 @@ struct ServerCounts {
     std::size_t clients = 0;     ///< clients that use rosbridge now
     std::size_t handshakes = 0;  ///< connections without a complete request
     std::uint64_t accepted = 0;  ///< connections since the start
-    std::uint64_t refused = 0;   ///< of these refused: token, origin, request, too many
+    std::uint64_t refused = 0;   ///< refused connections: token, origin, request, too many
     std::uint64_t dropped = 0;   ///< clients that were disconnected: slow, too many messages,
                                  ///< invalid messages, or closed for another client
 };
@@ -24,8 +24,8 @@ class SocketServer;
 
 /// Serves the step gate on a socket: rosbridge over WebSocket, and GET /health. The caller's thread
 /// asks the gate and serves all clients; TLS has its own thread. A client that misbehaves, sleeps
-/// or floods costs the others little: riders and operators with a token are served at once and keep
-/// their slots, all others share a bounded part of the time.
+/// or floods costs the others little. Riders and operators with a token are served at once and keep
+/// their slots; all others share a bounded part of the time.
 class WebsocketServer {
   public:
     /// Called every `tick_ms`, before topics are published.

@@ -358,7 +358,7 @@ TEST(WebsocketServer, AQuestionThatWaitsGoesBeforeTheOutlook) {
     net::io_context io;
     websocket::stream<tcp::socket> ws(io);
     ws.next_layer().connect({net::ip::make_address("127.0.0.1"), server->port()});
-    ws.next_layer().set_option(tcp::no_delay(true));  // else a second message waits for an ACK
+    ws.next_layer().set_option(tcp::no_delay(true));  // otherwise a second message waits for an ACK
     std::atomic<bool> done = false;
     std::thread thread([&] {
         ws.handshake("127.0.0.1", "/");
@@ -487,7 +487,7 @@ TEST(WebsocketServer, WhoGivesNoSignOfLifeIsLeft) {
     Client client(service, "/", "");
     const std::string bytes = client.read_bytes();
     ASSERT_FALSE(bytes.empty());
-    EXPECT_EQ(bytes[0], '\x89');  // it was asked by a ping
+    EXPECT_EQ(bytes[0], '\x89');  // the answer to a ping
     service.end();
     EXPECT_EQ(service.gate.forgotten.size(), 1U);
 }

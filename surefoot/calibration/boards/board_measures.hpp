@@ -14,14 +14,14 @@ namespace surefoot::calibration {
 /// show.
 struct BoardMeasures {
     int points = 0;           ///< points that both cameras see
-    int lengths = 0;          ///< between neighbours of a row or a column
+    int lengths = 0;          ///< number of lengths between neighbours of a row or a column
     double distance_m = 0.0;  ///< mean depth from the board size; rectified left frame
-    /// Mean difference of triangulated depth and depth from the board size in the left image alone:
-    /// baseline and rotation of the right camera against focal length and square size.
+    /// Mean difference of the triangulated depth and the depth from the board size in the left
+    /// image. Compares baseline and rotation of the right camera with focal length and square size.
     double axial_m = 0.0;
-    double axial_std_m = 0.0;    ///< of the triangulated depths around their plane
+    double axial_std_m = 0.0;    ///< scatter of the triangulated depths around their plane
     double lateral_m = 0.0;      ///< mean of triangulated minus true length of neighbours
-    double lateral_std_m = 0.0;  ///< of single lengths
+    double lateral_std_m = 0.0;  ///< scatter of single lengths
 };
 
 /// nullopt with fewer than eight common points, with points that no plane explains, or with views

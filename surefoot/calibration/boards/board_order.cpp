@@ -185,8 +185,8 @@ std::vector<std::vector<int>> turns_of(const Board& board) {
     const Eigen::Vector2d middle_m = 0.5 * (low + high);
     for (int quarter = 1; quarter < 4; ++quarter) {
         const bool checked = board.kind == BoardKind::chessboard;
-        // After a half turn the squares keep their colours if both sides are even or both are odd;
-        // after a quarter turn of a square board, if the sides are even.
+        // A half turn keeps the colours of the squares if both sides are even or both are odd. A
+        // quarter turn of a square board keeps them if the sides are even.
         if (checked && quarter == 2 && (board.columns + board.rows) % 2 != 0) continue;
         if (checked && quarter != 2 && board.columns % 2 != 0) continue;
         Eigen::Matrix2d R;

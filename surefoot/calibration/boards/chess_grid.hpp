@@ -18,7 +18,7 @@ struct GrownChessboard {
     /// All points of the board, roughly, in order along rows and columns. Hidden points lie where
     /// their neighbours predict them. Empty if the board was not found.
     std::vector<Eigen::Vector2d> points;
-    std::string problem;  ///< what was found instead; may be empty
+    std::string problem;  ///< description of a board that does not match; may be empty
 };
 
 /// Joins corners whose edges lead to each other and whose black squares alternate, and finds the

@@ -57,7 +57,7 @@ std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& p
     return J_px_m;
 }
 
-/// The same derivative around each point of the board.
+/// This derivative around each point of the board.
 std::vector<std::optional<Eigen::Matrix2d>> local_slopes(
     const std::vector<Eigen::Vector3d>& board_m, const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<std::optional<Eigen::Matrix2d>> slopes;

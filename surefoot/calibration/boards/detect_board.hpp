@@ -23,10 +23,10 @@ struct BoardSighting {
 /// Detects the board in an image, to sub-pixels. Grids and chessboards must be fully visible; a
 /// ChArUco board needs `kFewestCharucoPoints` points that do not lie on one line.
 ///
-/// Order of the points: seen from the front, x of the board points right and y down, rotated so
-/// that the square between the first four points of a chessboard is black. If a board looks the
-/// same after a rotation (see `turns_of`), its rows run to the right in the image. `turned_like`
-/// makes the second camera of a pair agree with the first.
+/// Order of the points, seen from the front: x of the board points right and y down. The square
+/// between the first four points of a chessboard is black. If a board looks the same after a
+/// rotation (see `turns_of`), its rows run to the right in the image. `turned_like` makes the
+/// second camera of a pair agree with the first.
 ///
 /// Circles: centre of gravity of the dark area, and the radius from its size. On a near, tilted
 /// board the image of a circle's centre lies up to half a pixel beside it. Computing that offset
@@ -35,7 +35,7 @@ inline constexpr int kFewestCharucoPoints = 6;
 [[nodiscard]] BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> image);
 
 /// All renumberings of the points after which the board looks the same, as the new id of each
-/// point: first the identity, then rotations by a quarter, half and three quarters if valid.
+/// point. First the identity, then rotations by a quarter, half and three quarters if valid.
 [[nodiscard]] std::vector<std::vector<int>> turns_of(const Board& board);
 
 /// The view, renumbered by the rotation of the board whose rows are most parallel to those of

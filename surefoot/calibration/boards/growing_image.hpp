@@ -13,7 +13,7 @@ namespace surefoot::calibration {
 /// gives the growth of its image at a `place`, relative to the centre, and the least growth of real
 /// lenses. The limit is half of that growth.
 inline constexpr double kLeastGrowth = 0.5;
-inline constexpr double kGrowthStep = 0.05;  ///< of tan(angle); fisheyes: of the angle [rad]
+inline constexpr double kGrowthStep = 0.05;  ///< step of tan(angle); fisheyes: of the angle [rad]
 inline constexpr int kGrowthPlaces = 60;     ///< up to 72 deg from the axis, for a fisheye 172 deg
 
 inline double growth_place(int i) {

@@ -83,7 +83,7 @@ double rectified_row_px(const StereoCalibration& result) {
 /// The whole way from images to the rig, with our own corners. The limits are the results of OpenCV
 /// 4.6 with its own corners and the lens of five coefficients.
 TEST(RealChessboards, PinholePairIsAsGoodAsOpenCv) {
-    const Board board{.spacing_m = 1.0};  // its unit is one square
+    const Board board{.spacing_m = 1.0};  // the unit is one square
     const Pairs pairs = pairs_of("chess_pinhole", board);
     if (pairs.left.empty()) GTEST_SKIP() << kNoData << "chess_pinhole in " << data_folder();
     for (const LensKind kind : {LensKind::pinhole5, LensKind::rational}) {

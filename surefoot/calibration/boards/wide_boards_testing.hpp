@@ -107,9 +107,9 @@ inline std::optional<std::vector<Eigen::Vector2d>> true_corners(const Board& boa
     return pixels;
 }
 
-/// A random board pose with all printed squares visible, tilted by up to `most_tilt_deg` against
-/// the ray to its middle, rolled by up to 45 deg, at 0.35 to 1.6 of its longer side. With `shown`
-/// below 1, only this share of the outer squares must be visible.
+/// A random board pose with all printed squares visible, at 0.35 to 1.6 of the longer board side.
+/// It is rolled by up to 45 deg and tilted by up to `most_tilt_deg` against the ray to its middle.
+/// With `shown` below 1, only this share of the outer squares must be visible.
 inline Pose wide_pose(const Board& board,
                       const camera::Camera& camera,
                       double most_tilt_deg,

@@ -10,7 +10,7 @@ namespace surefoot::calibration {
 
 /// Residuals of one image in the solution.
 struct CameraFit {
-    std::vector<int> ids;                       ///< of the board's points
+    std::vector<int> ids;                       ///< ids of the board's points
     std::vector<Eigen::Vector2d> residuals_px;  ///< measured minus predicted, one per id
     std::vector<int> outliers;  ///< ids excluded from the estimate; residuals_px contains them too
     double rms_px = 0.0;        ///< root of the mean squared distance of the points used

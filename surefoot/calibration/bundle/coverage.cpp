@@ -18,9 +18,10 @@ namespace {
 // more views, tilts of 20 to 45 deg, the whole image and two distances. The covariance of the
 // result says whether that was enough.
 constexpr int kEnoughViews = 10;
-constexpr double kEnoughDistances = 1.5;  ///< largest divided by smallest spacing
-constexpr double kFilledShare = 0.5;      ///< share of the parts of a region
-constexpr double kNearView = 0.4;         ///< share of the image that a near view fills
+constexpr double kEnoughDistances =
+    1.5;                              ///< largest / smallest spacing of board points in the images
+constexpr double kFilledShare = 0.5;  ///< share of the parts of a region
+constexpr double kNearView = 0.4;     ///< share of the image that a near view fills
 
 constexpr const char* kRegionNames[3][3] = {{"top left", "top", "top right"},
                                             {"left", "middle", "right"},

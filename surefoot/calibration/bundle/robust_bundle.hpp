@@ -47,7 +47,7 @@ struct RobustFit {
 /// to `clip_px`.
 [[nodiscard]] std::vector<double> view_rms_px(
     const BoardBundle& bundle, double clip_px = std::numeric_limits<double>::infinity());
-/// The same over all sights, as in OpenCV.
+/// Root mean square distance over all sights, as in OpenCV.
 [[nodiscard]] double rms_px(const BoardBundle& bundle);
 
 void drop_view(BoardBundle& bundle, int view);

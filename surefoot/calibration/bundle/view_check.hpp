@@ -22,9 +22,9 @@ struct RejectedView {
 /// Adds a view in ascending order. A second reason is appended to the first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
-/// First problem of a view, or nullopt: ids and pixels that do not match; ids out of order or not
-/// on the board; pixels that are NaN or outside the image; fewer than `least_points`; points on a
-/// line.
+/// First problem of a view, or nullopt. Problems: ids and pixels do not match; ids are not in order
+/// or not on the board; a pixel is NaN or outside the image. Also fewer than `least_points`, or
+/// points on a line.
 [[nodiscard]] std::optional<std::string> view_problem(const Board& board,
                                                       const BoardView& view,
                                                       ImageSize size,

@@ -16,7 +16,7 @@ struct GridPoint {
     float x_m = 0.0F;
     float y_m = 0.0F;
     float z_m = 0.0F;
-    float var_m2 = 0.0F;  ///< of the height
+    float var_m2 = 0.0F;  ///< variance of the height
 };
 
 /// Heights and their cells, in blocks that threads can fill at the same time.

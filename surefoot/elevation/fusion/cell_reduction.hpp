@@ -33,11 +33,11 @@ struct ReductionConfig {
 
 /// Measurement of one cell by one frame.
 struct CellMeasurement {
-    float z_m = 0.0F;  ///< of the highest surface that enough points share
+    float z_m = 0.0F;  ///< height of the highest surface that enough points share
     float var_m2 = 0.0F;
     float highest_m = 0.0F;  ///< robust extremes of all points in the cell
     float lowest_m = 0.0F;
-    int points = 0;  ///< on that surface
+    int points = 0;  ///< number of points on that surface
 };
 
 /// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of

@@ -21,7 +21,7 @@ class HeightBounds {
   public:
     struct Input {
         ImageView<const float> height_m;       ///< NaN = unknown
-        ImageView<const float> height_var_m2;  ///< of known cells: >= 0
+        ImageView<const float> height_var_m2;  ///< variance of the known cells, >= 0
         ImageView<const float> horizontal_drift_m;
         double resolution_m = 0.025;
         double sigmas = 2.0;

@@ -15,15 +15,15 @@ constexpr double kMost_m = 0.1;
 constexpr double kBin_m = 1e-4;  ///< a tenth of the snapshot's resolution
 constexpr int kBins = 2 * 1000 + 1;
 constexpr int kTileCells = 8;
-constexpr int kLeastOfTile = 4;          ///< of the sixteen cells that are used
-constexpr double kAgreeingSigmas = 2.5;  ///< as the gate of the fusion
+constexpr int kLeastOfTile = 4;          ///< least number of the sixteen used cells of a tile
+constexpr double kAgreeingSigmas = 2.5;  ///< same factor as the gate of the fusion
 /// Variance of a median divided by that of a mean, for normal noise: pi / 2.
 constexpr double kMedianLoss = 1.5708;
 constexpr double kSlopeChi2 = 13.8;  ///< 2 degrees of freedom, 0.1 %
 /// A camera tilt that explains this share of the offset at the cells makes the offset unusable.
 constexpr double kTiltShare = 0.25;
 constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
-constexpr double kFrameShare = 0.5;  ///< the same for the offset of recently aligned ground
+constexpr double kFrameShare = 0.5;  ///< like kTiltShare, for the offset of recently aligned ground
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);

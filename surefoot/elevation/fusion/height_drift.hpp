@@ -27,7 +27,7 @@ struct HeightDriftConfig {
     double agreeing_share = 0.8;       ///< share of old cells with the offset, within noise
     double significance_sigmas = 3.0;  ///< smallest significant offset [sigma]
     double motion_sigmas = 3.0;        ///< a larger offset is no drift [sigma of the motion]
-    double depth_scale_sigma = 0.002;  ///< one frame; looks like an offset on level ground
+    double depth_scale_sigma = 0.002;  ///< per frame; resembles an offset on level ground
 
     void describe(ConfigVisitor& visitor);
 };
@@ -49,7 +49,7 @@ enum class HeightDriftReason : std::uint8_t {
 /// Result of the height drift check of one frame.
 struct HeightDriftReport {
     double offset_m = 0.0;   ///< frame - map
-    double sigma_m = 0.0;    ///< of the offset, with the frame's common errors
+    double sigma_m = 0.0;    ///< sigma of the offset, with the common errors of the frame
     std::int64_t cells = 0;  ///< number of cells behind the offset
     std::int64_t moved_cells = 0;
     HeightDriftReason reason = HeightDriftReason::off;
@@ -73,7 +73,7 @@ class HeightDrift {
   public:
     struct Frame {
         const grid::GridGeometry& geometry;
-        double camera_z_m = 0.0;  ///< in odom
+        double camera_z_m = 0.0;  ///< camera height in odom
         double systematic_sigma_m = 0.0;
         double tilt_sigma_rad = 0.0;
         std::uint32_t motions = 0;  ///< uncertain motions so far
@@ -108,7 +108,7 @@ class HeightDrift {
         int tiles = 0;
         Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
         double offset_m = 0.0;
-        double scatter_m2 = 0.0;  ///< of the offsets
+        double scatter_m2 = 0.0;  ///< scatter of the offsets
         double spread_m = 0.0;
         Eigen::Vector2d slope = Eigen::Vector2d::Zero();
         double slope_chi2 = 0.0;  ///< test of "no slope", 2 degrees of freedom
@@ -141,8 +141,8 @@ class HeightDrift {
                                               const Evidence& evidence,
                                               std::span<const HeightResidual> recent,
                                               const Frame& frame);
-    /// Offset that the frame shows on recently aligned ground, continued as a plane to `at_m` (from
-    /// the point below the camera); 0 if the frame shows too little of that ground.
+    /// Offset that the frame shows on recently aligned ground. Continued as a plane to `at_m` (from
+    /// the point below the camera). 0 if the frame shows too little of that ground.
     [[nodiscard]] double frame_error_m(std::span<const HeightResidual> recent,
                                        const Eigen::Vector2d& at_m,
                                        const Frame& frame);

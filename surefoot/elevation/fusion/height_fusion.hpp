@@ -13,7 +13,7 @@ namespace surefoot::elevation {
 /// Variance by which the Mahalanobis gate scales the innovation.
 enum class GateVariance : std::uint8_t {
     cell_and_measurement,  ///< the true variance of the innovation
-    cell_alone,            ///< as the reference implementation; for comparison only
+    cell_alone,            ///< used by the reference implementation; for comparison only
 };
 
 /// How a cell fuses a height measurement (Fankhauser 2014, section 4; Lange 2016, equation 6.1).

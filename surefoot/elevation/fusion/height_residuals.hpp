@@ -24,8 +24,8 @@ struct CellAlignment {
 struct HeightResidual {
     Eigen::Vector2d at_m;           ///< in odom
     Eigen::Vector2f from_camera_m;  ///< from the point below the camera: ahead, left
-    Eigen::Vector2f slope;          ///< of the map around the cell
-    float height_m = 0.0F;          ///< of the map
+    Eigen::Vector2f slope;          ///< slope of the map around the cell
+    float height_m = 0.0F;          ///< height of the map
     float offset_m = 0.0F;          ///< measurement - map
     float var_m2 = 0.0F;            ///< sum of measurement and map, without motion
     float motion_var_m2 = 0.0F;     ///< height, from the motion since the alignment

@@ -13,7 +13,7 @@ struct MotionPolynomials {
     float xx[3];
     float yy[6];
     float xy[5];
-    float first_x_m;  ///< of the row's first cell, from the body
+    float first_x_m;  ///< x of the row's first cell, from the body
     float step_m;
     float body_z_m;  ///< zero of z
 };

@@ -46,7 +46,7 @@ class DepthSampler {
     Eigen::Matrix3d R_odom_camera_ = Eigen::Matrix3d::Identity();
     std::vector<float> nothing_px_;  ///< a row of NaN
     std::vector<float> padded_px_;   ///< a row of disparities between NaN, per block
-    std::vector<RowCounts> counts_;  ///< per block
+    std::vector<RowCounts> counts_;  ///< one entry per block
 };
 
 }  // namespace surefoot::elevation

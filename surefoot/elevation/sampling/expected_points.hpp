@@ -43,7 +43,7 @@ class ExpectedPoints {
 
   private:
     float scale_m2_;  ///< A fx fy
-    float x_m_;       ///< of cell (0, 0) from the camera
+    float x_m_;       ///< distance of cell (0, 0) from the camera
     float y_m_;
     float camera_z_m_;
     float resolution_m_;

@@ -88,7 +88,7 @@ class SurfaceCheck {
         const float facing_sq = disparity_px * disparity_px;  // comparisons are false for NaN
         if (facing_sq >= l.min_cosine_sq * norms_sq) return true;
         const float upward = a * l.up_x + b * l.up_y + c * l.up_z;
-        const float rise = ray_x * l.up_x + ray_y * l.up_y + l.up_z;  // of the line of sight
+        const float rise = ray_x * l.up_x + ray_y * l.up_y + l.up_z;  // rise of the line of sight
         return rise * rise <= l.min_cosine_sq * ray_sq &&
                upward * upward >= l.min_level_cosine_sq * normal_sq &&
                facing_sq >= l.min_cosine_when_level_sq * norms_sq && upward != 0.0F;

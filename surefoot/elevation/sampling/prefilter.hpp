@@ -79,8 +79,8 @@ class CloudFilter {
                                        int enough) const;
 
     std::vector<std::uint32_t> first_;  ///< hash table: point that stands for a cube
-    std::vector<Cube> cubes_;           ///< per point
-    std::vector<std::uint32_t> next_;   ///< per point: next one in the same cube
+    std::vector<Cube> cubes_;           ///< one cube per point
+    std::vector<std::uint32_t> next_;   ///< per point: the next point in the same cube
     std::vector<std::uint8_t> keep_;
 };
 

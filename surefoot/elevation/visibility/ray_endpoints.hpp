@@ -38,7 +38,7 @@ class RayEndpoints {
     grid::GridGeometry geometry_;
     Eigen::Vector2f camera_cells_ = Eigen::Vector2f::Zero();  ///< counted from the grid corner
     float camera_z_m_ = 0.0F;
-    std::vector<float> z_m_;  ///< per cell: the highest surface
+    std::vector<float> z_m_;  ///< highest surface of each cell
     std::vector<float> bottom_m_;
 };
 

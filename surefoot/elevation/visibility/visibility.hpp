@@ -19,8 +19,8 @@ struct VisibilityConfig {
     bool drops = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
-    /// Frames with such a line, without an agreeing observation in between, that remove a surface
-    /// shown by every observation; a surface shown by every third one needs three times as many.
+    /// Number of such frames, with no agreeing one in between, that removes a surface shown by
+    /// every observation. A surface shown by every third one needs three times as many.
     int frames = 3;
     /// A neighbour of equal height, confirmed this recently, keeps a cell from removal.
     double neighbour_s = 0.4;
@@ -47,8 +47,8 @@ class FreeSpaceRays {
     void add(grid::Cell cell, float z_m);
     /// Call once after the last `add`.
     void finish();
-    /// Returns the height in odom of the lowest line of sight over the middle of a cell that ends
-    /// at least two cells beyond it; +inf without such a line.
+    /// Returns the height in odom of the lowest line of sight over the middle of a cell. The line
+    /// ends at least two cells beyond the cell. +inf without such a line.
     [[nodiscard]] float lowest_over(grid::Cell cell) const;
 
   private:

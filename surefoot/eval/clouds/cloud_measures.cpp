@@ -113,7 +113,7 @@ bool is_step(const Level& lower, const Level& upper) {
 /// Chains levels that are one riser apart, upward and downward from the first level. Among several
 /// levels near the expected height the one with most points is the tread.
 std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
-    constexpr double kUneven = 0.08;  // of a riser
+    constexpr double kUneven = 0.08;  // share of a riser
     constexpr double kLeastShare = 0.15;
     const auto next_to = [&](const Level& from, double rise_m) -> const Level* {
         const Level* best = nullptr;
@@ -160,8 +160,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
     return best;
 }
 
-/// Position of a cluster along a line: the fullest 20 mm, if it holds far more points than chance
-/// could put there from an even spread, such as that of a side wall.
+/// Position of a cluster along a line: the fullest 20 mm. An even spread, such as that of a side
+/// wall, must be very unlikely to put so many points there by chance.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;
@@ -259,7 +259,7 @@ Eigen::Vector2d uphill_of(std::span<const Level> levels) {
 }  // namespace
 
 SortedSurfaces sort_surfaces(std::span<const Vector3f> points_m, Executor& executor) {
-    constexpr float kRadius_m = 0.04F;  // a tread is a quarter of a metre
+    constexpr float kRadius_m = 0.04F;  // small compared with a tread, which is about 0.25 m deep
     const float level_up = std::cos(static_cast<float>(20.0 * M_PI / 180.0));
     const float upright_up = std::sin(static_cast<float>(20.0 * M_PI / 180.0));
     const geometry::KdTree cloud(voxel_means_m(points_m, kSurfaceVoxel_m, executor), executor);

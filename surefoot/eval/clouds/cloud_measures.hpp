@@ -58,7 +58,7 @@ struct Repeated {
     std::vector<double> values_m;
     double mean_m = 0.0;       ///< NaN without values, as the other fields
     double spread_m = 0.0;     ///< standard deviation (n - 1); 0 for one value
-    double std_error_m = 0.0;  ///< of the mean
+    double std_error_m = 0.0;  ///< standard error of the mean
 };
 
 /// Dimensions of stairs from the histograms of their levels.
@@ -77,7 +77,7 @@ struct StairMeasures {
 /// Position and direction of a passage through a door.
 struct DoorPlace {
     Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
-    double yaw_rad = 0.0;  ///< of the way through
+    double yaw_rad = 0.0;  ///< direction of the passage
     double floor_m = 0.0;
 };
 /// Clear width between the nearest points left and right, within 0.1 m of the line across the

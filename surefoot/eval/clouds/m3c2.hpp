@@ -23,11 +23,11 @@ inline constexpr const char* kM3c2NormalsNames[] = {"vertical", "pca"};
 /// Parameters with the names of CloudCompare's plugin: two diameters and a half length.
 struct M3c2Config {
     M3c2Normals normals = M3c2Normals::vertical;
-    double normal_diameter_m = 0.10;      ///< of the ball of points for the normal
-    double projection_diameter_m = 0.05;  ///< of the cylinder along the normal
-    double half_length_m = 0.10;          ///< of the cylinder
+    double normal_diameter_m = 0.10;      ///< diameter of the ball of points for the normal
+    double projection_diameter_m = 0.05;  ///< diameter of the cylinder along the normal
+    double half_length_m = 0.10;          ///< half length of the cylinder
     double registration_error_m = 0.0;    ///< added to the level of detection
-    int min_points = 5;                   ///< per cloud; fewer points: never significant
+    int min_points = 5;                   ///< least points of each cloud for a significant result
     void describe(ConfigVisitor& visitor);
 };
 
@@ -44,9 +44,9 @@ struct M3c2Value {
 };
 
 /// M3C2 of Lague, Brodu and Leroux 2013, "Accurate 3D comparison of complex topography with
-/// terrestrial laser scanner": averages both clouds' points in one cylinder around each core point
-/// along its axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error). Results are in
-/// the order of `cores_m`, which must be finite.
+/// terrestrial laser scanner". Averages the points of both clouds in a cylinder around each core
+/// point, along its axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error). Results
+/// are in the order of `cores_m`, which must be finite.
 [[nodiscard]] std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,
                                           const geometry::KdTree& compared,
                                           std::span<const Eigen::Vector3f> cores_m,

@@ -61,7 +61,7 @@ struct Keyed {  // NOLINT(*-member-init)
 /// Points grouped by the first bits of their voxel number, in their original order.
 struct Dealt {
     std::unique_ptr<Keyed[]> points;  // NOLINT(*-avoid-c-arrays): a vector would fill it first
-    std::vector<std::size_t> first;   ///< of each bucket, and the end
+    std::vector<std::size_t> first;   ///< first entry of each bucket, and the end
 };
 
 geometry::PointBox box_in_pieces(std::span<const Vector3f> points_m, Executor& executor) {
@@ -125,7 +125,7 @@ std::vector<Vector3f> means_m(std::span<Keyed> points) {
 }  // namespace
 
 std::int64_t voxel_number(float p_m, double size_m) noexcept {
-    // `fits_voxels` says no to boxes with such numbers.
+    // `fits_voxels` returns false for boxes with such numbers.
     return saturated_integer<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMinPoints = 100;
 constexpr int kRounds = 3;
 constexpr double kGate_sigma = 4.0;
-constexpr double kSigmaPerMad = 1.4826;  ///< of a normal distribution
+constexpr double kSigmaPerMad = 1.4826;  ///< sigma / MAD of a normal distribution
 
 Eigen::Vector3d direction_of(const Eigen::Vector3d& p_m) {
     return {p_m.x() / p_m.z(), p_m.y() / p_m.z(), 1.0};

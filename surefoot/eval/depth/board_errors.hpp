@@ -29,10 +29,10 @@ struct BoardPlane {
 /// Errors of a stereo camera on a flat board across its optical axis.
 struct BoardErrors {
     double axial_m = 0.0;  ///< distance of the fitted plane on the axis - true distance
-    double std_m = 0.0;    ///< of all depths about the fitted plane, outliers included
+    double std_m = 0.0;    ///< scatter of all depths about the fitted plane, outliers included
     /// axial_m divided by the distance: the relative error of a length on the board due to its
-    /// depth error. Derived from axial_m, not an independent measurement: a textured board has no
-    /// marks at known distances, and a lens error across the image does not show in it.
+    /// depth error. Not an independent measurement: a textured board has no marks at known
+    /// distances. A lens error across the image does not show in this value.
     double scale_share = 0.0;
     std::int64_t points = 0;
 };

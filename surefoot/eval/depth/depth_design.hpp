@@ -13,9 +13,9 @@ struct DepthDesign {
     double focal_px = 342.0;
     int width = 672;
     int height = 376;
-    double sigma_px = 0.1;  ///< of a disparity, 1 sigma
+    double sigma_px = 0.1;  ///< one sigma of a disparity
     double camera_height_m = 1.0;
-    double pitch_deg = 32.0;  ///< below the horizon
+    double pitch_deg = 32.0;  ///< camera pitch below the horizon
 
     /// Describes the first impossible value; no value if the design is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
@@ -34,7 +34,7 @@ struct DepthDesign {
 /// divide the noise limit by sqrt(n); the smoothing of a matcher cancels this gain).
 struct ResolvableHeight {
     double range_m = 0.0;
-    bool in_view = false;  ///< between the lower and the upper image border
+    bool in_view = false;  ///< the point is between the lower and the upper image border
     double depth_m = 0.0;
     double sigma_depth_m = 0.0;
     double noise_limit_m = 0.0;

@@ -15,8 +15,8 @@ namespace surefoot::eval {
 struct DepthPair {
     ImageView<const float> estimate_px;
     ImageView<const float> truth_px;
-    ImageView<const std::uint8_t> mask;  ///< empty = all pixels; else only non-zero pixels
-    ImageView<const float> sigma_px;     ///< of the estimate; may be empty
+    ImageView<const std::uint8_t> mask;  ///< empty = all pixels, otherwise the non-zero ones
+    ImageView<const float> sigma_px;     ///< sigma of the estimate; may be empty
 };
 
 /// Share of pixels with |error| above 0.5, 1 and 2 px [%].
@@ -32,10 +32,10 @@ struct DepthErrors {
     /// matcher gains nothing by answering only at easy pixels. A pixel that stays unknown counts as
     /// bad.
     BadPixels bad;
-    BadPixels known_bad;           ///< over the counted pixels with a known estimate
+    BadPixels known_bad;           ///< bad pixels among the counted pixels with a known estimate
     double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
     ErrorFigures known;            ///< estimate - truth at the known estimates [px]
-    SigmaCoverage coverage;        ///< of the known estimates; empty without sigma
+    SigmaCoverage coverage;        ///< coverage of the known estimates; empty without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
     /// Median of truth / estimate where both are known and positive. About 1 if both are in pixels;
@@ -43,9 +43,9 @@ struct DepthErrors {
     double truth_over_estimate = 0.0;
 };
 
-/// Fills an unknown pixel with the smaller of the nearest known disparities to its left and right
-/// in the row (the background of an occlusion), as Middlebury fills sparse results. A row without
-/// any known pixel stays unknown.
+/// Fills an unknown pixel with the background of an occlusion, as Middlebury fills sparse results.
+/// This is the smaller of the nearest known disparities to the left and right in the row. A row
+/// without any known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
 
 /// Suspected scale factor of the truth, for example 4 or 1/16: the factor, among those that data

@@ -16,7 +16,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEqualAreas = 1e-12;
 
 struct Value {
-    double key = 0.0;  ///< what the values are sorted by
+    double key = 0.0;  ///< value that defines the order
     double error = 0.0;
 };
 

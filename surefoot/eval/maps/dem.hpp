@@ -57,8 +57,8 @@ class CloudBounds {
 
 /// Builds a height map from points in any number of pieces. Memory depends on the number of cells
 /// and threads, not on the points: each thread has its own cells. The result does not depend on the
-/// order of the points or the number of threads: not for highest and lowest, and not for the mean
-/// (sums of whole numbers of 0.12 um).
+/// order of the points or the number of threads. This also holds for the mean, which sums whole
+/// numbers of 0.12 um.
 class DemBuilder {
   public:
     DemBuilder(const DemGrid& grid, Reduce reduce);

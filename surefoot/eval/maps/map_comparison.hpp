@@ -44,19 +44,19 @@ struct MapComparison {
     std::vector<ErrorBin> by_distance;  ///< to the nearest position of the machine [m]
     std::vector<ErrorBin> by_range;     ///< to the camera at the cell's last observation [m]
     std::vector<ErrorBin> by_column;    ///< image column of the cell's last observation [px]
-    SigmaCoverage sigma;                ///< of the height, away from edges
+    SigmaCoverage sigma;                ///< coverage of the height sigma, away from edges
     double coverage = 0.0;
     TraversabilityErrors traversability;
     ErrorFigures edges;                     ///< |jumps| between neighbours on the level floor
     std::vector<ErrorBin> edges_by_column;  ///< [px]
-    FloorSpread floor;                      ///< of the level floor's cells
+    FloorSpread floor;                      ///< spread of the level floor's cells
     Image<Call> calls;
     grid::Layer error_m;
 };
 
 /// Compares the maps without any alignment. Edges and floor use level_floor of the truth. Errors by
-/// distance, range and column leave out edges: at a step, a shift of the map by one cell causes an
-/// error of the step height, for every camera position.
+/// distance, range and column leave out edges. At a step, a shift of the map by one cell causes an
+/// error of the step height for every camera position.
 [[nodiscard]] MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config);
 
 }  // namespace surefoot::eval

@@ -31,8 +31,8 @@ struct HeightJumps {
 /// Distances of the cells of a floor from one plane; NaN and 0 cells if there is no plane.
 struct FloorSpread {
     double spread_m = 0.0;   ///< 1.4826 times the median |residual - median|: one sigma if normal
-    double rms_m = 0.0;      ///< of all residuals, outliers included
-    double p99_abs_m = 0.0;  ///< of |residual|
+    double rms_m = 0.0;      ///< rms of all residuals, outliers included
+    double p99_abs_m = 0.0;  ///< 99th percentile of |residual|
     double tilt_deg = 0.0;   ///< angle of the plane's normal to z
     std::int64_t count = 0;  ///< known cells in the mask
 };

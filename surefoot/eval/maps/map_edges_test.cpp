@@ -107,7 +107,7 @@ TEST(LevelFloor, KeepsWhatIsWithinTheBandOnly) {
     const std::vector<int> expected = {1, 1, 1, 0, 0, 0};
     for (int ix = 0; ix < 6; ++ix)
         EXPECT_EQ(mask.at(ix, 0), expected[static_cast<std::size_t>(ix)]);
-    // Of two equal surfaces the lower one; the unknown cell between makes no edge.
+    // Two equal surfaces: the lower one counts; the unknown cell between them makes no edge.
     const CellMask lower = level_floor(layer_of(5, {0.5F, 0.5F, kNanF, 0.1F, 0.1F}), {});
     EXPECT_EQ(lower.at(0, 0), 0);
     EXPECT_EQ(lower.at(3, 0), 1);

@@ -57,7 +57,7 @@ constexpr double kTickSpacing_px = 16.0;
 constexpr double kFallTick_px = 10.0;
 constexpr int kHalo_px = 4;  ///< both edges of a line together
 
-/// Where the right-hand ticks of a line begin and end.
+/// Begin and end of the right-hand ticks of a line.
 std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Stroke& stroke) {
     std::vector<std::pair<PointPx, PointPx>> ticks;
     for (std::size_t i = 0; stroke.ticks && i + 1 < stroke.points_m.size(); ++i) {

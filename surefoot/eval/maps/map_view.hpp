@@ -16,8 +16,8 @@ namespace surefoot::eval {
 /// Top view of the ground: x forward is up, y left is left.
 struct MapView {
     RectPx plot;
-    double x_max_m = 0.0;  ///< at the upper border
-    double y_max_m = 0.0;  ///< at the left border
+    double x_max_m = 0.0;  ///< x at the upper border
+    double y_max_m = 0.0;  ///< y at the left border
     double px_per_m = 1.0;
 
     [[nodiscard]] PointPx to_px(const Eigen::Vector2d& p_m) const {
@@ -35,7 +35,7 @@ struct MapView {
 struct Outline {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
-    std::string label;  ///< in the legend; outlines with equal labels share one entry
+    std::string label;  ///< legend text; outlines with equal labels share one entry
 };
 /// A line with a white edge.
 struct Stroke {
@@ -44,8 +44,8 @@ struct Stroke {
     int width_px = 4;
     /// Legend entry, as for outlines; a line break starts a new row.
     std::string label = {};
-    bool ticks = false;  ///< on the right-hand side, the map symbol for falling ground
-    bool arrow = false;  ///< at the last point
+    bool ticks = false;  ///< draws ticks on the right-hand side, the map symbol for falling ground
+    bool arrow = false;  ///< draws an arrow at the last point
 };
 /// A short text on a disc, for example the number of a step. A badge that would cover an earlier
 /// badge is left out.
@@ -58,11 +58,11 @@ struct Badge {
 struct Dots {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
-    std::string label;  ///< in the legend, if there are points
+    std::string label;  ///< legend text, if there are points
 };
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-    std::string label;  ///< in the legend: text over the map would hide the map
+    std::string label;  ///< legend text: text over the map would hide the map
 };
 struct Overlays {
     std::optional<Pose> T_odom_body;

@@ -20,8 +20,8 @@ struct EvalMapsConfig {
 /// Selected cells: 0 = no, any other value = yes. Same element order as grid::Layer.
 using CellMask = Image<std::uint8_t>;
 
-/// Reads `layer` of grid `from` at the cell centres of grid `to`: takes the cell that contains the
-/// centre (on a border: the cell with the greater index), NaN outside.
+/// Reads `layer` of grid `from` at the cell centres of grid `to`. Takes the cell that contains the
+/// centre; on a border, the cell with the greater index. NaN outside.
 [[nodiscard]] grid::Layer resample_nearest(const grid::GridGeometry& from,
                                            const grid::Layer& layer,
                                            const grid::GridGeometry& to);

@@ -19,13 +19,13 @@ struct PinholeView {
 /// Image column and distance of each cell at its last observation; NaN = never observed.
 struct Sightings {
     grid::Layer column_px;  ///< image column of the cell's centre
-    grid::Layer range_m;    ///< from the camera to the cell, horizontally
+    grid::Layer range_m;    ///< horizontal distance from the camera to the cell
 };
 
-/// For each known cell the latest pose from which its centre, at its height, falls into the image
-/// and is at most `max_depth_m` away along the optical axis. Occlusion is ignored: a cell counts as
-/// observed although another object may hide it. `T_world_camera`: poses of the optical frame in
-/// the map's frame, in time order.
+/// Finds for each known cell the latest pose that observes its centre at its height. The centre is
+/// in the image and at most `max_depth_m` away along the optical axis. Ignores occlusion: a cell
+/// counts as observed although another object may hide it. `T_world_camera`: poses of the optical
+/// frame in the map's frame, in time order.
 [[nodiscard]] Sightings last_sightings(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const Trajectory& T_world_camera,

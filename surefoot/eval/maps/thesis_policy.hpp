@@ -12,7 +12,7 @@ namespace surefoot::eval {
 /// beyond the map count as `unmapped`. For comparison only: this policy allows ground that was
 /// never observed.
 struct ThesisPolicy {
-    double length_m = 0.20;   ///< of the rectangle, along the robot
+    double length_m = 0.20;   ///< length of the rectangle, along the robot
     double width_m = 0.40;    ///< across
     double safe_mean = 0.80;  ///< allowed from this mean on (safeTraverse)
     double unmapped = 1.0;    ///< traversability_default in the configuration of Lange 2016
@@ -20,7 +20,7 @@ struct ThesisPolicy {
 
 struct ThesisAnswer {
     bool allowed = false;
-    double mean = 0.0;  ///< of all cells whose centre lies under the rectangle; 0 without cells
+    double mean = 0.0;  ///< mean of the cells whose centre lies in the rectangle; 0 without cells
     int cells = 0;
     int unmapped = 0;  ///< number of these cells that are unmapped
 };

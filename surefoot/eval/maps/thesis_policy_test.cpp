@@ -18,7 +18,7 @@ const ThesisPolicy kPolicy;
 
 TEST(ThesisPolicy, TakesTheMeanUnderTheRectangle) {
     Image<float> rating(10, 10, 1.0F);
-    rating.at(4, 3) = 0.0F;  // of 8 cells: 7 / 8
+    rating.at(4, 3) = 0.0F;  // one of 8 cells: mean 7 / 8
     const ThesisAnswer answer = thesis_policy(kPolicy, {0.5, 0.5, 0.0}, kGrid, rating.view());
     EXPECT_EQ(answer.cells, 8);
     EXPECT_DOUBLE_EQ(answer.mean, 0.875);

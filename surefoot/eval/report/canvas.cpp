@@ -15,7 +15,7 @@ namespace {
 /// Text is drawn this many times larger and reduced by area: the stroke font then has smooth,
 /// evenly weighted lines at every size.
 constexpr int kTextOversampling = 8;
-constexpr double kHersheyCapHeight = 21.0;  ///< of FONT_HERSHEY_SIMPLEX at scale 1
+constexpr double kHersheyCapHeight = 21.0;  ///< height of FONT_HERSHEY_SIMPLEX capitals at scale 1
 constexpr int kShift = 4;                   ///< OpenCV's fixed point: 1/16 px
 
 cv::Mat as_mat(Picture& picture) {

@@ -33,8 +33,8 @@ constexpr std::array<Rgb8, 17> kMagma = {{
 // clang-format on
 constexpr double kPaleness = 0.5;  ///< share of white in the pale map
 constexpr std::array<Rgb8, 2> kGrey = {{{0, 0, 0}, {255, 255, 255}}};
-// Our own, around Okabe-Ito vermillion and blue: two halves with a jump between them, so that no
-// cell near the limit is drawn in a colour that belongs to neither side.
+// Our own map, around Okabe-Ito vermillion and blue. Its two halves have a jump between them, so no
+// cell near the limit gets a colour that belongs to neither side.
 constexpr std::array<Rgb8, 4> kUnsafeHalf = {
     {{128, 38, 0}, {200, 80, 0}, {238, 142, 60}, {253, 208, 162}}};
 constexpr std::array<Rgb8, 4> kSafeHalf = {

@@ -31,7 +31,7 @@ struct ReportTable {
     std::vector<std::vector<std::string>> rows;
     std::string hint = {};  ///< small text below
     bool wide = false;      ///< takes the whole width of the page
-    bool folded = false;    ///< only its title is shown until the reader opens it
+    bool folded = false;    ///< shows only the title until the reader opens the section
 };
 
 /// A drawing of svg_plot.hpp.

@@ -18,7 +18,7 @@ struct LinePlot {
         bool dashed = false;        ///< results of other authors
     };
     std::string title;
-    std::string x_label;  ///< with their units
+    std::string x_label;  ///< labels with their units
     std::string y_label;
     std::vector<Line> lines;  ///< at most kColours
     static constexpr std::size_t kColours = 5;

@@ -24,7 +24,7 @@ struct ValueRange {
 /// Mapping from numbers to colours.
 struct LayerStyle {
     FigureText text;
-    std::string unit;  ///< in the legend
+    std::string unit;  ///< unit in the legend
     ColorMap map = ColorMap::viridis;
     std::optional<ValueRange> range;  ///< no value: 1st to 99th percentile of the known values
     double min_span = 0.0;            ///< smallest width of a range computed from the values
@@ -38,7 +38,7 @@ struct LayerStyle {
 /// Predefined styles; callers may change `subtitle`.
 [[nodiscard]] LayerStyle elevation_style();
 [[nodiscard]] LayerStyle traversability_style(double safe_threshold);
-/// For one-sigma heights that are stored in m and shown in mm.
+/// Style for one-sigma heights that are stored in m and shown in mm.
 [[nodiscard]] LayerStyle height_sigma_style();
 
 /// Range of the shown values by the rule of LayerStyle; {0, 1} if no value is known.
@@ -72,8 +72,8 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// The same colours without title, axes and legend, cut to the known cells of the live map and the
-/// path (at least `kThumbnailCells` wide and high); empty if no cell is known.
+/// The same colours without title, axes and legend. Shows only the known cells of the live map and
+/// the path, at least `kThumbnailCells` wide and high. Empty if no cell is known.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,

@@ -119,8 +119,8 @@ struct BinPlotFrame {
     double right = kWidth - 16.0;
     double top = 34.0;
     double bottom = 214.0;
-    double low = 0.0;   ///< of the x axis
-    double high = 1.0;  ///< of the x axis
+    double low = 0.0;   ///< lower end of the x axis
+    double high = 1.0;  ///< upper end of the x axis
     double tall = 1.0;  ///< upper end of the y axis
 
     [[nodiscard]] double x_of(double value) const {

@@ -43,10 +43,10 @@ struct HealthSample {
 struct BinPlot {
     struct Line {
         std::string label;
-        std::vector<double> values;  ///< one per bin; NaN = no value, the line has a gap
+        std::vector<double> values;  ///< one value per bin; NaN = no value, the line has a gap
     };
-    std::string x_label;        ///< with its unit
-    std::string unit;           ///< of the values
+    std::string x_label;        ///< label with its unit
+    std::string unit;           ///< unit of the values
     std::vector<double> edges;  ///< bin edges, ascending; one more than values
     std::vector<Line> lines;    ///< at most two
     double high = 0.0;          ///< upper end of the y axis; 0 = just above the largest value

@@ -61,7 +61,7 @@ TEST(ClassesPicture, TheKeyHoldsWhatThereIs) {
     EXPECT_TRUE(in_key(GroundClass::table));
 }
 
-/// As a dichromat sees a colour, in linear RGB (Vienot, Brettel and Mollon 1999).
+/// Returns a colour as a dichromat sees it, in linear RGB (Vienot, Brettel and Mollon 1999).
 std::array<double, 3> seen_by_dichromat(Rgb8 color, bool no_red) {
     const auto linear = [](std::uint8_t value) { return std::pow(value / 255.0, 2.2); };
     const double r = linear(color.r), g = linear(color.g), b = linear(color.b);

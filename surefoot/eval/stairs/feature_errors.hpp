@@ -8,8 +8,8 @@
 
 namespace surefoot::eval {
 
-/// Limits for a match between a found and a true feature: rotation, and offset of the middle across
-/// the line (along the path over it) and along the line.
+/// Limits for a match between a found and a true feature. They limit the rotation, and the offset
+/// of the middle along the line and across it (along the path over the feature).
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
@@ -33,7 +33,7 @@ struct KindErrors {
     std::vector<stairs::FeaturePose> extra;   ///< found features without a match
     std::vector<std::size_t> missed_at;       ///< indices of the missed features in their lists
     std::vector<std::size_t> extra_at;
-    MatchErrors across;  ///< of its position, along the path over it
+    MatchErrors across;  ///< position error along the path over the feature
     MatchErrors height;  ///< riser of flights; sill of doors
 
     [[nodiscard]] double recall() const;     ///< NaN without a true feature
@@ -55,7 +55,7 @@ struct FeatureErrors {
     KindErrors drops;
     KindErrors kerbs;
     KindErrors sills;
-    DoorErrors doors;  ///< also matches the opposite direction of passage
+    DoorErrors doors;  ///< errors of doors; the opposite direction of passage also matches
     KindErrors edges;  ///< all edges, matched with the lower ground on the same side
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLeft = layout::kMargin_px + layout::kAxisBand_px;
 constexpr int kTop = layout::kTitleBand_px;
-constexpr int kSide_px = 800;  ///< of the map below
+constexpr int kSide_px = 800;  ///< side of the map below
 
 /// With the rim of two cells 4 m by 4 m from (0, -2), 40 cells of 20 px a side: 200 px a metre.
 grid::GridGeometry square() {
@@ -209,7 +209,7 @@ TEST(StairsPicture, ManyFlightsAndDoorsDoNotFillThePage) {
 TEST(StairsPicture, ADoorIsALineAcrossItsOpening) {
     stairs::TerrainFeatures features;
     stairs::Door door;
-    door.pose = {{2.0, 0.0, 0.0}, 0.5 * std::numbers::pi};  // one goes through along y
+    door.pose = {{2.0, 0.0, 0.0}, 0.5 * std::numbers::pi};  // the passage leads along y
     door.width_m = 1.0;
     features.doors = {door};
     const Picture picture = drawn(features);

@@ -98,7 +98,7 @@ TEST(PathErrors, AgreeWithTheRuleOnAWalkThatStopsAndGoes) {
         Trajectory truth, estimate;
         Pose T;
         for (int k = 0; k < 120; ++k) {
-            if (rng.uniform() < 0.6) {  // else it stands still
+            if (rng.uniform() < 0.6) {  // otherwise the camera stands still
                 T = T * Pose{exp_so3({0.0, 0.0, 0.1 * rng.normal()}), {rng.uniform(0, 0.1), 0, 0}};
             }
             truth.push_back({k, T});

@@ -60,11 +60,11 @@ struct TrajectoryErrors {
     /// which needs no alignment. NaN if the true path is shorter than 1 mm.
     double drift_percent = 0.0;
     int matched = 0;
-    double path_length_m = 0.0;  ///< of the matched true positions
+    double path_length_m = 0.0;  ///< length of the path through the matched true positions
     double end_error_m = 0.0;    ///< |t| above
     Pose T_truth_estimate;       ///< the alignment
     std::vector<PosePair> pairs;
-    std::vector<double> position_error_m;  ///< per pair, after alignment
+    std::vector<double> position_error_m;  ///< one error per pair, after alignment
 };
 
 /// Compares an estimated trajectory with the truth; both give poses of the same body. If the truth

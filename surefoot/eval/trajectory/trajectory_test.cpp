@@ -292,7 +292,7 @@ double turned_sq_m2(double chord_m, double turn_deg) {
 }
 
 TEST(Trajectory, RpeByHandAtSeveralLengths) {
-    const double up_sq_m2 = 4.0 * kBump_m * kBump_m;  // of stretches between a high and a low pose
+    const double up_sq_m2 = 4.0 * kBump_m * kBump_m;  // stretches between a high and a low pose
     const double side_m = std::sqrt((3.0 * up_sq_m2 + turned_sq_m2(2.0, 0.0) +
                                      turned_sq_m2(2.0, 1.0) + turned_sq_m2(2.0, 3.0)) /
                                     3.0);

@@ -7,8 +7,8 @@
 
 #include "surefoot/io/settings/yaml_tree.hpp"
 
-/// Detects the format of a calibration file. Only this header distinguishes formats: every command
-/// that reads a rig or a machine file uses it, so that no reader checks a file against the keys of
+/// Detects the format of a calibration file. Only this header distinguishes formats. Every command
+/// that reads a rig or a machine file uses it, so no reader checks a file against the keys of
 /// another format.
 namespace surefoot::io {
 

@@ -18,7 +18,7 @@ using testing::contains;
 /// Tolerance: printed doubles read back exactly, but a pose goes through a matrix or a rotation
 /// vector and its inverse.
 constexpr double kPoseRounding = 2e-14;
-/// The same tolerance in pixels, for f < 1000 px.
+/// This tolerance in pixels, for f < 1000 px.
 constexpr double kPixelRounding_px = 1e-10;
 
 template <typename T>

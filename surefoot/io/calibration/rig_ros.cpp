@@ -38,7 +38,7 @@ const RosKeys& keys_of(const YamlNode& root) {
 struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
-    double x_m = 0.0;          ///< its centre on the x axis of the rectified frame
+    double x_m = 0.0;          ///< camera centre on the x axis of the rectified frame
     bool has_rotation = true;  ///< false: R is all zero, "not rectified"
     std::vector<std::string> notes;
 };
@@ -163,8 +163,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to: first
-/// the part `roi` (in pixels of that image; all 0 = the whole image), then binning.
+/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to. First
+/// `roi` (in pixels of that image; all 0 = the whole image), then binning.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;

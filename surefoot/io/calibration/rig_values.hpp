@@ -76,7 +76,7 @@ struct RectifiedMatrices {
 /// Computes our rectification (camera::Rectifier). `rig`: two cameras and no problem().
 [[nodiscard]] RectifiedMatrices rectified_matrices(const camera::StereoRig& rig);
 
-/// As parse_opencv_rig for a parsed document; also returns the notes.
+/// Works as parse_opencv_rig on a parsed document; also returns the notes.
 [[nodiscard]] Result<RigFile> opencv_rig(const YamlNode& root,
                                          const std::string& file,
                                          std::optional<ImageSize> size);

@@ -114,7 +114,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     rig.right = rig.left;
     const YamlNode* baseline = required_of_pair(yaml, "baseline_m");
     if (baseline == nullptr) return;
-    constexpr double kLargest = 1e12;  // for any unit; the next line applies the real limit
+    constexpr double kLargest = 1e12;  // valid for any unit; the next line applies the real limit
     const double baseline_m = yaml.number(*baseline, "baseline_m", -kLargest, kLargest);
     if (const auto problem = camera::baseline_problem(baseline_m))
         yaml.fail(*baseline, "baseline_m", *problem);

@@ -18,7 +18,7 @@ namespace {
 
 struct Mode {
     const char* name;
-    ImageSize size;  ///< of one camera
+    ImageSize size;  ///< image size of one camera
 };
 /// Stereolabs' names of the resolutions of their stereo cameras.
 constexpr std::array<Mode, 8> kModes{{{"2K", {2208, 1242}},

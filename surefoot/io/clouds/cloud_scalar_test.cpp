@@ -89,7 +89,7 @@ TEST(CloudScalar, OnlyWhatATypeHoldsIsAdded) {
 TEST(CloudScalar, BlocksKeepTypesViewpointAndDoubles) {
     const TemporaryFolder folder;
     PointCloud cloud = cloud_of_all_types();
-    cloud.points_m[0].x() = 0.1;  // which a float cannot hold
+    cloud.points_m[0].x() = 0.1;  // a float cannot hold 0.1
     cloud.T_cloud_sensor = Pose{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {0.0, -1.0, 0.0}};
     ASSERT_TRUE(write_pcd(folder / "in.pcd", cloud, {true, true}).ok());
     auto stream = CloudStream::open(folder / "in.pcd");

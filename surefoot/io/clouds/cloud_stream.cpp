@@ -58,7 +58,7 @@ class CloudStream::Rows final : public Part {
     std::string path_;
     files::InputFile file_;
     CloudRows rows_;
-    std::vector<std::string> notes_;  ///< of the blocks so far, each once
+    std::vector<std::string> notes_;  ///< notes of the blocks so far, each note once
     std::uint64_t next_ = 0;
 };
 

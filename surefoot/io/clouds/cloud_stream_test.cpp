@@ -207,7 +207,7 @@ TEST(CloudWriter, WritesWhatComesInBlocks) {
     const TemporaryFolder folder;
     const PointCloud cloud = many_points(1000, 4);
     for (const char* name : {"a.ply", "a.pcd", "a.xyz"}) {
-        const bool text = std::string(name) == "a.xyz";  // where colours are columns
+        const bool text = std::string(name) == "a.xyz";  // text files store colours as columns
         ASSERT_TRUE(write_ply(folder / "in.ply", cloud).ok());
         auto writer = CloudWriter::create(folder / name);
         ASSERT_TRUE(writer.ok()) << writer.error().message;

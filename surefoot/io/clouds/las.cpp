@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kVersionMinor = 25;
 constexpr std::size_t kHeaderSize = 94;
 constexpr std::size_t kPointsAt = 96;
-constexpr std::size_t kRecordCount = 100;  ///< of variable length records
+constexpr std::size_t kRecordCount = 100;  ///< offset of the number of variable length records
 constexpr std::size_t kFormat = 104;
 constexpr std::size_t kRecordBytes = 105;
 constexpr std::size_t kPoints32 = 107;
@@ -28,11 +28,11 @@ constexpr std::size_t kSmallestHeader = 227;
 constexpr std::size_t kHeader14 = 375;
 
 struct RecordFormat {
-    std::size_t bytes;     ///< of all fields
-    std::size_t time;      ///< where the GPS time begins; 0 = there is none
-    std::size_t colour;    ///< where red begins
-    std::size_t infrared;  ///< where the near infrared channel begins
-    std::size_t waves;     ///< where the wave packet begins
+    std::size_t bytes;     ///< size of all fields
+    std::size_t time;      ///< offset of the GPS time; 0 = no GPS time
+    std::size_t colour;    ///< offset of red
+    std::size_t infrared;  ///< offset of the near infrared channel
+    std::size_t waves;     ///< offset of the wave packet
 };
 // Tables 7 to 17.
 constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
@@ -122,7 +122,8 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     return header;
 }
 
-/// One value of every record as a scalar; `value_of` takes the record's first byte.
+/// Adds one value of every record to the cloud as a scalar. `value_of` gets a pointer to the start
+/// of the record.
 template <typename T, typename Value>
 void add_scalar(const Header& header,
                 std::string_view records,

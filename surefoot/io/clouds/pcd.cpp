@@ -203,13 +203,13 @@ std::optional<int> axis_of(const Field& field) {
 /// Target of the values of a field.
 struct Role {
     enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
-    std::size_t index = 0;  ///< of the axis, or of the scalar
+    std::size_t index = 0;  ///< index of the axis or of the scalar
 };
 
 /// A cloud that is filled field by field, or point by point.
 struct Collector {
     PointCloud cloud;
-    std::vector<Role> roles;  ///< per field
+    std::vector<Role> roles;  ///< one role per field
 
     explicit Collector(const Header& header) {
         const std::size_t count = *header.points;

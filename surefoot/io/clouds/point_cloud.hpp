@@ -19,7 +19,7 @@ struct PointCloud {
     std::vector<Eigen::Vector3d> points_m;  ///< NaN = no measurement (organised clouds)
     int width = 0;                          ///< organised: columns; otherwise all points in one row
     int height = 1;            ///< organised: rows > 1; point of (u, v) at v * width + u
-    std::vector<Rgb> colours;  ///< one per point, or empty
+    std::vector<Rgb> colours;  ///< one colour per point, or empty
     std::vector<CloudScalar> scalars;
     /// Viewpoint, if the file has one (PCD's VIEWPOINT). The points keep the frame of the file: the
     /// viewpoint is not applied to them.
@@ -36,7 +36,7 @@ struct PointCloud {
 /// How to write a cloud.
 struct CloudFormat {
     bool binary = true;
-    bool double_precision = false;  ///< for large (projected) coordinates; float keeps 24 bits
+    bool double_precision = false;  ///< for large (projected) coordinates; a float has 24 bits
 };
 
 /// Whether the extension is a text cloud with a point a line: .xyz .asc .txt .csv .pts.

@@ -18,7 +18,7 @@ namespace surefoot::io {
 /// the first point define the layout of all lines. `parse_text_cloud` describes the lines.
 ///
 /// Scalars are doubles. A column whose first value is a whole number beyond 2^53 (nanoseconds since
-/// 1970) holds 64-bit whole numbers instead; a later value of another kind is an error.
+/// 1970) holds 64-bit whole numbers. A later value of another kind is then an error.
 class TextCloudParser {
   public:
     explicit TextCloudParser(std::string file) : file_(std::move(file)) {}

@@ -32,8 +32,8 @@ using DepthCodes = Image<std::uint16_t>;
 struct ImageHeader {
     int width = 0;
     int height = 0;
-    int bits = 8;      ///< per channel, as decoded: 8 or 16
-    int channels = 1;  ///< as stored, alpha included; a palette counts as 3
+    int bits = 8;      ///< bits per channel after decoding: 8 or 16
+    int channels = 1;  ///< number of stored channels, alpha included; a palette counts as 3
 };
 
 /// Largest image that is decoded; a damaged header cannot exhaust the memory.

@@ -262,7 +262,7 @@ TEST(DemFile, MarksForNoDataAreUnknownHoweverTheyAreSpelt) {
         EXPECT_EQ(dem->values.at(1, 1), 0.5F) << grid.what;
         EXPECT_EQ(dem->values.at(0, 0), 0.25F) << grid.what;
     }
-    // What is not a mark stays: a layer may hold anything.
+    // Values that are not marks stay: a layer may hold anything.
     EXPECT_EQ(parse_esri_grid(grid_of("", "-32768 1 1\n1 1 1\n"), "a.asc")->values.at(0, 1),
               -32768.0F);
 }

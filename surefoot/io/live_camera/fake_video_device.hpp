@@ -45,7 +45,7 @@ class FakeCamera {
     std::map<std::uint32_t, FakeControl> controls;
     std::uint32_t buffer_length = 1 << 16;
     bool keeps_its_own_size = false;  ///< S_FMT returns half the width, as drivers may do
-    int open_error = 0;               ///< of every attempt to open
+    int open_error = 0;               ///< error number of every attempt to open; 0 = success
     int absent_for = 0;               ///< number of failing attempts to open after an unplugging
     std::deque<FakeEvent> script;
     /// Counters that tests check.

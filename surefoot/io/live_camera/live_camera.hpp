@@ -19,13 +19,13 @@ enum class FormatChoice : std::uint8_t { any, yuyv, mjpeg };
 /// Settings of a live camera.
 struct CameraConfig {
     double exposure_ms = 0.0;  ///< 0 = leave as it is
-    int gain = -1;             ///< in the driver's units; -1 = leave as it is
+    int gain = -1;             ///< gain in the driver's units; -1 = no change
     int white_balance_k = 0;   ///< 0 = leave as it is
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
     double readout_ms = 0.0;    ///< rolling shutter, first to last row; 0 = global shutter
-    double timeout_s = 1.0;     ///< without a frame for this long the device counts as gone
-    double reconnect_s = 10.0;  ///< without a frame for this long the run ends
+    double timeout_s = 1.0;     ///< longest time without a frame until the device counts as gone
+    double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
     int max_damaged = 30;       ///< the run ends after this many unusable frames in a row
 
     void describe(ConfigVisitor& visitor);
@@ -72,7 +72,7 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
-    static constexpr int kRetry_ms = 200;  ///< between two attempts to open
+    static constexpr int kRetry_ms = 200;  ///< pause between two attempts to open
     static constexpr int kSlice_ms = 100;  ///< longest wait between two polls of `stop`
 
   private:

@@ -19,7 +19,7 @@ using testing::FakeCamera;
 using testing::FakeEvent;
 using testing::FakeVideoDevice;
 
-constexpr int kWidth = 32;  // of one camera
+constexpr int kWidth = 32;  // width of one camera's image
 constexpr int kHeight = 24;
 constexpr std::int64_t kStart_us = 5'000'000;
 constexpr std::int64_t kPeriod_us = 33'333;
@@ -290,7 +290,7 @@ TEST(LiveCamera, DecodesMjpegAndSurvivesDamage) {
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
     const StereoFrame first = next_of(*live);
-    EXPECT_NEAR(first.left.at(10, 10), 60, 2);  // one quantisation step of the encoder's
+    EXPECT_NEAR(first.left.at(10, 10), 60, 2);  // tolerance of one quantisation step of the encoder
     EXPECT_NEAR(first.right.at(10, 10), 180, 2);
     EXPECT_EQ(next_of(*live).frame_status.damaged, 2);
 }

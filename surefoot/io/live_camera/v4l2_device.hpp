@@ -18,7 +18,7 @@ enum class PixelFormat : std::uint8_t { yuyv, mjpeg, other };
 struct VideoMode {
     PixelFormat format = PixelFormat::other;
     std::string fourcc;  ///< "YUYV", "MJPG", ...
-    int width = 0;       ///< of the whole image: both cameras side by side
+    int width = 0;       ///< width of the whole image: both cameras side by side
     int height = 0;
     double rate_hz = 0.0;  ///< 0 = unknown, or the driver's choice
 };
@@ -26,7 +26,7 @@ struct VideoMode {
 /// An integer control of the camera.
 struct VideoControl {
     std::uint32_t id = 0;  ///< V4L2_CID_*
-    std::string name;      ///< as the driver calls it
+    std::string name;      ///< name of the control in the driver
     int min = 0;
     int max = 0;
     int step = 1;
@@ -40,7 +40,7 @@ struct VideoBuffer {
     int bytes_per_line = 0;
     std::int64_t time_ns = 0;  ///< the driver's stamp, in `CLOCK_MONOTONIC` if `monotonic`
     bool monotonic = false;
-    bool at_exposure_start = false;  ///< else the stamp is at the end of the transfer
+    bool at_exposure_start = false;  ///< false: the stamp is at the end of the transfer
     std::uint32_t sequence = 0;      ///< the driver's frame counter
     bool damaged = false;            ///< the driver reports a damaged image
     std::uint32_t slot = 0;

@@ -46,7 +46,7 @@ class KernelVideoDevice final : public VideoDevice {
         return address == MAP_FAILED ? nullptr : static_cast<const std::uint8_t*>(address);
     }
     void unmap(const std::uint8_t* address, std::size_t length) override {
-        ::munmap(const_cast<std::uint8_t*>(address), length);  // its interface knows no const
+        ::munmap(const_cast<std::uint8_t*>(address), length);  // munmap takes no pointer to const
     }
     int wait(int timeout_ms) override {
         pollfd poll = {descriptor_, POLLIN, 0};

@@ -33,7 +33,7 @@ bool is_cell_size(double side_m) {
 /// Relative precision of a float: writers print marks from floats, with 7 to 17 digits.
 constexpr double kFloatStep = 1.1920928955078125e-07;
 
-/// Whether a value stands for "no data".
+/// Returns true if a value means "no data".
 bool is_no_data(double value, double no_data) {
     return std::abs(value) >= kMaxValue ||
            std::abs(value - no_data) <= kFloatStep * std::abs(no_data);

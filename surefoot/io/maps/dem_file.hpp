@@ -24,7 +24,7 @@ struct Dem {
 /// with different digits. For layers that are not heights.
 [[nodiscard]] Result<Dem> parse_esri_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_esri_grid(const std::string& path);
-/// As above for heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).
+/// Reads heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).
 [[nodiscard]] Result<Dem> parse_height_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_height_grid(const std::string& path);
 /// Formats values with 9 significant digits, which read back to the same float.

@@ -21,7 +21,7 @@ inline constexpr std::uint16_t kMapFileMinor = 0;
 struct MapFile {
     grid::MapRegion region;
     std::uint16_t minor = kMapFileMinor;
-    std::vector<std::string> skipped_layers;  ///< of a newer minor version, in file order
+    std::vector<std::string> skipped_layers;  ///< layers of a newer minor version, in file order
 };
 
 /// Fails if `region.problem()` is not empty: every written file can be read. Deterministic: the

@@ -30,7 +30,7 @@ GreyImage image(std::uint64_t seed) {
     return out;
 }
 
-/// The same image in 16 bits, shifted left by this many bits.
+/// Returns the image in 16 bits, shifted left by this many bits.
 DepthCodes deep(const GreyImage& grey, int shift) {
     DepthCodes out(grey.width(), grey.height());
     for (std::size_t i = 0; i < out.size(); ++i)

@@ -65,8 +65,8 @@ struct RecordingInfo {
     int missing_images = 0;     ///< listed files that do not exist
     std::string first_missing;  ///< the first of them
     int bad_stamps = 0;         ///< stamps that do not increase
-    double duration_s = 0.0;    ///< from the first to the last stamp
-    double rate_hz = 0.0;       ///< from the median interval; 0 for fewer than two frames
+    double duration_s = 0.0;    ///< time from the first to the last stamp
+    double rate_hz = 0.0;       ///< rate from the median interval; 0 for fewer than two frames
     int gaps = 0;               ///< intervals longer than 1.5 times the median
     double longest_gap_s = 0.0;
     std::int64_t bytes = 0;  ///< size of all images
@@ -77,7 +77,7 @@ struct RecordingInfo {
     std::string incomplete = {};    ///< first unreadable frame of a video; empty = none
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;
-    std::vector<std::string> notes = {};  ///< what the user should know about how it was opened
+    std::vector<std::string> notes = {};  ///< notes for the user about how the recorder was opened
     bool has_truth = false;  ///< groundtruth.tum, groundtruth.txt or poses.txt is there
 };
 

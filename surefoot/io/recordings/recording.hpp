@@ -20,7 +20,7 @@ namespace surefoot::io {
 
 struct OpenOptions {
     std::optional<std::string> rig_file;  ///< replaces the recording's own calibration
-    std::optional<double> rate_hz;        ///< for recordings without stamps
+    std::optional<double> rate_hz;        ///< frame rate of recordings without stamps
     int first_frame = 0;                  ///< earlier frames are skipped
     /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
@@ -34,14 +34,14 @@ struct OpenOptions {
 
 /// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
 inline constexpr float kDepthCodesPerMetre = 5000.0F;
-/// For depth cameras that store millimetres.
+/// Depth codes per metre for depth cameras that store millimetres.
 inline constexpr float kMillimetresPerMetre = 1000.0F;
 
 /// One frame with the paths of its images.
 struct FrameEntry {
     std::int64_t time_ns = 0;
-    std::string left;   ///< or the side-by-side image, or the colour image of RGB-D
-    std::string right;  ///< or the depth image; empty for side by side
+    std::string left;   ///< left image, side-by-side image, or colour image of RGB-D
+    std::string right;  ///< right image or depth image; empty for side by side
     std::string where;  ///< "mav0/cam0/data.csv:17", for errors about the stamp
 };
 
@@ -55,7 +55,7 @@ struct Recording {
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;  ///< between the stamps of both images of a frame
     float depth_codes_per_m = kDepthCodesPerMetre;  ///< RGB-D only
-    int image_bits = 8;                             ///< above 8: 16-bit images, see OpenOptions
+    int image_bits = 8;                             ///< more than 8: 16-bit images, see OpenOptions
 };
 
 /// Indexes EuRoC ASL: `folder` contains cam0 and cam1 ("mav0").
@@ -119,12 +119,12 @@ struct AssociatedRow {
 /// Image size of one camera in a side-by-side image (half the width); no value for odd widths.
 [[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
 /// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
-/// adds a note. For any other size the rig stays, and the frames are refused: a ratio like 2/3 may
+/// adds a note. For any other size the rig stays, and the frames are refused. A ratio like 2/3 may
 /// also be a different crop of the sensor, with other angles.
 void fit_rig(camera::StereoRig& rig,
              std::optional<ImageSize> images,
              std::vector<std::string>& notes);
-/// Uses the tolerance of the options, else `otherwise_ns`.
+/// Uses the tolerance of the options, or `otherwise_ns` if the options have none.
 void set_pair_tolerance(const OpenOptions& options,
                         std::int64_t otherwise_ns,
                         Recording& recording);
@@ -133,16 +133,16 @@ void set_pair_tolerance(const OpenOptions& options,
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
-/// Frame rate for frames without stamps: from the options, else `otherwise_hz`.
+/// Frame rate for frames without stamps: the rate of the options, or `otherwise_hz` without one.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
 /// Error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
 /// Stamp of frame `index` at a constant rate, starting at 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
 
-/// Opens the frames of an index one after another. An unusable frame (missing or damaged image,
-/// wrong size, stamp that does not increase) is an error that names it; the next call continues
-/// with the next frame.
+/// Opens the frames of an index one after another. An unusable frame is an error that names the
+/// frame: missing or damaged image, wrong size, or a stamp that does not increase. The next call
+/// continues with the next frame.
 class RecordingSource final : public camera::FrameSource {
   public:
     explicit RecordingSource(Recording recording, int first_frame = 0)

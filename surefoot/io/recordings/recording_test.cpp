@@ -343,7 +343,7 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
                          "key 'resolution' is missing"));
     EXPECT_TRUE(
         contains(error("f", "cam0/sensor.yaml", "[32, 20]", "[64, 40]"), "image sizes differ"));
-    // Both cameras claim another resolution than the images have.
+    // Both cameras claim a resolution that differs from the images.
     record(folder / "g", 2);
     for (const char* camera : {"cam0", "cam1"}) {
         replace_in_file(
@@ -657,7 +657,7 @@ TEST(OpenSource, RealImuSamplesFillTheTimeBetweenFrames) {
         EXPECT_LE(imu.back().time_ns, played.frames[i].time_ns);
         for (const ImuSample& sample : imu) mean_m_s2 += sample.specific_force_m_s2.norm() / 290.0;
     }
-    // It stands still, with spinning rotors: single samples shake by 1 m/s^2.
+    // The machine stands still with spinning rotors: single samples shake by 1 m/s^2.
     EXPECT_NEAR(mean_m_s2, 9.81, 0.2);
 }
 

@@ -14,7 +14,7 @@ inline constexpr std::int64_t kMaxStamp_ns = 9'200'000'000'000'000'000;
 /// Unit of stamps in files.
 struct StampUnit {
     std::string_view name;  ///< "s", "ms", "us" or "ns"
-    int decimals = 9;       ///< its stamps times 10^decimals are nanoseconds
+    int decimals = 9;       ///< a stamp times 10^decimals is in nanoseconds
 };
 
 /// The unit with this name ("s", "sec", "ns", ...); no value for other names.

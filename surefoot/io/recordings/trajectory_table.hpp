@@ -19,12 +19,12 @@ using PosePlaces = std::array<std::size_t, 8>;
 
 /// Layout of the lines of a trajectory file.
 struct TrajectoryLayout {
-    std::string format;  ///< as TrajectoryFile
+    std::string format;  ///< format name, see TrajectoryFile
     bool stamped = true;
     std::size_t columns = 0;
     char separator = ' ';
     PosePlaces places = {0, 1, 2, 3, 4, 5, 6, 7};
-    std::optional<StampUnit> unit;  ///< if the header names it
+    std::optional<StampUnit> unit;  ///< unit of the stamps, if the header names the unit
 };
 
 /// A line of numbers: the seven of a stamped pose, or the twelve of a 3x4 matrix.
@@ -56,7 +56,7 @@ class TrajectoryTable {
     std::string_view head_line_;
     TrajectoryLayout layout_;
     std::vector<TrajectoryRow> rows_;
-    std::vector<std::string_view> words_;  ///< of the current line
+    std::vector<std::string_view> words_;  ///< words of the current line
 };
 
 }  // namespace surefoot::io

@@ -34,9 +34,9 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
     return parse_tum_list(*text, path);
 }
 
-/// Pairs of images: from associations.txt, else by time.
+/// Pairs of images: from associations.txt, or by time without this file.
 struct Association {
-    std::string list;  ///< of the colour images
+    std::string list;  ///< list of the colour images
     std::vector<CsvRow> colour;
     std::vector<CsvRow> depth;
     Partners partners;

@@ -172,7 +172,7 @@ TEST(VideoFrames, AVariableRateKeepsTheTimesOfTheContainer) {
     EXPECT_NEAR(info->duration_s, 1.9, 1e-6);
 }
 
-/// One rule: --rate, else the container, else the rig.
+/// The rate comes from --rate, otherwise from the container, otherwise from the rig.
 TEST(VideoFrames, TheContainerBeatsTheRigAndTheOptionBeatsBoth) {
     const TemporaryFolder folder;
     const std::string path = folder / "fast.avi";

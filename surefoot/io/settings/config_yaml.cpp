@@ -71,7 +71,7 @@ class ListVisitor final : public PathVisitor {
 /// A value found in a file or on the command line.
 struct Given {
     std::string text;
-    std::string where;  ///< "file.yaml:12", "--set"; empty = nowhere to look for it
+    std::string where;  ///< "file.yaml:12", "--set"; empty = no known source
 };
 
 std::string begin_of_sentence(const std::string& where) {

@@ -23,7 +23,7 @@ using Notes = std::vector<std::string>;
 
 /// One key with its current value, without nesting.
 struct ConfigEntry {
-    std::string key;    ///< with its groups: "elevation.length_m"
+    std::string key;    ///< key with its groups: "elevation.length_m"
     std::string value;  ///< reads back to the same bits
     std::string range;  ///< "0.1 .. 100", "true | false", "mean_nan | zero_dominates"
     std::string comment;
@@ -42,7 +42,7 @@ struct ConfigEntry {
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe,
                                      Notes* notes = nullptr);
-/// As above for a separate key and value; an error begins with the key.
+/// Sets a key to a value that are given separately; an error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);

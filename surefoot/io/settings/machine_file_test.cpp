@@ -104,7 +104,7 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
     struct Case {
         const char* from;
         const char* to;
-        const char* line;  ///< of rex.yaml, or empty
+        const char* line;  ///< line of rex.yaml, or empty
         const char* expected;
     };
     const Case cases[] = {

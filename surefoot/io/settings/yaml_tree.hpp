@@ -18,7 +18,7 @@ struct YamlNode {
     enum class Kind { null, scalar, sequence, mapping };
 
     Kind kind = Kind::null;
-    int line = 0;     ///< from 1
+    int line = 0;     ///< line number, from 1
     std::string key;  ///< key of an item of a mapping
     std::string scalar;
     std::vector<YamlNode> items;  ///< items of a sequence or a mapping, in file order

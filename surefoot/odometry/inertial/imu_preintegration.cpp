@@ -131,7 +131,7 @@ void step(const ImuNoise& noise, const ImuSample& from, const ImuSample& to, Imu
     B.block<3, 3>(6, 0) = 0.5 * dt_s * dt_s * by_gyro;
     B.block<3, 3>(3, 3) = dt_s * R_half;
     B.block<3, 3>(6, 3) = 0.5 * dt_s * dt_s * R_half;
-    Vector6 variance;  // of the mean of white noise over the step
+    Vector6 variance;  // variance of the mean of white noise over the step
     variance.head<3>().setConstant(noise.gyro_density_rad_s_sqrt_hz *
                                    noise.gyro_density_rad_s_sqrt_hz / dt_s);
     variance.tail<3>().setConstant(noise.accel_density_m_s2_sqrt_hz *

@@ -30,7 +30,7 @@ struct ImuNoise {
 struct ImuLimits {
     double max_gap_s = 0.03;        ///< longest time without a sample
     double gyro_range_rad_s = 0.0;  ///< readings at the range are saturated; 0 = unknown
-    double accel_range_m_s2 = 0.0;  ///< as above, per axis
+    double accel_range_m_s2 = 0.0;  ///< measuring range per axis, as above
 };
 
 /// Why an interval has no preintegrated motion.
@@ -56,7 +56,7 @@ struct ImuMotion {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
     Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-    Matrix9 covariance = Matrix9::Zero();  ///< of the white noise, without that of the biases
+    Matrix9 covariance = Matrix9::Zero();  ///< covariance of the white noise, without the biases
     ImuBias bias;                          ///< bias used during the integration
     Eigen::Matrix3d d_rotation_d_gyro = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d d_velocity_d_gyro = Eigen::Matrix3d::Zero();

@@ -34,7 +34,7 @@ class ImuWatch {
     std::size_t heard_periods_ = 0;
     std::optional<std::int64_t> last_ns_;  ///< stamp of the last sample
     bool hole_ = false;                    ///< a gap before a sample since the last frame
-    int lacking_frames_ = 0;               ///< in a row
+    int lacking_frames_ = 0;               ///< number of consecutive frames that lack samples
 };
 
 }  // namespace surefoot::odometry

@@ -28,7 +28,7 @@ struct Stream {
         watch.finish(frame_ns, problem);
         return watch.gap();
     }
-    /// One digit per frame: 1 = gap.
+    /// One digit per frame; 1 = gap.
     std::string frames(std::size_t count, bool samples, ImuProblem problem = ImuProblem::none) {
         std::string said;
         for (std::size_t i = 0; i < count; ++i) said += frame(samples, problem) ? '1' : '0';

@@ -17,7 +17,7 @@ namespace surefoot::odometry {
 namespace {
 
 constexpr double kRate_hz = 200.0;
-constexpr std::int64_t kFirst_ns = 1'000'000'000;  // as in render_frame
+constexpr std::int64_t kFirst_ns = 1'000'000'000;  // same value as in render_frame
 constexpr std::int64_t kFrame_ns = 50'000'000;
 
 /// A hand-held curve of the left camera, which begins to move after `still_s`.

@@ -14,17 +14,17 @@ namespace surefoot::odometry {
 /// Layout of the error vector of an inertial state: first index of each component.
 inline constexpr int kInertialSize = 17;
 inline constexpr int kPoseAt = 0;      ///< (translation, rotation) as in pose.hpp
-inline constexpr int kVelocityAt = 6;  ///< in odom axes
+inline constexpr int kVelocityAt = 6;  ///< index of the velocity in odom axes
 inline constexpr int kGyroBiasAt = 9;
 inline constexpr int kAccelBiasAt = 12;
-inline constexpr int kTiltAt = 15;  ///< of gravity in odom
+inline constexpr int kTiltAt = 15;  ///< index of the tilt of gravity in odom
 using Vector17 = Eigen::Matrix<double, kInertialSize, 1>;
 using Matrix17 = Eigen::Matrix<double, kInertialSize, kInertialSize>;
 
 /// The quantities on which the IMU's readings depend at one instant.
 struct InertialState {
     Pose T_odom_imu;
-    Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< of the IMU, in odom axes
+    Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< velocity of the IMU, in odom axes
     ImuBias bias;
     /// Odom need not be level: up is R_odom_level Exp(tilt_x, tilt_y, 0) applied to z. R_odom_level
     /// never changes after the start.
@@ -67,7 +67,7 @@ struct PoseEvidence {
 struct InertialSolution {
     bool found = false;  ///< if false, the other members are invalid
     InertialBelief belief;
-    std::vector<std::uint8_t> inlier;  ///< one per match
+    std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
     double residual_px = 0.0;  ///< rms of the pixel components of the inliers
 };

@@ -73,19 +73,19 @@ class InertialTracker {
     InertialModel model_;
     ImuWatch watch_;
     std::vector<ImuSample> samples_;  ///< from the last one at or before the present frame on
-    std::int64_t time_ns_ = 0;        ///< of the present frame
+    std::int64_t time_ns_ = 0;        ///< stamp of the present frame
     bool has_time_ = false;
-    Preintegration step_;                    ///< from the previous to the present frame
-    std::optional<InertialBelief> belief_;   ///< after the previous frame
+    Preintegration step_;                    ///< motion from the previous to the present frame
+    std::optional<InertialBelief> belief_;   ///< belief after the previous frame
     std::optional<InertialBelief> present_;  ///< predicted for the present one
     std::optional<InertialBelief> unseen_;   ///< as belief_, pose errors since the last seen frame
     double blind_s_ = 0.0;                   ///< time since the last seen frame
-    Pose T_odom_camera_;                     ///< of the present frame, as returned
+    Pose T_odom_camera_;                     ///< returned pose of the present frame
     double discord_m_ = 0.0;
     double discord_rad_ = 0.0;
-    std::vector<SeenMotion> frames_;  ///< until the initialisation
-    int contradictions_ = 0;          ///< in a row
-    int agreements_ = 0;              ///< in a row
+    std::vector<SeenMotion> frames_;  ///< frames until the initialisation
+    int contradictions_ = 0;          ///< number of consecutive contradictions
+    int agreements_ = 0;              ///< number of consecutive agreements
     bool disagrees_ = false;
 };
 

@@ -20,7 +20,7 @@ struct BundleSight {
 /// Poses and points that are adjusted together to fit observations. `sights` is sorted by point.
 struct BundleProblem {
     std::vector<Pose> T_world_camera;
-    std::vector<std::uint8_t> fixed;  ///< one per pose; at least one must be 1
+    std::vector<std::uint8_t> fixed;  ///< one flag per pose; at least one must be 1
     std::vector<Eigen::Vector3d> p_world_m;
     std::vector<BundleSight> sights;
 
@@ -37,8 +37,8 @@ struct BundleResult {
     double cost_before = 0.0;  ///< robust, in squared sigmas
     double cost_after = 0.0;
     int steps = 0;                             ///< accepted
-    std::vector<Eigen::Matrix3d> information;  ///< of each point, given the poses [1/m^2]
-    std::vector<double> residual_sigmas;       ///< of each sight after the adjustment; inf = behind
+    std::vector<Eigen::Matrix3d> information;  ///< one per point, given the poses [1/m^2]
+    std::vector<double> residual_sigmas;       ///< one per sight, after adjustment; inf = behind
 };
 
 /// Bundle adjustment: Levenberg-Marquardt with Huber weights on (u_left, v, u_right), the points

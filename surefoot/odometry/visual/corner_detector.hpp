@@ -16,7 +16,7 @@ struct CornerConfig {
     int grid_rows = 10;
     int most = 240;                ///< number of corners wanted, occupied ones included
     double min_gradient = 2.5;     ///< rms grey step per pixel in the weaker direction
-    double min_distance_px = 8.0;  ///< from another corner
+    double min_distance_px = 8.0;  ///< distance from another corner
     int border_px = 14;            ///< no corner closer to the image border
 };
 

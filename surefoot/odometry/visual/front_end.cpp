@@ -212,7 +212,7 @@ void FrontEnd::measure_depth(const LandmarkMap& map,
 int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     drop_removed(map);
     for (const Track& track : tracks_)
-        if (track.correlation == 0.0)  // it no longer matches its patch
+        if (track.correlation == 0.0)  // the track no longer matches its patch
             map.renew_patch(track.slot, left_.image(), track.raw_px);
     std::vector<Eigen::Vector2d> occupied;
     for (const Track& track : tracks_) occupied.push_back(track.raw_px);

@@ -64,7 +64,7 @@ TEST(MeasuredNoise, TwiceTheNoiseGivesACovarianceThatIsTrue) {
                 expected.nees,
                 measured.sigma_px / kExpected_px);
     EXPECT_NEAR(measured.sigma_px, 2.0 * kExpected_px, 0.1 * kExpected_px);
-    EXPECT_GT(measured.nees, 4.5);  // as PoseSolver.CovarianceIsHonest
+    EXPECT_GT(measured.nees, 4.5);  // same limit as in PoseSolver.CovarianceIsHonest
     EXPECT_LT(measured.nees, 8.0);
     EXPECT_GT(expected.nees, 9.0);
 }

@@ -16,7 +16,7 @@ struct HostPatch {
     static constexpr int kRadius = 13;
     static constexpr int kSize = 2 * kRadius + 1;
     std::array<std::uint8_t, kSize * kSize> pixels{};
-    Eigen::Vector2f centre = Eigen::Vector2f::Zero();  ///< of the point, in patch pixels
+    Eigen::Vector2f centre = Eigen::Vector2f::Zero();  ///< position of the point, in patch pixels
 };
 
 /// Copies the patch around `raw_px`; returns nothing when it does not lie inside the image.
@@ -31,7 +31,7 @@ struct PatchTemplate {
     std::array<float, kCount> value;   ///< mean removed
     std::array<float, kCount> step_u;  ///< rows of the pseudo-inverse: grey difference -> pixels
     std::array<float, kCount> step_v;
-    float norm = 0.0F;  ///< of `value`
+    float norm = 0.0F;  ///< norm of `value`
 };
 
 /// Warps a patch. `host_from_view` maps pixel offsets of the view to offsets of the host image.

@@ -13,9 +13,9 @@ namespace surefoot::odometry {
 /// Observation of a scene point by both cameras, from another source: the corner of a marker, or
 /// the track of another front end.
 struct SeenPoint {
-    std::int64_t id = 0;  ///< the same for every observation of the same point
+    std::int64_t id = 0;  ///< id of the point in all observations
     Eigen::Vector2d raw_left_px = Eigen::Vector2d::Zero();
-    std::optional<Eigen::Vector2d> raw_right_px;  ///< nothing if the right camera does not see it
+    std::optional<Eigen::Vector2d> raw_right_px;  ///< empty: not visible to the right camera
 };
 
 /// Point observations of one instant, used instead of images. Positions in space are not needed.

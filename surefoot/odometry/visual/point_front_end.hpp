@@ -24,7 +24,7 @@ class PointFrontEnd final : public Tracks {
     void load(std::span<const SeenPoint> points);
     /// Makes tracks of all points with a known landmark. Needs no prediction.
     void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
-    /// The same as `follow`, because points cannot be aligned any better.
+    /// Works as `follow`, because points cannot be aligned any better.
     void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
     int seed(LandmarkMap& map, Executor& executor) override;
     void clear() override;
@@ -43,7 +43,7 @@ class PointFrontEnd final : public Tracks {
         std::int64_t landmark;  ///< id, because another landmark may reuse the slot
     };
 
-    std::vector<Point> points_;  ///< of the present frame
+    std::vector<Point> points_;  ///< points of the present frame
     bool right_shows_something_ = false;
     std::map<std::int64_t, Known> known_;  ///< by the point's id; may name removed landmarks
 };

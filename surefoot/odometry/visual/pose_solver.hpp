@@ -15,14 +15,14 @@ namespace surefoot::odometry {
 /// A landmark with known position and its observation in the present frame.
 struct PointMatch {
     Eigen::Vector3d p_world_m;
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< for p_world_m, in world axes
     StereoPixel pixel_px;
     double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
     double vote = 1.0;          ///< weight when poses are compared by their agreeing points
 };
 
 struct PoseSolverConfig {
-    double sigma_px = 0.3;  ///< of each of (u_left, v, u_right)
+    double sigma_px = 0.3;  ///< sigma of each of (u_left, v, u_right)
     int ransac_rounds = 150;
     double ransac_threshold_px = 3.0;
     double gate_sigmas = 3.5;   ///< larger residuals are outliers of the refinement
@@ -34,8 +34,8 @@ struct PoseSolution {
     bool found = false;  ///< if false, the other members are invalid
     Pose T_world_camera;
     Matrix6 covariance =
-        Matrix6::Zero();               ///< of T_world_camera (see pose.hpp), scaled by the residual
-    std::vector<std::uint8_t> inlier;  ///< one per match
+        Matrix6::Zero();               ///< for T_world_camera (pose.hpp), scaled by the residual
+    std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
     double residual_px = 0.0;     ///< rms of the pixel components of the inliers
     double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
@@ -81,8 +81,8 @@ struct VisualNormalEquations {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
     double cost = 0.0;       ///< robust
-    double chi2 = 0.0;       ///< of the residuals inside the gate, not robust
-    double square_px = 0.0;  ///< of their pixel components
+    double chi2 = 0.0;       ///< sum over the residuals inside the gate, not robust
+    double square_px = 0.0;  ///< squared residuals in the image, in the same sum
     int rows = 0;
     int inliers = 0;
 };

@@ -118,7 +118,7 @@ TEST(PoseSolver, SameSeedSamePose) {
     EXPECT_EQ(a.T_world_camera.rotation.coeffs(), b.T_world_camera.rotation.coeffs());
 }
 
-/// The same least-squares problem in Ceres, with automatic differentiation.
+/// Solves the same least-squares problem in Ceres, with automatic differentiation.
 struct CeresResidual {
     const camera::RectifiedRig& rig;
     const PointMatch& match;

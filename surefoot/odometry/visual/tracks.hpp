@@ -14,8 +14,8 @@ namespace surefoot::odometry {
 
 /// Observation of a landmark in the present frame.
 struct Track {
-    int slot = 0;          ///< of the landmark in the map
-    std::int64_t id = -1;  ///< of the landmark, because a slot may be reused
+    int slot = 0;          ///< slot of the landmark in the map
+    std::int64_t id = -1;  ///< id of the landmark, because a slot may be reused
     Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< in the raw left image
     /// Pixel at the stamp of the frame, whenever its row was exposed; u_right NaN = unknown.
     StereoPixel pixel_px = StereoPixel::Zero();
@@ -74,9 +74,9 @@ class Tracks {
                                        const Eigen::Vector3d& p_camera) const;
 
     const camera::Rectifier& rectifier_;
-    std::vector<Track> kept_;         ///< of the frame that was kept last
-    std::vector<Track> tracks_;       ///< of the present frame
-    std::vector<std::uint8_t> busy_;  ///< one per slot: has a track
+    std::vector<Track> kept_;         ///< tracks of the last kept frame
+    std::vector<Track> tracks_;       ///< tracks of the present frame
+    std::vector<std::uint8_t> busy_;  ///< one flag per slot: the slot has a track
     bool loaded_ = false;
 
   private:

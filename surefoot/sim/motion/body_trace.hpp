@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// The space that one part of the REX or of its user fills during a movement: a box in base_link
-/// that moves straight from start to target, and its heights above the soles.
+/// The space that one part of the REX or of its user fills during a movement. It is a box in
+/// base_link that moves straight from start to target, with its heights above the soles.
 struct TracedPart {
     std::string name;
     Rect box;

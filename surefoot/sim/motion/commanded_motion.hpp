@@ -57,7 +57,7 @@ class CommandedMotion final : public Motion {
     std::vector<Piece> pieces_;  ///< in time order; the first one is a stand
     std::vector<StepEvent> steps_;
     std::size_t walked_ = 0;  ///< number of finished pieces
-    RexStand stand_;          ///< after the last step
+    RexStand stand_;          ///< stand after the last step
     double free_s_ = 0.0;
 };
 

@@ -133,7 +133,7 @@ TEST(CommandedMotionTest, ASceneIsWalkedAsTheCommandsComeAndNothingOfItPiles) {
     for (int i = 0; i < 100; ++i) {
         const auto frame = (*source)->next();
         ASSERT_TRUE(frame.ok() && frame->has_value()) << i;
-        // It may go on for hours.
+        // The motion may go on for hours.
         ASSERT_EQ((*source)->truth().trajectory.size(), 1U);
         EXPECT_EQ((*source)->truth().trajectory.back().time_ns, (*frame)->time_ns);
         if (i == 0) first = (*source)->truth().trajectory.back().T_world_body;

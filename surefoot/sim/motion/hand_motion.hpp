@@ -16,16 +16,16 @@ namespace surefoot::sim {
 /// because arms damp them: peaks of the vertical acceleration are 1.9-2.3 m/s^2, its rms is 1.4
 /// m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
-    double height_m = 1.30;   ///< of base_link above the ground, held in front of the chest
+    double height_m = 1.30;   ///< base_link above the ground, held in front of the chest
     double speed_m_s = 1.0;   ///< slower than normal walking, because the person watches a screen
-    double ramp_s = 0.8;      ///< to reach that speed
+    double ramp_s = 0.8;      ///< time to reach that speed
     double cadence_hz = 1.8;  ///< steps of both feet
     double bob_m = 0.016;     ///< amplitude, at the cadence
     double surge_m = 0.006;   ///< fore and aft, at the cadence
     double sway_m = 0.015;    ///< sideways, at half the cadence: one sway every two steps
-    double roll_deg = 1.5;    ///< at half the cadence
-    double pitch_deg = 1.0;   ///< at the cadence
-    double yaw_deg = 1.5;     ///< at half the cadence
+    double roll_deg = 1.5;    ///< roll at half the cadence
+    double pitch_deg = 1.0;   ///< pitch at the cadence
+    double yaw_deg = 1.5;     ///< yaw at half the cadence
     double drift_deg = 1.5;   ///< slow drift of roll, pitch and yaw, also while standing
     double drift_m = 0.008;   ///< slow drift of the hands
 };

@@ -28,8 +28,8 @@ struct MotionScript {
 
 /// One step of the walking machine, triggered by a joystick code.
 struct StepEvent {
-    double start_s = 0.0;  ///< when the joystick sends the code; the machine still stands
-    double end_s = 0.0;    ///< when the machine stands again
+    double start_s = 0.0;  ///< time of the joystick code; the machine still stands
+    double end_s = 0.0;    ///< time from which the machine stands again
     int command = 0;       ///< joystick code of the machine file
     Pose T_world_before;   ///< base_link standing, level
     Pose T_world_after;
@@ -43,8 +43,8 @@ struct Stop {
 
 struct ScriptedMotion {
     std::shared_ptr<const Motion> motion;
-    std::vector<StepEvent> steps = {};  ///< of a walking machine; empty for the other motion models
-    std::vector<Stop> stops = {};       ///< of a trolley; a hand-held camera never stands still
+    std::vector<StepEvent> steps = {};  ///< only for a walking machine; empty for the other models
+    std::vector<Stop> stops = {};       ///< only for a trolley; a hand-held camera never stops
 };
 
 /// Builds the motion of a script. The seed moves all waypoints but the first by about a centimetre

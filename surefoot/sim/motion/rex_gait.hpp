@@ -24,20 +24,20 @@ struct Spread {
 struct RexGaitConfig {
     double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;               ///< part of step_s: standing until ringing stops
-    double foot_clearance_m = 0.01;      ///< of the toes of a swinging foot; ankles rise by 22 mm
-    Spread lateral_shift_m{0.10, 0.11};  ///< of base_link over the standing foot, to each side
+    double foot_clearance_m = 0.01;      ///< height of the toes of a swinging foot; ankles: 22 mm
+    Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< toward the standing foot
     Spread yaw_deg{1.5, 3.0};            ///< toward the foot behind
     Spread ring_hz{2.0, 6.0};            ///< structural ringing after a foot strike
-    Spread ring_mm{1.0, 3.0};            ///< its largest deflection, vertical
-    Spread ring_deg{0.1, 0.3};           ///< its largest roll and pitch
+    Spread ring_mm{1.0, 3.0};            ///< largest vertical deflection of the ringing
+    Spread ring_deg{0.1, 0.3};           ///< largest roll and pitch of the ringing
     Spread strike_m_s2{0.5, 2.0};        ///< vertical acceleration pulse of a foot strike
     bool ground_under_body = false;      ///< query the ground below base_link instead of each sole
 };
 
 /// Pose of one foot in the world. A foot stands flat on the ground, also on a ramp.
 struct FootState {
-    Pose T_world_sole;    ///< below the ankle
+    Pose T_world_sole;    ///< sole below the ankle
     bool carries = true;  ///< stands flat; false while it swings or has its heel up
 };
 
@@ -99,7 +99,7 @@ class RexMotion final : public Motion {
         double start_s = 0.0;
         double end_s = 0.0;  ///< time when the toes land
         double heel_down_s = 0.0;
-        double lift_rad = 0.0;  ///< of the sole about the toes
+        double lift_rad = 0.0;  ///< angle of the sole about the toes
         Eigen::Vector3d from_m = Eigen::Vector3d::Zero();
         Eigen::Vector3d to_m = Eigen::Vector3d::Zero();
         double from_yaw_rad = 0.0;

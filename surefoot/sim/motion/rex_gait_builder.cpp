@@ -71,16 +71,16 @@ const Phases& phases_of(const RexMovement& movement) {
 
 /// Base_link through the trace, right foot leading, seen from the left sole of the start.
 struct TraceWay {
-    double length_m = 0.0;                  ///< of the whole step
-    std::array<double, kTrace> progress{};  ///< of base_link, 0 to 1
+    double length_m = 0.0;                  ///< length of the whole step
+    std::array<double, kTrace> progress{};  ///< progress of base_link, 0 to 1
     std::array<double, kTrace> sink_m{};    ///< height against standing
     std::array<double, kTrace> pitch_rad{};
 };
 
 struct Carried {
-    double x_m;  ///< of the hips over the carrying sole
+    double x_m;  ///< position of the hips over the carrying sole
     double z_m;
-    double other_x_m;  ///< of the other sole
+    double other_x_m;  ///< position of the other sole
     double pitch_rad;
 };
 

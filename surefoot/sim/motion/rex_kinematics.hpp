@@ -21,13 +21,13 @@ inline constexpr const char* kSideNames[] = {"left", "right"};
 namespace rex {
 inline constexpr double kUpperLeg_m = 0.430;
 inline constexpr double kLowerLeg_m = 0.416;
-inline constexpr double kAnkleHeight_m = 0.144;  ///< above the sole
+inline constexpr double kAnkleHeight_m = 0.144;  ///< height above the sole
 inline constexpr double kToes_m = 0.240;         ///< ahead of the ankle: 0.366 - 0.126 m
 /// Half the pelvis' width, 0.470 m. The foot, centred 0.180 m beside base_link, 0.190 m wide and
 /// with its inner edge 0.150 m from the ankle, has its ankle straight below.
 inline constexpr double kHip_y_m = 0.235;
-/// The legs of the gait trace stand with the ankles this far behind the hips; the machine file has
-/// the ankles below base_link (heels 0.126 m behind them), so the hip axis lies ahead of it.
+/// Ankles of the gait trace behind the hips, when standing. In the machine file the ankles are
+/// below base_link (heels 0.126 m behind them), so the hip axis is ahead of base_link.
 inline constexpr double kHip_x_m = 0.0563;
 /// Height of base_link above the soles in the stand of the trace, knees bent by 3.5 deg (0.990 m
 /// with straight legs).

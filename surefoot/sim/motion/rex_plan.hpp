@@ -26,8 +26,8 @@ struct RexStepSizes {
     double turn_deg = 15.0;
 };
 
-/// All codes of machines/rex.yaml: 9-24 are the sectors clockwise from ahead on the ellipse through
-/// the four steps, 1-8 are half as far, 25 and 26 turn to the left and to the right.
+/// All codes of machines/rex.yaml. 9-24: sectors clockwise from ahead on the ellipse through the
+/// four steps. 1-8: half as far. 25 and 26: turns to the left and to the right.
 [[nodiscard]] std::vector<RexMovement> rex_movements(const RexStepSizes& sizes);
 
 /// Pose of base_link of a standing machine on the floor plan.
@@ -52,9 +52,9 @@ struct RexPlan {
 };
 
 /// Plans commands through the waypoints as an operator would give them. First turn in place toward
-/// the waypoint (or go backward or sideways, if that takes fewer steps or the waypoint asks for
-/// it), then repeat the sector that brings the machine nearest, then turn to the waypoint's yaw.
-/// Stops within half a step and half a turn. A path of more than 2000 steps is a usage error.
+/// the waypoint, or go backward or sideways if that is shorter or the waypoint asks for it. Then
+/// repeat the sector that brings the machine nearest. Then turn to the waypoint's yaw. Stops within
+/// half a step and half a turn. A path of more than 2000 steps is a usage error.
 [[nodiscard]] Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
                                              const RexStepSizes& sizes,
                                              Rng& rng);

@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 constexpr double kMargin_rad = 1e-6;
 constexpr double kMargin_m = 1e-9;
 
-/// Sine of the angle by which the axis lies on the inner side of the plane through the tip and an
-/// edge of a polygon; negative on the outer side.
+/// Sine of the angle of the axis to the plane through the tip and an edge of a polygon. Positive on
+/// the inner side of the plane, negative on the outer side.
 double sine_inside(const Vector3d& to_a_m, const Vector3d& to_b_m, const Vector3d& axis) {
     const Vector3d inward = to_b_m.cross(to_a_m);
     const double length = inward.norm();

@@ -68,7 +68,7 @@ TEST(BoardRenderer, AnEdgeSharesItsPixelsByArea) {
 }
 
 TEST(BoardRenderer, ADiscHasItsAreaAndItsCentre) {
-    constexpr double kRadius_m = 0.1234;  // as many pixels at 1 m, times 100
+    constexpr double kRadius_m = 0.1234;  // at 1 m: 100 px per metre
     Serial serial;
     const GreyImage image =
         render_board(one_disc(kRadius_m), pinhole(), straight_ahead(1.0), two_colours(), 1, serial);

@@ -20,7 +20,7 @@ struct ExposureConfig {
     double lag_s = 0.3;           ///< time constant; 0 = at once
     bool sun_warm_up = false;     ///< over-exposed for the first 10-30 s, drawn by the seed
     double warm_up_factor = 8.0;  ///< factor of too much light at the first frame
-    double right_gain = 1.0;      ///< of the right camera relative to the left one
+    double right_gain = 1.0;      ///< gain of the right camera relative to the left one
 
     void describe(ConfigVisitor& visitor);
 };

@@ -36,7 +36,7 @@ struct ImageFaultConfig {
     double drop_probability = 0.0;
     double repeat_probability = 0.0;
     double tear_probability = 0.0;
-    double freeze_probability = 0.0;  ///< that a freeze begins at this frame
+    double freeze_probability = 0.0;  ///< probability that a freeze begins at this frame
     int freeze_frames = 10;           ///< length of one freeze
     std::vector<InjectedFault> planned;
 

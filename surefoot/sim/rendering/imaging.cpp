@@ -19,8 +19,8 @@ std::size_t quantile(std::uint64_t hash, std::uint32_t lane) noexcept {
     return static_cast<std::size_t>(hash >> (8U + 14U * lane)) & (kQuantiles - 1U);
 }
 
-/// Solves Phi(x) = p for p < 1/2. log Phi is concave and grows, so Newton's method on it goes left
-/// of the root at most once and then approaches it from there.
+/// Solves Phi(x) = p for p < 1/2. log Phi is concave and increasing. So Newton's method on log Phi
+/// passes to the left of the root at most once and then approaches the root from the left.
 double normal_quantile(double p) {
     double x = -0.0;
     for (int i = 0; i < 60; ++i) {

@@ -43,7 +43,7 @@ class PixelNoise {
                                          double gain,
                                          float signal_dn,
                                          float normal);
-/// As exposed_pixel for a row of signals; each signal is multiplied by `light` first.
+/// Computes exposed_pixel for a row of signals; each signal is multiplied by `light` first.
 void expose_row(const ImagingConfig& config,
                 double gain,
                 double light,

@@ -13,7 +13,7 @@ struct Lighting {
     double ambient = 0.45;             ///< ambient part; a fully lit white surface = 1
     double lamp = 0.55;                ///< directed part, same unit
     double lamp_azimuth_deg = -53.0;   ///< direction to the lamp, from +x towards +y
-    double lamp_elevation_deg = 60.0;  ///< above the horizon
+    double lamp_elevation_deg = 60.0;  ///< angle above the horizon
     bool shadows = false;              ///< objects block the lamp
     double stripe_width_m = 0.0;       ///< bright stripes on the plane across the lamp; 0 = none
     double stripe_gap_m = 0.1;         ///< dark gap between two stripes

@@ -16,7 +16,7 @@ inline constexpr const char* kCameraSideNames[] = {"left", "right", "both"};
 /// Effects of the lens: vignetting in the corners, a Gaussian point spread, and a greasy finger
 /// mark with a larger point spread.
 struct OpticsConfig {
-    double smear_sigma_px = 0.0;   ///< of the spot, in each direction; 0 = ideal lens
+    double smear_sigma_px = 0.0;   ///< sigma of the spot, in each direction; 0 = ideal lens
     double smudge_sigma_px = 0.0;  ///< under the finger mark; 0 = clean
     double smudge_x = 0.5;         ///< centre of the mark, share of the image width
     double smudge_y = 0.6;         ///< share of the image height

@@ -75,7 +75,7 @@ TEST(OpticsTest, AFingerMarkBlursItsPlaceOnOneEyeOnly) {
     config.smudge_sigma_px = 4.0;
     config.smudge_x = 0.25;
     config.smudge_y = 0.5;
-    config.smudge_radius = 0.2;  // of 60 rows: 12 px round (20, 30)
+    config.smudge_radius = 0.2;  // share of 60 rows: 12 px round (20, 30)
     const Image<float> before = noise_image(80, 60);
     Image<float> greasy = before;
     Serial serial;

@@ -59,7 +59,7 @@ inline constexpr double kLeastCosine = 0.02;
 
 /// Texture coordinates and footprint of a ray that hits a plane, see `look_at`.
 [[nodiscard]] TexelLook look_at(const PlaneTexels& plane, const Sight& sight);
-/// As above for a batch; bit-identical under every instruction set.
+/// Computes `look_at` for a batch; bit-identical under every instruction set.
 void look_at(const PlaneTexels& plane, const SightBatch& sights, TextureBatch& out);
 
 }  // namespace surefoot::sim

@@ -80,7 +80,7 @@ void meet_plane(const Eigen::Vector3d& normal,
                 BatchRange range,
                 HitBatch& hits);
 
-/// As `Prism::intersect`: the first `towards` of the `count` sides face the origin.
+/// Batch of `Prism::intersect`; the first `towards` of the `count` sides face the origin.
 void meet_convex(const FacingSide* sides,
                  std::size_t towards,
                  std::size_t count,

@@ -26,7 +26,7 @@ struct CastBlock {
     [[nodiscard]] std::size_t pixels() const noexcept {
         return static_cast<std::size_t>(width * height);
     }
-    std::vector<int> primitives;     ///< that a ray through a pixel of the block may meet first
+    std::vector<int> primitives;     ///< candidates for the first hit of a ray through the block
     std::optional<FacePlane> plane;  ///< plane of the face that all rays provably meet first
 };
 

@@ -41,7 +41,7 @@ struct CleanPair {
 struct RenderedPair {
     GreyImage left;
     GreyImage right;
-    Image<float> depth_m;  ///< of the raw left camera
+    Image<float> depth_m;  ///< depth of the raw left camera
 };
 
 /// All effects between the light of a scene and a grey value.
@@ -58,8 +58,8 @@ struct CameraConfig {
 /// executor; the bytes do not depend on it. Immutable after construction.
 class Renderer {
   public:
-    /// Fails with the problem of the rig in words. The scene must outlive the renderer. Refuses an
-    /// RGB-D rig, which has no right camera.
+    /// Returns an error that names the problem if the rig cannot be rendered, for example an RGB-D
+    /// rig without a right camera. The scene must outlive the renderer.
     [[nodiscard]] static Result<Renderer> make(const Scene& scene,
                                                const camera::StereoRig& rig,
                                                const CameraConfig& config,

@@ -154,13 +154,13 @@ TEST(RendererTest, AWallAtWholeDisparityShiftsByExactlyThat) {
             ++pixels;
         }
     }
-    // What remains: pixels at different obliqueness average over slightly different areas.
+    // The remaining differences: pixels at different obliqueness average over different areas.
     EXPECT_LT(std::sqrt(error2 / pixels), 0.7);
 }
 
 struct Warp {
     double rms_dn = 0.0;      ///< left image against the right one, fetched through exact depth
-    double off_rms_dn = 0.0;  ///< the same fetched one pixel beside
+    double off_rms_dn = 0.0;  ///< rms of values fetched one pixel beside
     int pixels = 0;
 };
 

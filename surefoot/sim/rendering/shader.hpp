@@ -42,11 +42,11 @@ class Shader {
         Eigen::Vector3d normal;
         Eigen::Vector3d tangent_u;
         Eigen::Vector3d tangent_v;
-        PlaneTexels texels;  ///< of a plane
+        PlaneTexels texels;  ///< used only if the surface is a plane
         Finish finish = Finish::matte;
         bool curved = false;
         float gloss = 0.0F;
-        double facing_lamp = 0.0;  ///< of a plane: cosine of the lamp's incidence
+        double facing_lamp = 0.0;  ///< used only for a plane: cosine of the lamp's incidence
     };
     struct Blocker {
         int primitive = 0;

@@ -200,10 +200,10 @@ TEST(ShaderTest, ABoxCastsItsShadowWhereGeometrySays) {
     EXPECT_TRUE(shader.lit({1.0, 0.0, 0.4}));   // on it
     EXPECT_FALSE(shader.lit({1.7, 0.0, 0.199}));
     EXPECT_TRUE(shader.lit({1.7, 0.0, 0.201}));
-    EXPECT_FALSE(shader.lit({2.19, 3.0, 0.0}));  // of the cylinder: its axis is 1 m high
+    EXPECT_FALSE(shader.lit({2.19, 3.0, 0.0}));  // shadow of the cylinder: its axis is 1 m high
     EXPECT_TRUE(shader.lit({2.21, 3.0, 0.0}));
-    EXPECT_TRUE(shader.lit({0.799, 3.0, 0.5}));   // its bright side
-    EXPECT_FALSE(shader.lit({1.201, 3.0, 0.5}));  // and its dark one
+    EXPECT_TRUE(shader.lit({0.799, 3.0, 0.5}));   // bright side of the cylinder
+    EXPECT_FALSE(shader.lit({1.201, 3.0, 0.5}));  // dark side of the cylinder
     Lighting soft = low_lamp();
     soft.shadows = false;
     scene.light(soft);

@@ -32,7 +32,7 @@ Scene plate_scene() {
     const int dark = scene.add_material(plain);
     scene.add(make_box({kWall_m + 0.0005, 5.0}, {0.001, 10.0}, -5.0, 5.0), bright, Label::object);
     scene.add(make_box({kWall_m + 0.515, 0.0}, {1.0, 30.0}, -5.0, 5.0), dark, Label::wall);
-    scene.light({1.0, 0.0});  // the same from all sides: the plate's rim looks like its front
+    scene.light({1.0, 0.0});  // equal light from all sides: the plate's rim looks like its front
     return scene;
 }
 

@@ -16,7 +16,7 @@ namespace surefoot::sim {
 /// pixel is special. A function of (seed, pixel) alone.
 class SmoothNoise {
   public:
-    /// For every `stride`-th pixel of an image; `columns` by `rows` such pixels.
+    /// Prepares every `stride`-th pixel of an image; there are `columns` by `rows` such pixels.
     SmoothNoise(const PixelNoise& noise,
                 std::uint64_t seed,
                 int columns,
@@ -48,12 +48,12 @@ class SurfaceNoise {
     /// Cache of the corner numbers of the last lattice square that was used. Neighbouring pixels
     /// lie in the same square.
     struct Square {
-        int surface = -1;  ///< none yet
+        int surface = -1;  ///< -1 = no surface yet
         double u0 = 0.0;
         double v0 = 0.0;
         std::array<float, 4> corners{};
     };
-    /// As above, bit-identical, for many positions of which most share one square.
+    /// Bit-identical to the function above; faster if most positions share one square.
     [[nodiscard]] float at(
         const PixelNoise& noise, int surface, double u_m, double v_m, Square& square) const;
 

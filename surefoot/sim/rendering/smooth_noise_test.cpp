@@ -95,7 +95,7 @@ TEST(SmoothNoiseTest, SurfaceNoiseHasVarianceOneEverywhereAndIsContinuous) {
     EXPECT_NE(surface.at(noise, 0, 0.5, 0.5), surface.at(noise, 1, 0.5, 0.5));
 }
 
-/// Also from surface to surface and across borders of squares, back and forth.
+/// Visits positions on several surfaces and across borders of squares, back and forth.
 TEST(SmoothNoiseTest, ARememberedSquareChangesNoSurfaceNoise) {
     const PixelNoise noise;
     const SurfaceNoise surface(4, 0.1);

@@ -178,7 +178,7 @@ class Textures {
                                     double u_m,
                                     double v_m,
                                     const Footprint& footprint) const noexcept;
-    /// As above, with the position in texels.
+    /// Reflectance in [0, 1] at a position in texels.
     [[nodiscard]] float reflectance(const Placement& placement,
                                     const TexelLook& look) const noexcept;
     /// Converts surface coordinates and a footprint from metres to texels.

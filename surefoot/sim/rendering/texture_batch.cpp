@@ -24,7 +24,7 @@ using Array = TextureBatch::Array<T>;
 /// Look-ups that each point of a batch needs.
 struct Plan {
     Array<int> taps;
-    Array<Place> u;  ///< of the next tap
+    Array<Place> u;  ///< position of the next tap
     Array<Place> v;
     Array<Place> du;
     Array<Place> dv;

@@ -87,12 +87,12 @@ inline float pattern_value(std::uint32_t fine_sum,
     return (fine + share * (coarse - fine) - kMiddle) * kQuantum;
 }
 
-/// How the pixel ellipse is sampled: `taps` look-ups along its long axis.
+/// Sampling of the pixel ellipse: `taps` look-ups along its long axis.
 struct Cover {
     int taps = 1;
     float level = 0.0F;
     float blotch_level = 0.0F;
-    TextureTable::Place du = 0;  ///< from tap to tap
+    TextureTable::Place du = 0;  ///< step from tap to tap
     TextureTable::Place dv = 0;
 };
 

@@ -146,7 +146,7 @@ TEST(TextureTest, FarSurfacesDoNotAlias) {
             .sigma;
     };
     EXPECT_GT(sigma(near), 0.08);
-    // What remains are true differences: blotches up to 3 m in size.
+    // The remaining differences are true: blotches up to 3 m in size.
     EXPECT_LT(sigma(far), 0.25 * sigma(near));
 }
 

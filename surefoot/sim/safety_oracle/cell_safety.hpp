@@ -7,16 +7,16 @@
 
 namespace surefoot::sim {
 
-/// Whether a foot can stand centred on a cell. Unsafe unless proved safe.
+/// Safety of a foot that stands centred on a cell. Unsafe unless proved safe.
 struct CellSafety {
     bool safe = false;
-    Danger danger = Danger::no_ground;  ///< of an unsafe cell: the most important danger
+    Danger danger = Danger::no_ground;  ///< most important danger of an unsafe cell
 
     friend bool operator==(const CellSafety&, const CellSafety&) = default;
 };
 
 struct CellQuestion {
-    double yaw_rad = 0.0;  ///< of the foot in the world
+    double yaw_rad = 0.0;  ///< heading of the foot in the world
     /// A point on the ground where the machine walks; separates floors from table tops and storeys.
     Eigen::Vector3d start_m = Eigen::Vector3d::Zero();
     /// Neighbouring cells whose heights differ by more are not joined. The value lies above the

@@ -32,7 +32,7 @@ LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
         yz += d.y() * dz;
     }
     const double determinant = xx * yy - xy * xy;
-    constexpr double kDegenerate = 1e-9;  // of a line of points, relative
+    constexpr double kDegenerate = 1e-9;  // relative determinant of a line of points
     if (!(determinant > kDegenerate * xx * yy)) return {mean_z_m, Vector2d::Zero()};
     const Vector2d slope((yy * xz - xy * yz) / determinant, (xx * yz - xy * xz) / determinant);
     return {mean_z_m - slope.dot(middle), slope};

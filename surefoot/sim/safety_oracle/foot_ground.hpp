@@ -19,8 +19,8 @@ struct SolePoint {
 
 /// The ground under one foot.
 struct FootGround {
-    std::vector<SolePoint> points;             ///< where there is ground
-    std::optional<Eigen::Vector2d> void_at_m;  ///< one place without any, in the field's frame
+    std::vector<SolePoint> points;             ///< sole points that have ground
+    std::optional<Eigen::Vector2d> void_at_m;  ///< one point without ground, in the field's frame
     double mean_z_m = 0.0;
     LevelPlane plane;  ///< least squares, over `p_foot_m`
 

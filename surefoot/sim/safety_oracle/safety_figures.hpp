@@ -21,8 +21,8 @@ struct Figures {
     };
     std::vector<Part> body;
     double sway_m = 0.0;
-    double lower_edge_m = 0.0;  ///< of the whole body, above the soles
-    double height_m = 0.0;      ///< of the whole body, above the soles
+    double lower_edge_m = 0.0;  ///< lower edge of the whole body, above the soles
+    double height_m = 0.0;      ///< height of the whole body, above the soles
     double hips_m = 0.0;        ///< base_link above the soles
     double up_m = 0.0;
     double down_m = 0.0;

@@ -68,7 +68,7 @@ rules::Stance stance_here(const Scene& scene,
     return stance;
 }
 
-/// Whether every pose and limit within the margin gives the same answer.
+/// Returns true if every pose and limit within the margin gives the same answer.
 bool holds_around(const GroundField& field,
                   const std::vector<char>& reached,
                   const Figures& figures,

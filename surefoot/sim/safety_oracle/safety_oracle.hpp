@@ -20,7 +20,7 @@ enum class Danger : std::uint8_t {
     unknown_pose,      ///< a number of the pose is not finite
     no_stance,         ///< a foot is not supported now, or the feet stand at two heights
     not_level_here,    ///< the ground under the present feet is too steep [deg]
-    no_ground,         ///< nothing under some part of a landing foot
+    no_ground,         ///< some part of a landing foot has no ground
     drop_off,          ///< a part of a landing foot lies over a drop
     edge_too_near,     ///< a drop beside a landing foot, inside the band (value: distance)
     step_up,           ///< ground under a landing foot higher than this class of movement allows
@@ -29,7 +29,7 @@ enum class Danger : std::uint8_t {
     roughness,         ///< a patch of the sole too far from the plane of the foot
     obstacle_in_way,   ///< an object in the path of a swinging foot (value: its height)
     body_hits,         ///< a solid in the space of the body (value: height of its underside)
-    overhang_too_low,  ///< as body_hits, but the underside is above the hips
+    overhang_too_low,  ///< like body_hits, but the underside is above the hips
     disconnected,      ///< the ground of landing is cut off from the ground of standing
 };
 inline constexpr int kDangerCount = 15;
@@ -39,7 +39,7 @@ inline constexpr int kDangerCount = 15;
 struct Finding {
     Danger danger = Danger::unknown_command;
     double value = 0.0;  ///< [m], or degrees for tilt and not_level_here
-    double limit = 0.0;  ///< same unit
+    double limit = 0.0;  ///< limit in the unit of the value
     Eigen::Vector3d where_m = Eigen::Vector3d::Zero();  ///< world
 };
 

@@ -42,7 +42,7 @@ TEST(SafetyOracleTest, EveryMovementOnAWideFlatFloorIsSafeAndClearCut) {
 TEST(SafetyOracleTest, CodesThatTheMachineDoesNotHaveAreRefused) {
     const World world = World().floor();
     Machine machine = testing::rex();
-    machine.movements[1].movement_class = MovementClass::stair;  // which is switched off
+    machine.movements[1].movement_class = MovementClass::stair;  // this class is switched off
     for (const int command : {-1, 0, 1, 2, 24, 27, 255}) {
         const auto answer = judge(world.scene, machine, standing(0.0, 0.0, 0.0), command);
         EXPECT_FALSE(answer.safe) << command;
@@ -289,7 +289,7 @@ TEST(SafetyOracleTest, AnIslandOfGoodGroundIsCutOff) {
     const auto answer =
         judge(World().floor(0.0, {trench}).scene, machine, standing(0.0, 0.0, 0.0), kForward);
     EXPECT_TRUE(answer.has(Danger::disconnected)) << answer.sentence();
-    const Pit hole{{{0.30, -0.3}, {0.45, 0.1}}, 0.3};  // one can walk round it
+    const Pit hole{{{0.30, -0.3}, {0.45, 0.1}}, 0.3};  // the machine can walk round the hole
     const auto around =
         judge(World().floor(0.0, {hole}).scene, machine, standing(0.0, 0.0, 0.0), kForward);
     EXPECT_FALSE(around.has(Danger::disconnected)) << around.sentence();

@@ -88,7 +88,7 @@ double mean_above(const FootGround& foot, const Vector2d& slope) {
     return sum_m / static_cast<double>(foot.points.size());
 }
 
-/// One pose, one movement: the rules in the order of `Danger`.
+/// Checks one pose and one movement: the rules in the order of `Danger`.
 class Inspector {
   public:
     Inspector(const GroundField& field,

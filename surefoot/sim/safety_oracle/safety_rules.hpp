@@ -15,8 +15,8 @@ namespace surefoot::sim::rules {
 struct Stance {
     LevelPlane plane;
     double height_difference_m = 0.0;  ///< between the mean heights of the feet, from the plane
-    double tilt_rad = 0.0;             ///< of the plane or of one foot, whichever is steeper
-    std::optional<Eigen::Vector2d> void_at_m;  ///< where a foot has no ground, field's frame
+    double tilt_rad = 0.0;             ///< tilt of the plane or of one foot, whichever is steeper
+    std::optional<Eigen::Vector2d> void_at_m;  ///< point of a foot without ground, field's frame
     bool known = false;                        ///< some part of both feet has ground
 };
 [[nodiscard]] Stance stand(const GroundField& field,

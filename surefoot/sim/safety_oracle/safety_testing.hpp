@@ -74,7 +74,7 @@ inline constexpr int kTurnRight = 26;
 inline constexpr double kToe_m = 0.24;
 inline constexpr double kFootSide_m = 0.275;
 inline constexpr double kStep_m = 0.4;
-inline constexpr double kSpacing_m = 0.005;  ///< of the oracle's samples
+inline constexpr double kSpacing_m = 0.005;  ///< spacing of the oracle's samples
 
 /// Pose of base_link over ground of height z_m.
 inline Pose standing(double x_m, double y_m, double yaw_rad, double z_m = 0.0) {

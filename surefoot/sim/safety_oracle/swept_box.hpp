@@ -23,8 +23,8 @@ class SweptBox {
 
   private:
     struct Piece {
-        PlanarPose T_a_box;        ///< at the beginning of the piece
-        Eigen::Vector2d travel_m;  ///< to the end of the piece, along the axes of the box
+        PlanarPose T_a_box;        ///< box pose at the beginning of the piece
+        Eigen::Vector2d travel_m;  ///< way to the end of the piece, along the axes of the box
     };
     Rect box_;
     Rect bounds_;

@@ -259,7 +259,7 @@ void Prism::intersect(const Vector3d& origin,
         }
         for (std::size_t k = seen.towards; met && k < half_spaces_.size(); ++k) {
             const double speed = seen.sides[k].normal.dot(directions[i]);
-            // It would leave at -outside_m / speed.
+            // The ray would leave at -outside_m / speed.
             met = !(speed > 0.0 && enter_m * speed >= -seen.sides[k].outside_m);
         }
         if (met) hits[i] = {enter_m, face};

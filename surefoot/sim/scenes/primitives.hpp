@@ -29,8 +29,8 @@ struct FaceFrame {
     Eigen::Vector3d tangent_u = Eigen::Vector3d::UnitX();
     Eigen::Vector3d tangent_v = Eigen::Vector3d::UnitY();
     bool curved = false;                               ///< side of a cylinder
-    Eigen::Vector2d axis_m = Eigen::Vector2d::Zero();  ///< of that cylinder
-    double radius_m = 0.0;                             ///< of that cylinder
+    Eigen::Vector2d axis_m = Eigen::Vector2d::Zero();  ///< axis of that cylinder
+    double radius_m = 0.0;                             ///< radius of that cylinder
 };
 
 /// The plane of a face: normal . p = offset_m. `face` is the index within the primitive.
@@ -134,7 +134,7 @@ class Prism {
     double bottom_m_ = 0.0;
     Top top_;
     std::vector<HalfSpace> half_spaces_;                    ///< indexed like the faces
-    std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< of them, counter-clockwise
+    std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< of the faces, counter-clockwise
 };
 
 /// Upright cylinder. Face 0 is the top, 1 the bottom, 2 the side.

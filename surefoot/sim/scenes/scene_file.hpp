@@ -48,11 +48,11 @@ namespace surefoot::sim {
 /// Strict: unknown keys, wrong types, values out of range, impossible geometry, a camera or a foot
 /// inside a solid, and too high steps are input errors that name file, line, value and limit.
 struct SceneFile {
-    std::string file;  ///< for messages
+    std::string file;  ///< file name for messages
     std::string_view text;
 };
 
-/// Largest number of primitives in a scene file; images number surfaces with 15 bits.
+/// Largest number of primitives in a scene file. Images store the surface number in 15 bits.
 inline constexpr int kMaxPrimitives = 2000;
 
 /// The scenes that a file holds.

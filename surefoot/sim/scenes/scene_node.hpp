@@ -18,8 +18,8 @@ struct SceneNode {
     Kind kind = Kind::nothing;
     int line = 1;                  ///< from 1; for a value of a group: the line of its key
     std::string key;               ///< key of a value in a group
-    std::string text;              ///< of a single value
-    std::vector<SceneNode> items;  ///< of a list or a group
+    std::string text;              ///< text of a single value
+    std::vector<SceneNode> items;  ///< items of a list or a group
 
     /// The value of a key of this group, or nullptr.
     [[nodiscard]] const SceneNode* find(std::string_view name) const noexcept;

@@ -37,8 +37,8 @@ struct ScriptedScene {
     Scene scene;
     MotionScript script;
     std::shared_ptr<const Motion> motion;
-    std::vector<StepEvent> steps;  ///< of a walking machine
-    std::vector<Stop> stops;       ///< of a trolley
+    std::vector<StepEvent> steps;  ///< steps of a walking machine
+    std::vector<Stop> stops;       ///< stops of a trolley
     int solids = 0;                ///< boxes, tables, flights, ... each counted once
     /// World positions of the laser scanner; empty if the file has none.
     std::vector<Eigen::Vector3d> stations_m;

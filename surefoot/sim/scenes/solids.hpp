@@ -55,7 +55,7 @@ struct BoxSpec {
     MaterialNames materials;
     int material = kRequiredChoice;
     Label label = Label::object;
-    double x_m = kRequired;  ///< of its middle
+    double x_m = kRequired;  ///< x of the middle
     double y_m = kRequired;
     double heading_deg = 0.0;
     double length_m = kRequired;  ///< along its heading
@@ -148,7 +148,7 @@ struct TableSpec {
     int material = kRequiredChoice;
     int leg_material = kSameMaterial;
     Label label = Label::table;
-    double x_m = kRequired;  ///< of its middle
+    double x_m = kRequired;  ///< x of the middle
     double y_m = kRequired;
     double heading_deg = 0.0;
     double length_m = kRequired;
@@ -167,7 +167,7 @@ struct TableSpec {
 /// maps of the highest surface show the ground in it.
 struct DoorSpec {
     MaterialNames materials;
-    int material = kRequiredChoice;  ///< of the wall
+    int material = kRequiredChoice;  ///< material of the wall
     int post_material = kSameMaterial;
     int sill_material = kSameMaterial;
     double x_m = kRequired;  ///< middle of the opening
@@ -200,7 +200,7 @@ struct FlightSpec {
     Label label = Label::step;
     double x_m = kRequired;
     double y_m = kRequired;
-    double z_m = 0.0;  ///< of the floor where it begins
+    double z_m = 0.0;  ///< height of the floor where the flight begins
     double heading_deg = 0.0;
     StairDirection direction = StairDirection::up;
     int steps = 0;  ///< rises
@@ -210,7 +210,7 @@ struct FlightSpec {
     double landing_m = 0.0;           ///< 0: going up the last tread is as deep as the others
     double base_m = 0.0;              ///< solid down to this far below its lower end
     double nosing_m = 0.0;            ///< overhang of each tread over its riser
-    double tread_thickness_m = 0.04;  ///< with nosing or open risers
+    double tread_thickness_m = 0.04;  ///< used if the stairs have a nosing or no risers
     bool open = false;                ///< treads only, no risers
     double rise_variation_m = 0.0;    ///< each rise differs by up to this; the sum is exact
     void describe(ConfigVisitor& visitor);
@@ -225,18 +225,18 @@ struct SpiralSpec {
     int material = kRequiredChoice;
     int pole_material = kSameMaterial;
     Label label = Label::step;
-    double x_m = kRequired;  ///< of the axis
+    double x_m = kRequired;  ///< x of the axis
     double y_m = kRequired;
-    double z_m = 0.0;  ///< of the floor where it begins
+    double z_m = 0.0;  ///< height of the floor where the stairs begin
     double start_deg = 0.0;
-    double turn_deg = kRequired;  ///< of one step, positive to the left
+    double turn_deg = kRequired;  ///< turn of one step, positive to the left
     StairDirection direction = StairDirection::up;
     int steps = 0;
     double rise_m = kRequired;
     double inner_radius_m = kRequired;
     double outer_radius_m = kRequired;
-    double thickness_m = 0.0;    ///< of a step; 0 = solid to the floor
-    double pole_height_m = 0.0;  ///< above z_m; 0 = no pole
+    double thickness_m = 0.0;    ///< thickness of a step; 0 = solid to the floor
+    double pole_height_m = 0.0;  ///< height above z_m; 0 = no pole
     void describe(ConfigVisitor& visitor);
     [[nodiscard]] std::optional<std::string> problem() const;
     void add(Site& site) const;

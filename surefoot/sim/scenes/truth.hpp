@@ -19,10 +19,10 @@ namespace surefoot::sim {
 struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
-    std::vector<StampedPose> trajectory;  ///< one pose a frame
+    std::vector<StampedPose> trajectory;  ///< one pose per frame
     std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
-    std::vector<StepEvent> steps;         ///< of a walking machine
-    std::vector<Stop> stops;              ///< of a trolley
+    std::vector<StepEvent> steps;         ///< steps of a walking machine
+    std::vector<Stop> stops;              ///< stops of a trolley
 };
 
 /// Cells of a map. `origin_m` is the outer corner of cell (0, 0) in the world. Images are indexed
@@ -73,7 +73,7 @@ struct EdgeConfig {
                                             const EdgeConfig& config = {});
 
 struct VisibilityConfig {
-    double range_m = 2.5;    ///< from the left camera to the surface, straight line
+    double range_m = 2.5;    ///< straight distance from the left camera to the surface
     int min_frames = 1;      ///< smallest number of frames that must see a cell
     double margin_px = 0.0;  ///< ignored pixels at the image border
     int frame_stride = 1;    ///< use every n-th pose only

@@ -34,10 +34,10 @@ namespace surefoot::sim {
 struct AnalyticStereoConfig {
     int stride = 1;                 ///< use every n-th row and column
     double sigma_px = 0.25;         ///< white and correlated noise together
-    double correlated_share = 0.5;  ///< of the variance
+    double correlated_share = 0.5;  ///< correlated share of the variance
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
-    double fixed_share = 0.3;       ///< of the correlated variance: sticks to the surface
-    double fixed_size_m = 0.09;     ///< its scale on the surface: 30 px at 1 m
+    double fixed_share = 0.3;       ///< share of the correlated variance that sticks to the surface
+    double fixed_size_m = 0.09;     ///< correlation length on the surface: 30 px at 1 m
     double locking_px = 0.05;       ///< amplitude
     double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic
 
@@ -47,7 +47,7 @@ struct AnalyticStereoConfig {
     double plain_suspicion = 0.02;  ///< outlier probability elsewhere
 
     double max_disparity_px = 128.0;  ///< search range
-    double missing_share = 0.02;      ///< of all other pixels, lost in patches of `patch_px`
+    double missing_share = 0.02;      ///< lost share of all other pixels, in patches of `patch_px`
     double patch_px = 8.0;
     double fade_incidence_deg = 75.0;  ///< losses grow from this incidence ...
     double max_incidence_deg = 85.0;   ///< ... to here
@@ -124,7 +124,7 @@ class AnalyticStereo {
     SurfaceNoise surface_noise_;
     std::vector<double> known_;  ///< per surface, seen head-on; 0 if the surface never matches
     bool fixed_noise_ = false;   ///< whether some noise is attached to the surfaces
-    double fade_cosine_ = 0.0;   ///< of `fade_incidence_deg`
+    double fade_cosine_ = 0.0;   ///< cosine of `fade_incidence_deg`
     std::vector<float> cdf_;
 };
 

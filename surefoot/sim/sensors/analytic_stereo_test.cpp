@@ -140,7 +140,7 @@ TEST(AnalyticStereoTest, StrideGivesTheSamePixelsInUnitsOfItsOwn) {
             if (std::isnan(thin_px)) continue;
             const auto full_px = static_cast<double>(truth_px.at(4 * u + 2, 4 * v + 2));
             EXPECT_NEAR(4.0 * thin_px, full_px, 1e-6 * full_px);
-            // The same point in space by either camera.
+            // Both cameras see the same point in space.
             const Vector3d p_m = stereo.rig().point(u, v, thin_px);
             EXPECT_LT((p_m - full.point(4 * u + 2, 4 * v + 2, full_px)).norm(), 1e-5 * p_m.norm());
             ++known;

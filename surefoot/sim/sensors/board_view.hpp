@@ -15,14 +15,14 @@ namespace surefoot::sim {
 /// A flat textured board across the optical axis of the left camera, as in tests of depth cameras,
 /// with a wall 1.5 m behind it.
 struct BoardView {
-    double distance_m = 1.0;  ///< from the centre of the left camera
+    double distance_m = 1.0;  ///< distance from the centre of the left camera
     double side_m = 0.6;      ///< square, its middle on the axis
     CameraProfile profile = CameraProfile::ideal;
     double noise = 1.0;     ///< factor on the noise of the images
     double contrast = 1.0;  ///< factor on the contrast of the materials
     CameraConfig camera;
     CalibrationError calibration_error;
-    std::uint64_t seed = 1;  ///< for texture and noise
+    std::uint64_t seed = 1;  ///< seed of texture and noise
 };
 
 struct SeenBoard {

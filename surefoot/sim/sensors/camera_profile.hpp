@@ -20,7 +20,7 @@ inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "
 /// OpenCV's matcher (our matcher agrees with the recording at twice that noise). `zed` is the
 /// harsher profile; use it for claims.
 struct ProfileFigures {
-    double noise_dn = 0.0;       ///< on top of the camera's own
+    double noise_dn = 0.0;       ///< noise in addition to the noise of the camera
     double noise_size_px = 0.0;  ///< replaces the camera's own size if that is 0
     double smear_sigma_px = 0.0;
     double contrast = 1.0;

@@ -24,8 +24,8 @@ struct DepthCameraConfig {
     double axial_slope_1_m = 0.0019;  ///< 1/m
     double axial_center_m = 0.4;
     double axial_angle = 0.0001;         ///< m^1.5
-    double lateral_share = 0.001376915;  ///< of z, in the image plane: 0.8 px of a Kinect
-    double min_range_m = 0.35;           ///< of z, where the model is valid
+    double lateral_share = 0.001376915;  ///< share of z, in the image plane: 0.8 px of a Kinect
+    double min_range_m = 0.35;           ///< smallest z for which the model is valid
     double max_range_m = 3.0;
     /// Projector offset along the camera's x axis; points in its shadow are unknown. 0 = light from
     /// the camera itself (time of flight). Kinect v1: 75 mm (Khoshelham and Elberink 2012).
@@ -39,7 +39,7 @@ struct DepthCameraConfig {
     double least_return = 0.06;
     bool mixes_edges = false;  ///< time of flight: pixels on an edge lie between the two surfaces
 
-    /// The same camera with every axial error multiplied by `factor`.
+    /// Returns the same camera with every axial error multiplied by `factor`.
     [[nodiscard]] DepthCameraConfig with_noise(double factor) const;
 
     void describe(ConfigVisitor& visitor);
@@ -59,7 +59,7 @@ inline constexpr const char* kDepthCameraNames[] = {"kinect_v1", "kinect_v2"};
 
 struct DepthFrame {
     Image<float> depth_m;  ///< along the optical axis; NaN = unknown
-    Image<float> sigma_m;  ///< one sigma of it; NaN = unknown
+    Image<float> sigma_m;  ///< one sigma of the depth; NaN = unknown
 };
 
 /// Depth images of a scene. Mirrors and glass return nothing (ASSUMPTION: their light never comes

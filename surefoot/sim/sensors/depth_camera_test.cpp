@@ -218,7 +218,7 @@ TEST(DepthCameraTest, LateralNoiseMovesNothingAlongASurface) {
 TEST(DepthCameraTest, TimeOfFlightMixesDepthsOnEdgesOnly) {
     DepthCameraConfig config = noiseless();
     config.mixes_edges = true;
-    // Its edge at x = 0.2013 m crosses the pixels at 119.5 +- 40.26.
+    // The edge of the plate at x = 0.2013 m crosses the pixels at 119.5 +- 40.26.
     const DepthFrame frame =
         shot(test::plate_before_wall(1.0, 2.0, 0.4026), config, test::level_camera());
     int between = 0;

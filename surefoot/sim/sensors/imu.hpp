@@ -27,7 +27,7 @@ struct ImuNoiseConfig {
     double accel_walk_m_s3_sqrt_hz = 0.0;
     double gyro_range_rad_s = 0.0;  ///< 0 = unlimited
     double accel_range_m_s2 = 0.0;  ///< 0 = unlimited
-    double gyro_step_rad_s = 0.0;   ///< one count of the converter; 0 = no quantisation
+    double gyro_step_rad_s = 0.0;   ///< size of one count of the converter; 0 = no quantisation
     double accel_step_m_s2 = 0.0;
 
     void describe(ConfigVisitor& visitor);

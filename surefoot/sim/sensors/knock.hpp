@@ -12,7 +12,7 @@ namespace surefoot::sim {
 /// axes of base_link, through the left camera, in the order roll, pitch, yaw as in Rz(yaw)
 /// Ry(pitch) Rx(roll). It starts at `at_s`.
 struct KnockConfig {
-    double at_s = 0.0;  ///< after the first frame
+    double at_s = 0.0;  ///< time after the first frame
     double roll_deg = 0.0;
     double pitch_deg = 0.0;  ///< positive = down
     double yaw_deg = 0.0;

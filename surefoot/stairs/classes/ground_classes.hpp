@@ -97,7 +97,7 @@ class GroundClassifier {
 
     StairsConfig config_;
     PatchWalk walk_;
-    std::vector<GroundClass> class_;  ///< of each patch
+    std::vector<GroundClass> class_;  ///< class of each patch
     std::vector<double> above_m_;     ///< sums over blocks of a patch
     std::vector<int> above_count_;
     std::vector<float> heights_m_;

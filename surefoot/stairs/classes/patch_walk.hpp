@@ -46,7 +46,7 @@ class PatchWalk {
     struct Contact {
         std::int32_t low = 0;  ///< the lower number of the two
         std::int32_t high = 0;
-        float rise_m = 0.0F;  ///< from `low` to `high`, at the middle between both
+        float rise_m = 0.0F;  ///< height from `low` to `high`, at the middle between both
         float gap_m = 0.0F;
     };
     struct NearStance {

@@ -97,7 +97,7 @@ double PatchFinder::mean_square_m2(const Sums& s, const Plane& plane) {
 }
 
 bool PatchFinder::lies_on(const Sums& sums, const Plane& plane) const {
-    const double var_m2 = sums.cells / sums.w - square(kLeastSigma_m);  // of its cells
+    const double var_m2 = sums.cells / sums.w - square(kLeastSigma_m);  // variance of the cells
     const double within_m2 = std::clamp(square(config_.sigma_factor) * var_m2,
                                         square(config_.tolerance_m),
                                         square(config_.max_tolerance_m));

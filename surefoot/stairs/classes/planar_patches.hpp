@@ -114,7 +114,7 @@ class PatchFinder {
     int nbx_ = 0;
     int nby_ = 0;
     std::vector<Sums> blocks_;
-    std::vector<std::uint8_t> quality_;  ///< of a seed; 0 = best
+    std::vector<std::uint8_t> quality_;  ///< quality of a seed; 0 = best
     std::vector<Plane> start_;           ///< plane of a seed
     std::vector<std::int32_t> seeds_;
     std::vector<std::int32_t> waiting_;

@@ -71,7 +71,7 @@ class BottleneckFinder {
     /// of `reach_` blocks, so the square about a block begins at the block's own index.
     Image<float> low_m_;
     Image<float> high_m_;  ///< highest; -inf = unknown
-    // Per column: the cells of one row of blocks.
+    // One entry per column: the cells of one row of blocks.
     std::vector<float> column_low_m_;
     std::vector<float> column_high_m_;
     std::vector<int> column_known_;

@@ -194,7 +194,7 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
         Range x_m{-g.nx * cell_m_, g.nx * cell_m_};
         x_m.cut(across.x(), across.y() * y_m, across_m);
         x_m.cut(along.x(), along.y() * y_m, kHalfProfile_m);
-        // For an opening almost along the rows the range may exceed all integers.
+        // If an opening is almost parallel to the rows, the range may exceed all integers.
         const auto cell_at = [&](double offset_m) {
             return bottleneck.x() + offset_m / cell_m_ - 0.5;
         };

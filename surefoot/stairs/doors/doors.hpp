@@ -17,7 +17,7 @@ namespace surefoot::stairs {
 struct DoorConfig {
     double min_width_m = 0.6;    ///< doors in buildings have 0.76 m and more
     double max_width_m = 1.4;    ///< least distance of the pillars of a corridor
-    double max_depth_m = 0.5;    ///< of the jambs along the way; deeper passages are corridors
+    double max_depth_m = 0.5;    ///< jamb depth along the way; deeper passages are corridors
     double rise_m = 0.2;         ///< anything higher above the ground beside it is not ground
     double wall_height_m = 0.5;  ///< visible height of a wall; the camera looks down on walls
     double wall_length_m = 0.3;  ///< length of wall on both sides of the opening
@@ -74,9 +74,9 @@ class DoorFinder {
         float var_m2 = 0.0F;
         float clearance_m = 0.0F;
     };
-    /// Where a row of cells meets the wall, in the frame of the opening.
+    /// The point where a row of cells meets the wall, in the frame of the opening.
     struct RowEnd {
-        double across_m = 0.0;  ///< from the middle
+        double across_m = 0.0;  ///< offset from the middle
         double along_m = 0.0;
     };
     /// Mean height of the ground over the width of an opening.

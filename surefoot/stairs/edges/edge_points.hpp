@@ -62,7 +62,7 @@ class EdgePointFinder {
         float upper_m = 0.0F;
         float lower_m = 0.0F;
         bool lower_seen = false;
-        bool ends = false;  ///< nothing is known of the ground behind
+        bool ends = false;  ///< the ground behind the edge is unknown
     };
     void scan(const Line& line);
     [[nodiscard]] bool falls_at(const Line& line, int cell, Found& found) const;
@@ -72,7 +72,7 @@ class EdgePointFinder {
     int window_cells_ = 1;
     int reach_cells_ = 1;
     double resolution_m_ = 0.0;
-    std::vector<float> height_m_;  ///< of the line that is being scanned
+    std::vector<float> height_m_;  ///< heights of the line that is being scanned
     std::vector<float> low_m_;     ///< lowest of the next known cells within the window
     std::vector<Found> found_;
 };

@@ -287,7 +287,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
             bound_at_m = k * resolution_m_;
         }
     }
-    // Ground behind a deep occluded region may belong to something else.
+    // Ground behind a deep occluded region may belong to another object.
     const bool near =
         lower.begin_m <=
         config_.shadow_per_height * (upper.height_m - lower.height_m) + config_.smear_m;

@@ -10,7 +10,7 @@ inline constexpr double kCorrelation_m = 0.1;
 
 struct SliceMean {
     double height_m = 0.0;
-    double sigma_m = 0.0;    ///< of the height: one independent error per square of kCorrelation_m
+    double sigma_m = 0.0;    ///< height sigma: one independent error per square of kCorrelation_m
     double scatter_m = 0.0;  ///< standard deviation of one cell
 };
 /// Mean over `count` known slices, from `first` on in direction `way`; a slice is `length_m` long.

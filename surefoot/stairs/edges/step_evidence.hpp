@@ -73,10 +73,10 @@ class StepEvidenceFinder {
         double to_m = 0.0;
     };
     struct Fit {
-        double squares = 0.0;  ///< of the residuals, in sigma
+        double squares = 0.0;  ///< sum of (residual / sigma)^2
         double upper_slope = 0.0;
         double lower_slope = 0.0;
-        double rise_m = 0.0;  ///< between both planes
+        double rise_m = 0.0;  ///< height difference between both planes
     };
     void gather(const Terrain& terrain, const Edge& edge, double upper_m, double lower_m);
     [[nodiscard]] double slope_along(double length_m);
@@ -101,8 +101,8 @@ class StepEvidenceFinder {
     std::vector<Cell> cells_;
     std::vector<int> all_in_slice_;  ///< number of cells, known or not
     std::vector<int> slice_of_;      ///< index in `slices_`; -1 = too few known cells
-    std::vector<Slice> slices_;      ///< from the upper side on
-    std::vector<float> residual_m_;  ///< of the box; NaN = no cell
+    std::vector<Slice> slices_;      ///< slices, from the upper side on
+    std::vector<float> residual_m_;  ///< residuals of the cells in the box; NaN = no cell
     std::vector<double> values_;
     std::vector<double> slopes_;
     std::array<std::vector<double>, 2> halves_;  ///< heights of a slice

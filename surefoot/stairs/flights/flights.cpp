@@ -299,7 +299,7 @@ void FlightFinder::measure_risers(Flight& flight) {
     const bool up = flight.kind == FlightKind::up;
     const auto near_m = [&](const Edge& edge) { return up ? edge.lower_m : edge.upper_m; };
     const auto far_m = [&](const Edge& edge) { return up ? edge.upper_m : edge.lower_m; };
-    std::vector<double> level_m;  // of the treads, in the direction of the flight
+    std::vector<double> level_m;  // heights of the treads, in the direction of the flight
     std::vector<double> sigma_m;
     const auto add = [&](double height_m, double edge_sigma_m) {
         level_m.push_back(up ? height_m : -height_m);

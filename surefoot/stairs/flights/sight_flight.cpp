@@ -10,10 +10,11 @@ namespace {
 
 constexpr double kRiserStep_m = 0.008;
 constexpr double kGoingStep_m = 0.02;
-constexpr double kShortestGoing_m = 0.2;  ///< of real stairs; a spiral has no equal steps
+constexpr double kShortestGoing_m = 0.2;  ///< limit of real stairs; a spiral has no equal steps
 constexpr double kLongestGoing_m = 0.4;
-constexpr int kMostSteps = 8;       ///< deeper steps are not visible
-constexpr double kDeepest_m = 1.3;  ///< deepest floor of the alternatives to a flight
+constexpr int kMostSteps = 8;  ///< deeper steps are not visible
+constexpr double kDeepest_m =
+    1.3;  ///< lowest floor below the first edge in the other hypotheses (slope, fall)
 constexpr double kFloorStep_m = 0.025;
 constexpr double kSteepest = 0.9;  ///< steepest slope; anything steeper counts as an immediate fall
 constexpr double kSlopeStep = 0.03;

@@ -13,7 +13,7 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr double kHeight_m = 1.0;    ///< of the camera
+constexpr double kHeight_m = 1.0;    ///< height of the camera
 constexpr double kFirst_m = 0.8;     ///< run to the first nosing
 constexpr double kBin_rad = 0.0015;  ///< half a pixel of a ZED
 

@@ -14,7 +14,7 @@ inline constexpr double kSightBin_px = 0.5;
 
 /// The ground that rays of similar steepness meet, along a whole edge.
 struct SightBin {
-    double steepness = 0.0;  ///< of the rays: fall over run, across the edge
+    double steepness = 0.0;  ///< steepness of the rays: fall over run, across the edge
     double depth_m = 0.0;    ///< median depth below the upper ground; NaN = no data
     double sigma_m = 0.0;
 };

@@ -91,7 +91,7 @@ class SightScene {
             depth_m = treads[k].depth_m;
             const double face_m = (treads[k].behind_m - camera_x_m) / ray.x();
             const double below_m = -face_m * ray.z() - kCamera_m - depth_m;
-            if (below_m > 0.0) {  // it goes up, and its face is in the way
+            if (below_m > 0.0) {  // the step leads up, and its face hides the ground behind
                 z_m = open_ && below_m > kBoard_m ? kCamera_m / -ray.z() : face_m;
                 break;
             }

@@ -32,7 +32,7 @@ class SightSteps {
         int support = 0;  ///< number of bins that agree with the level
     };
     struct Nose {
-        double run_m = 0.0;  ///< from the camera
+        double run_m = 0.0;  ///< horizontal distance from the camera
         double sigma_m = 0.0;
     };
     void find_levels(std::span<const SightBin> bins);

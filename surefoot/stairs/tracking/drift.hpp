@@ -10,7 +10,7 @@ namespace surefoot::stairs {
 /// Uncertainty of the motion since a feature was last seen: how far its remembered position may be
 /// wrong relative to the machine. Variances in the axes of odom.
 struct Drift {
-    double horizontal_var_m2 = 0.0;  ///< in the direction of the largest variance
+    double horizontal_var_m2 = 0.0;  ///< variance in the direction of the largest variance
     double height_var_m2 = 0.0;
     double yaw_var_rad2 = 0.0;
     double tilt_var_rad2 = 0.0;  ///< the larger one of the tilts about x and y

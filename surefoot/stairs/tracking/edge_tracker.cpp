@@ -27,7 +27,7 @@ constexpr double kMaxHeight_m = 0.08;
 constexpr double kMaxAngle_rad = 40.0 * kRadPerDeg;
 constexpr double kMinOverlap = 0.3;  ///< share of the shorter edge
 constexpr double kPieceAcross_m = 0.03;
-/// An unmatched edge this close to a matched one is the same edge: two edges of one upper ground
+/// An unmatched edge this close to a matched one is the same edge. Two edges of one upper ground
 /// that fall in one direction are never so close.
 constexpr double kDouble_m = 0.2;
 constexpr double kCovered = 0.7;
@@ -65,7 +65,7 @@ double lower_difference_m(const Edge& a, const Edge& b) {
     return 0.0;
 }
 
-/// Empty if they cannot be the same edge; else the disagreement in sigma.
+/// The disagreement of two edges in sigma. Empty if they cannot be the same edge.
 std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const Edge& edge = track.edge;
     if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m)
@@ -148,7 +148,7 @@ void take_height(const Edge& observation,
         const double higher_m = observation.height_m() - old_height_m;
         height_m += higher_m * track.height.take(var_m2, higher_m, most_observations);
         edge.lower_seen = true;
-    } else if (!edge.lower_seen) {  // of two bounds the lower one is valid
+    } else if (!edge.lower_seen) {  // the lower one of two bounds is valid
         height_m = std::max(height_m, observation.height_m());
         (void)track.height.take(var_m2, 0.0, most_observations);
     }
@@ -291,8 +291,8 @@ void EdgeTracker::take(const ObservedEdge& seen,
     track.shown = true;
 }
 
-/// Grows at once. A part beyond the observation's ends fades; for a drop it fades only if the
-/// ground there is level, or if it is within the usual motion of ends.
+/// Grows at once. A part beyond the observation's ends fades. For a drop it fades only if the
+/// ground there is level, or if the part is within the usual motion of ends.
 void EdgeTracker::take_ends(const Edge& observation,
                             const Terrain& terrain,
                             EdgeTrack& track) const {

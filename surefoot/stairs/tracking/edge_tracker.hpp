@@ -29,18 +29,18 @@ struct EdgeTrack {
     Edge edge;
     ObservationWeight across;
     ObservationWeight angle;
-    ObservationWeight level;   ///< of the height of the upper ground
-    ObservationWeight height;  ///< of the height difference
+    ObservationWeight level;   ///< weight of the height of the upper ground
+    ObservationWeight height;  ///< weight of the height difference
     double away_m = 0.0;       ///< distance from the stance
     bool shown = false;
-    bool drop = false;  ///< it was a drop in at least one observation
+    bool drop = false;  ///< the edge was a drop in at least one observation
     bool kerb = false;
     bool kerb_down = false;
     int kerb_observations = 0;
     int kerb_missed = 0;         ///< consecutive observations that found it, but not as a kerb
     int missed = 0;              ///< consecutive observations that did not find it
-    int place_known = 0;         ///< of these, the observations that know the ground at its place
-    int level_observations = 0;  ///< consecutive ones that find the ground level or smooth
+    int place_known = 0;         ///< misses in which the ground at the edge was known
+    int level_observations = 0;  ///< consecutive observations that find level or smooth ground
 };
 
 /// Counts ids up from 1 for all features that are tracked together; 0 means "no id".

@@ -210,7 +210,7 @@ TEST(FeatureTracker, an_edge_that_is_no_drop_and_is_found_once_is_not_told) {
     observations.observe_nothing();
     EXPECT_TRUE(observations.observation(edges_found({edge_ahead(1.0)})).edges.empty());
     for (int k = 0; k < 20; ++k) EXPECT_TRUE(observations.observation({}).edges.empty());
-    // Its track is gone, so this is a first observation again.
+    // The track of the edge is gone, so this is a first observation again.
     EXPECT_TRUE(observations.observation(edges_found({edge_ahead(1.0)})).edges.empty());
     EXPECT_EQ(observations.observation(edges_found({edge_ahead(1.0)})).edges.size(), 1U);
 }
@@ -358,7 +358,7 @@ TEST(FeatureTracker, a_drop_that_this_look_finds_is_never_missing_nor_farther_aw
             edge.from_m = middle_m + turn * (edge.from_m - middle_m) * (0.4 + rng.uniform());
             edge.to_m = middle_m + turn * (edge.to_m - middle_m) * (0.4 + rng.uniform());
             edge.across_sigma_m = 0.002 + 0.02 * rng.uniform();
-            Edge piece = edge;  // and another piece of it
+            Edge piece = edge;  // another piece of the same edge
             piece.from_m = edge.to_m + 0.1 * edge.along();
             piece.to_m = piece.from_m + 0.4 * edge.along();
             TerrainFeatures found = drop_found(edge);
@@ -662,7 +662,7 @@ TEST(FeatureTracker, numbers_that_are_none_do_no_harm) {
     broken.drops = {line_feature(broken.edges[0], true)};
     broken.doors.emplace_back();
     broken.doors[0].pose.p_m.setConstant(nan);
-    broken.flights.emplace_back();  // of no edges
+    broken.flights.emplace_back();  // a flight without edges
     Edge point = edge_ahead(1.0);
     point.to_m = point.from_m;
     broken.edges.push_back(point);

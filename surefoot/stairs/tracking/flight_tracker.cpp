@@ -227,8 +227,8 @@ void FlightTracker::take(const Flight& seen, std::int64_t time_ns, FlightTrack& 
     track.missed = track.place_seen = 0;
 }
 
-/// True if the flight has lost its edges, is visible but no longer found, or if other flights have
-/// taken its edges (for example after the machine has climbed it).
+/// True if the flight has lost its edges, or is visible but no longer found. Also true if other
+/// flights have taken its edges, for example after the machine has climbed it.
 bool FlightTracker::is_over(int edges_left, const Terrain& terrain, FlightTrack& track) const {
     if (track.flight.tracked.seen_now) return false;
     ++track.missed;

@@ -17,7 +17,7 @@ struct TrackingConfig {
     int level_observations =
         5;  ///< in a row that see level ground where a drop was, until it is gone
     int missed_observations = 10;  ///< consecutive misses in view that end a feature (not a drop)
-    int first_observations = 3;    ///< the same for a feature that was found only once
+    int first_observations = 3;    ///< consecutive misses that end a feature found only once
     double steps_observations =
         10.0;  ///< the number of steps is the one found most often in so many
 
