@@ -142,7 +142,9 @@ void warn(const geometry::CloudAlignment& found) {
     }
     if (found.border_directions > 0) {
         log_info(fmt::format(
-            "no surface determines {} of 6 directions; the borders of both clouds determine them",
+            "only the borders of the clouds determine {} of 6 directions. If the clouds end in "
+            "different places, the result is wrong in these directions: check it, or use clouds "
+            "that show more surfaces",
             found.border_directions));
     }
 }

@@ -396,7 +396,7 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 2) {

@@ -76,7 +76,7 @@ Result<TerrainMap> from_cloud(const TerrainRequest& request) {
     return map;
 }
 
-/// A further layer of the same cells.
+/// Reads another layer. Its cells must be those of `geometry`; otherwise an input error.
 Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry& geometry) {
     auto dem = io::read_esri_grid(file);
     if (!dem) return dem.error();

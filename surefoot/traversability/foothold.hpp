@@ -31,7 +31,7 @@ struct FootholdConfig {
     double patch_side_m = 0.05;
     double max_residual_m = 0.025;   ///< distance of a patch mean from the foot's plane
     double sigma_factor = 3.4;       ///< one-sided 3e-4
-    double independent_cells = 4.0;  ///< limit of independent errors in a patch
+    double independent_cells = 4.0;  ///< most cells of a patch whose errors count as independent
     /// Errors of a semi-global matcher are shared over 30-50 px: 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
     double clearance_m = 2.05;  ///< height of the tallest user on the foot plates

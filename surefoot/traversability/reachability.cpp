@@ -157,7 +157,7 @@ void Reachability::spread() {
         while (first != kNobody) {
             const Waiting entry = waiting_[static_cast<std::size_t>(first)];
             first = entry.next;
-            // Other entries were reached over a smaller step meanwhile, and visited.
+            // The cell of an entry with another step is done: it was visited over a smaller step.
             if (cells_[static_cast<std::size_t>(entry.cell)].step == step) {
                 waiting = visit(entry.cell, step, waiting);
             }

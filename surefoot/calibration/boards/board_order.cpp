@@ -251,8 +251,9 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
         if (!is_smooth(board, points)) continue;
         if (board.kind == BoardKind::chessboard && !black_where_it_should_be(board, points, image))
             continue;
-        // With rows shifted in the wrong direction the fit error grows by a quarter of their
-        // distance. The right orders fit equally well.
+        // With rows shifted in the wrong direction the fit error grows by a quarter of the row
+        // spacing. All correct orders fit equally well, so the one is taken whose rows point
+        // farthest to the right in the image.
         const double tolerance_px = 0.1 * board.spacing_m * std::sqrt(map->J_px_m.determinant());
         const double right = row_direction(board, whole_view(points)).x();
         const bool better = !best || map->rms_px < best_rms_px - tolerance_px ||

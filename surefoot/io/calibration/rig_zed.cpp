@@ -58,8 +58,8 @@ class ZedReader {
             if (ini_.find(section, key) != nullptr) return number(section, key);
         }
         fail(fmt::format(
-            "[{0}] has no '{1}'. Older files have no such key, and Stereolabs' programs then use "
-            "0: download the file of this serial number again, or add the line '{1} = 0'",
+            "[{0}] has no '{1}'. Download the file of this serial number again, or add the line "
+            "'{1} = 0', which Stereolabs' programs assume for older files",
             section,
             *keys.begin()));
         return 0.0;

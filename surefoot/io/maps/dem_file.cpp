@@ -19,7 +19,7 @@ namespace surefoot::io {
 namespace {
 
 constexpr double kNoData = -9999.0;
-constexpr double kFinest_m = 1e-4;  ///< cells as `surefoot dem` makes them
+constexpr double kFinest_m = 1e-4;  ///< smallest side of a cell, as of `surefoot dem`
 constexpr double kCoarsest_m = 1000.0;
 constexpr double kFarthest_m = 1e9;  ///< of a corner; a micrometre still differs there
 constexpr std::int64_t kMaxSide = 1 << 20;

@@ -119,7 +119,7 @@ class RexMotion final : public Motion {
     [[nodiscard]] std::optional<LegAngles> leg(Side side, double time_s) const;
 
     std::vector<Body> bodies_;                  ///< in time order; the first one is a stand
-    std::array<std::vector<Swing>, 2> swings_;  ///< per side, in time order; the first is the start
+    std::array<std::vector<Swing>, 2> swings_;  ///< per side, in time order; first = initial stand
     std::vector<Strike> strikes_;               ///< in time order
     std::vector<Span> steps_;
     double duration_s_ = 0.0;

@@ -12,8 +12,8 @@
 
 namespace surefoot::sim {
 
-/// What a ray hits. Radiance 1 = a white surface under full light. Points with different `key`
-/// differ in more than texture: another face, lit or in shadow, or another object in the mirror.
+/// The surface point that a ray hits. Radiance 1 = a white surface under full light. `key` differs
+/// if the face, the light or shadow, or the mirrored object differs; texture does not change it.
 struct Seen {
     float radiance = 0.0F;
     std::uint32_t key = 0;

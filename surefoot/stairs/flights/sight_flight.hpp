@@ -50,7 +50,7 @@ class SightFlight {
   private:
     /// A bin with data; its ray is described by its run at the level of the upper ground.
     struct Point {
-        double run_per_m = 0.0;  ///< run over fall
+        double run_per_m = 0.0;  ///< horizontal run of the ray per metre that it falls
         double depth_m = 0.0;
         double per_sigma = 0.0;
     };
