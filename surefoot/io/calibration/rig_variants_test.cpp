@@ -678,7 +678,7 @@ TEST(RigVariants, ZedFilesOfAnyAge) {
                                "SN.conf")
                     .ok());
     EXPECT_TRUE(contains(message(file(replaced(stereo, "TY=-0.08\n", ""))),
-                         "[STEREO] has no 'TY_HD'. Older files have no such key"));
+                         "[STEREO] has no 'TY_HD'. Download the file of this serial number again"));
     EXPECT_TRUE(contains(message(file(replaced(stereo, "RX_HD=0.001\n", ""))),
                          "or add the line 'RX_HD = 0'"));
 }
