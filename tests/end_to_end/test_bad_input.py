@@ -417,7 +417,7 @@ class BadBoards(CliTest):
         (folder / "b.png").write_bytes(grey_png(1, 1))
         process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("b.png: 1 x 1 px, but the first image has 672 x 376", process.stderr)
+        self.assertIn("b.png: image of 1 x 1 px, but the first image has 672 x 376", process.stderr)
         (folder / "a.png").write_bytes(grey_png(672, 376))
         (folder / "b.png").write_bytes(png_of([random.Random(1).randbytes(672) for _ in range(376)]))
         process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")

@@ -71,7 +71,7 @@ class Thesis(CliTest):
         (self.dir / "thesis/scans/thesis_i_demo_stairs/figures.csv").write_text("riser,1\n")
         process = surefoot("eval", "suite", "--lange2016", *SMALL, "--out", self.dir / "thesis")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("figures.csv: 'riser,1' is no line of such a file", process.stderr)
+        self.assertIn("figures.csv: 'riser,1' is not a line of a figures file", process.stderr)
 
 
 class Tiles(CliTest):
