@@ -26,7 +26,7 @@ TEST(PageSettings, AChangeIsMadeAndShownToAll) {
     const SettingAnswer answer = settings.ask({"page.map_hz", "5"});
     EXPECT_TRUE(answer.accepted);
     EXPECT_EQ(answer.value, "5");
-    EXPECT_EQ(answer.text, "page.map_hz is 5 now, 10 before");
+    EXPECT_EQ(answer.text, "page.map_hz is now 5 (before: 10)");
     EXPECT_EQ(settings.all()[1].value, "5");
     EXPECT_GT(settings.serial(), before);
 }

@@ -13,7 +13,7 @@ import warnings
 from surefoot_cli import BINARY, CliTest, surefoot
 from websocket_client import RosbridgeClient
 
-GATE = BINARY.parent.parent / "surefoot-gate" / "surefoot-gate"
+GATE = BINARY.parent / "surefoot-gate"
 INSECURE = "I understand that everybody on this network can read and change what is sent"
 
 

@@ -316,7 +316,7 @@ class BadInput(CliTest):
         nan = float("nan")
         bad = {"empty.ply": (ply([]), "no point with finite"), "nan.ply": (ply([(nan, nan, nan)] * 5), "among 5"),
                "cut.ply": (ply(points)[:-1], "truncated"), "head.ply": (ply(points).split(b"property")[0], "truncated"),
-               "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "4000000000 'vertex' announced"),
+               "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "announces 4000000000 'vertex'"),
                "far.ply": (ply([*points, (1e30, 0, 0)]), "100 km"), "text.xyz": (b"1 2\n", "2 numbers"),
                "decimal.csv": (b"1,5;2,5;3,5\n1,5;2,5\n", "'1,5' has a decimal comma"), "nothing.las": (b"", "not a LAS file"),
                "what.dat": (b"x", "unknown cloud format '.dat'"), "packed.laz": (b"LASF", "pdal")}

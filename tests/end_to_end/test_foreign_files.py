@@ -5,7 +5,7 @@ import unittest
 
 from surefoot_cli import BINARY, ROOT, CliTest, surefoot
 
-GATE = BINARY.parent.parent / "surefoot-gate" / "surefoot-gate"
+GATE = BINARY.parent / "surefoot-gate"
 MATRICES = """%YAML:1.0
 ---
 mtxL: !!opencv-matrix

@@ -11,7 +11,7 @@ import unittest
 from surefoot_cli import BINARY, ROOT, CliTest
 from websocket_client import RosbridgeClient
 
-GATE = BINARY.parent.parent / "surefoot-gate" / "surefoot-gate"
+GATE = BINARY.parent / "surefoot-gate"
 FORWARD, BACKWARD, TURN_LEFT = 9, 17, 25
 PATIENCE_S = 120.0
 FAIR_SHARE = ("--nice", "0")  # with a lower priority, frames come too late on a busy machine

@@ -131,7 +131,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
         contains(bad("[672, 376]", "[672, 0]"), "rig.yaml:2: resolution: 0 is not an image side"));
     EXPECT_TRUE(contains(bad("side_by_side", "stacked"), "is not one of side_by_side"));
     EXPECT_TRUE(contains(bad("none", "radtan"), "must be 'none' here"));
-    EXPECT_TRUE(contains(message(parse_rig_yaml("", "rig.yaml")), "this one nothing"));
+    EXPECT_TRUE(contains(message(parse_rig_yaml("", "rig.yaml")), "but this one has nothing"));
     const std::string full = format_rig_yaml(random_rig(6, false));
     const auto bad_full = [&](const std::string& from, const std::string& to) {
         return message(parse_rig_yaml(replaced(full, from, to), "rig.yaml"));

@@ -155,7 +155,7 @@ TEST(CloudStream, SaysWhatIsWrongWithAFile) {
         contains(why("lies.ply",
                      "ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\n"
                      "property float x\nproperty float y\nproperty float z\nend_header\nxx"),
-                 "99999999999 'vertex' announced"));
+                 "announces 99999999999 'vertex'"));
     EXPECT_TRUE(contains(why("empty.xyz", "# nothing\n"), "no points"));
     EXPECT_TRUE(contains(why("mixed.xyz", "1 2 3\r\n4 5 6\n7 8\n"), "2 numbers"));
     EXPECT_EQ(why("mixed_ends.xyz", "1 2 3\r\n4 5 6\n"), "nothing");

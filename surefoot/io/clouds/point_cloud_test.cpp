@@ -110,7 +110,7 @@ TEST(Ply, RefusesWhatIsDamagedWithFileAndReason) {
                                            "property float x\nproperty float y\nproperty float z\n"
                                            "end_header\n1 2 3\n",
                                            "a.ply")),
-                         "1000000000000 'vertex' announced"));
+                         "announces 1000000000000 'vertex'"));
     EXPECT_TRUE(contains(
         message(parse_ply("ply\nelement vertex 1\nproperty float x\nend_header\n1\n", "a.ply")),
         "must have each of x, y and z"));

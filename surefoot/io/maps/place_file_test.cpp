@@ -143,7 +143,7 @@ TEST(PlaceFile, SaysWhatIsWrongAndWhatToDo) {
     says(with(bytes, kKeyframesAt, std::uint32_t{1}), "308 bytes after its last keyframe");
     says(with(bytes, kKeyframeBytesAt, std::uint32_t{8}), "keyframes of 8 bytes; 176 to 4096");
     says(with(bytes, kFeatureBytesAt, std::uint32_t{43}), "features of 43 bytes; 44 to 4096");
-    says(with(bytes, kFeaturesAt, std::uint32_t{401}), "keyframe 0: 401 features; up to 400");
+    says(with(bytes, kFeaturesAt, std::uint32_t{401}), "keyframe 0: 401 features; at most 400");
     says(with(bytes, kFeaturesAt, std::uint32_t{400}), "bytes into a keyframe");
     says(with(bytes, kFeaturesAt + 4, std::uint32_t{9}), "reserved bytes hold 9");
     says(with(bytes, kWidthAt, std::int32_t{-1}), "keyframe 0 has images of -1 x 376");

@@ -464,7 +464,7 @@ TEST(KittiSource, BadInputIsNamed) {
     const Played repeated = play(folder / "a");
     EXPECT_EQ(repeated.frames.size(), 2U);
     EXPECT_TRUE(contains(repeated.errors, "frame 2: ") &&
-                contains(repeated.errors, "times.txt:3: stamp") &&
+                contains(repeated.errors, "times.txt:3: time stamp") &&
                 contains(repeated.errors, "repeats"))
         << repeated.errors;
     ASSERT_TRUE(write_file(folder / "a/times.txt", "0.0\n0.2\n").ok());

@@ -66,7 +66,7 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
         contains(why("1403636579000000000,0,0,0,1,0,0,0\n"), "is the quaternion qw,qx,qy,qz"));
     EXPECT_TRUE(
         contains(why("1 0 0 0 0 1 0 0 0 0 2 0\n"), "a.tum:1: its left 3x3 is not a rotation"));
-    EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 -1 0\n"), "no rotation"));
+    EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 -1 0\n"), "not a rotation"));
     EXPECT_TRUE(
         contains(write_tum_trajectory("/dev/full", {{1, Pose{}}}).error().message, "No space"));
 }

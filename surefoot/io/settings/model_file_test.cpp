@@ -90,7 +90,7 @@ TEST(ModelFile, every_mistake_is_named_with_file_line_key_and_value) {
         {"parent: thigh", "parent: thing", 10, "joints[1].parent: there is no link 'thing'"},
         {"child: shank", "child: foot", 10, "joints[1].child: there is no link 'foot'"},
         {"child: shank", "child: thigh", 10, "child: 'thigh' is already the child of joint 'hip'"},
-        {"parent: base_link", "parent: shank", 10, "joints[1].child: 'shank' would hang on itself"},
+        {"parent: base_link", "parent: shank", 10, "joints[1].child: 'shank' would be its own parent"},
         {"child: thigh",
          "child: base_link",
          9,
