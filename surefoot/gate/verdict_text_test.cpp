@@ -195,6 +195,7 @@ TEST(VerdictText, an_ok_and_an_error_have_no_place) {
     EXPECT_EQ(text_of(verdict, Query{}, rex()), "internal error: the map or the gate is damaged");
     verdict.primary = Reason::exposure;
     EXPECT_EQ(text_of(verdict, Query{}, rex()), "the image is too bright") << "dark is BLIND";
+    verdict.primary = Reason::internal;
     verdict.decision = static_cast<Decision>(200);
     EXPECT_EQ(text_of(verdict, Query{}, rex()), "internal error: the map or the gate is damaged");
 }

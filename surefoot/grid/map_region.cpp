@@ -55,7 +55,7 @@ std::optional<std::string> problem_of_known(const MapRegion& r, std::size_t i) {
         return fault("confidence", confidence, "it must be 0 to 1");
     if (!absent_or_not_negative(density))
         return fault("density_ratio", density, "it must be 0 or more and finite");
-    if (r.count.data()[i] == 0) return "the count is 0 where the height is known";
+    if (r.count.data()[i] == 0) return "count 0, although its height is known";
     return std::nullopt;
 }
 
@@ -66,7 +66,7 @@ std::optional<std::string> problem_of_unknown(const MapRegion& r, std::size_t i)
         // NaN is not equal to itself, so `unknown == unknown` is false for NaN.
         const bool is_unknown = unknown == unknown ? value == unknown : value != value;
         if (!is_unknown && !problem)
-            problem = fmt::format("{} is {} where the height is unknown", layer.name, value);
+            problem = fmt::format("{} {} where the height is unknown", layer.name, value);
     });
     return problem;
 }

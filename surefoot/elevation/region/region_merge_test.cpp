@@ -231,7 +231,7 @@ TEST(MergeRegionsInWords, WhatDoesNotFitIsSaidAndChangesNothing) {
     refused(b, RegionErrors::shared, "cells of 0.025 m and of 0.05 m");
     b = a;
     b.frame = "map";
-    refused(b, RegionErrors::independent, "frame odom, the other in map");
+    refused(b, RegionErrors::independent, "frame odom, the other in frame map");
     b = a;
     b.frame_since_ns = 7;
     refused(b, RegionErrors::shared, "two runs");
