@@ -19,11 +19,11 @@ using OldAndNew = std::pair<std::string, std::string>;
 const std::vector<OldAndNew> kPairs{
     {"trim.enabled=false", "self_calibration.enabled=false"},
     {"stairs.follow.mean_looks=7", "stairs.tracking.mean_observations=7"},
-    {"stairs.follow.going_looks=70", "stairs.tracking.going_observations=70"},
+    {"stairs.follow.going_looks=9", "stairs.tracking.going_observations=9"},
     {"stairs.follow.level_looks=7", "stairs.tracking.level_observations=7"},
     {"stairs.follow.missed_looks=7", "stairs.tracking.missed_observations=7"},
     {"stairs.follow.first_looks=7", "stairs.tracking.first_observations=7"},
-    {"stairs.follow.steps_looks=70", "stairs.tracking.steps_observations=70"},
+    {"stairs.follow.steps_looks=9", "stairs.tracking.steps_observations=9"},
     {"specular.forget_looks=7", "specular.forget_observations=7"},
     {"mount.wait_for_light_s=7", "mount.wait_for_exposure_s=7"},
     {"sim.carrier=rex", "sim.motion_model=rex"},
