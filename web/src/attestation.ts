@@ -64,12 +64,11 @@ export function attestationWords(
 ): AttestationWords {
   if (!in_force) return { words: "", detail: "" };
   const end =
-    "It ends when the machine leaves this circle, when the position is lost, after a fault, " +
-    "and when perception restarts.";
+    "It ends when the machine leaves this circle, the position is lost, a fault occurs or perception restarts.";
   if (!area) return { words: `Attestation in force. The gate does not send its radius. ${end}`, detail: "" };
   const distance_m = place ? Math.hypot(place.x_m - area.x_m, place.y_m - area.y_m) : undefined;
   return {
-    words: `Attestation in force: radius ${area.radius_m.toFixed(2)} m around the attested place. ${end}`,
+    words: `Attestation in force: radius ${area.radius_m.toFixed(2)} m. ${end}`,
     detail: distance_m === undefined ? "" : `Distance to the centre: ${distance_m.toFixed(2)} m.`,
   };
 }

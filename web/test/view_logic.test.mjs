@@ -472,7 +472,7 @@ test("an attestation in force has its radius, its place and its end in words", (
   const area = { x_m: 1, y_m: 2, z_m: 0, radius_m: 0.6 };
   assert.deepEqual(attestationWords(false, area, { x_m: 1, y_m: 2 }), { words: "", detail: "" });
   const { words, detail } = attestationWords(true, area, { x_m: 1.3, y_m: 2.4 });
-  assert.match(words, /^Attestation in force: radius 0\.60 m around the attested place\. It ends when/);
+  assert.match(words, /^Attestation in force: radius 0\.60 m\. It ends when/);
   assert.match(words, /leaves this circle.*position is lost.*fault.*perception restarts/);
   assert.equal(detail, "Distance to the centre: 0.50 m.");
   assert.match(attestationWords(true, undefined, undefined).words, /^Attestation in force\. The gate does not send/);
