@@ -199,9 +199,10 @@ void add_eval_maps(VerbGroup verbs) {
                                    eval_maps,
                                    Reads::own_settings);
     verb.option("live", o.live_dir, "output folder of 'surefoot run'").required().value("LIVE_DIR");
-    verb.option("truth",
-                o.truth_dir,
-                "folder with the true elevation.asc, for example an output folder of 'surefoot sim'")
+    verb.option(
+            "truth",
+            o.truth_dir,
+            "folder with the true elevation.asc, for example an output folder of 'surefoot sim'")
         .required()
         .value("TRUTH_DIR");
     verb.option("--out", o.out_dir, "folder for confusion.png and error.png").value("DIR");

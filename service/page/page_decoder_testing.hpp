@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-
 /// A plain decoder that follows messages.json only and uses no code of the service.
 namespace surefoot::page::testing {
 

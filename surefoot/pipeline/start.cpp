@@ -43,7 +43,8 @@ Start StartUp::take() {
 /// over.
 bool StartUp::is_full() const {
     return window().size() >= Pipeline::kAlignmentFrames &&
-           (lit_in_a_row_ >= Pipeline::kAlignmentFrames || waited_s() >= config_.wait_for_exposure_s);
+           (lit_in_a_row_ >= Pipeline::kAlignmentFrames ||
+            waited_s() >= config_.wait_for_exposure_s);
 }
 
 /// Returns true when odom is placed for good. Otherwise it moves the window on.

@@ -330,7 +330,8 @@ TEST(DemFile, RefusesDamageInWords) {
     EXPECT_TRUE(
         contains(message(parse_esri_grid(head + "1 2 3    \n", "a.asc")), "value 2 of row 2"));
     EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 x\n", "a.asc")), "is 'x'"));
-    EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 4 5\n", "a.asc")), "found '5' after"));
+    EXPECT_TRUE(
+        contains(message(parse_esri_grid(head + "1 2 3 4 5\n", "a.asc")), "found '5' after"));
     EXPECT_TRUE(
         contains(message(parse_esri_grid("ncols 2\nnrow 2\n", "a.asc")), "a.asc:2: unknown key"));
     EXPECT_TRUE(contains(message(parse_esri_grid("ncols 2\n1 2\n", "a.asc")), "has no 'nrows'"));

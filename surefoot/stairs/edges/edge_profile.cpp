@@ -24,9 +24,8 @@ constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< depth of level ground that gives the height
 constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread between occluded regions
 constexpr double kStripRange_m = 0.06;
-constexpr double kBeside_m = 0.3;  ///< the edge may continue beyond the ends of its line
-constexpr double kHalfTurn =
-    0.02;                        ///< half of the largest turn [rad] of an edge against its line
+constexpr double kBeside_m = 0.3;   ///< the edge may continue beyond the ends of its line
+constexpr double kHalfTurn = 0.02;  ///< half of the largest turn [rad] of an edge against its line
 constexpr double kEnd_m = 0.25;  ///< ground end: known over this depth before it, unknown behind it
 constexpr double kEndRms_m = 0.025;
 constexpr double kRagged_m = 0.075;  ///< in some rows the ground ends earlier by this much
