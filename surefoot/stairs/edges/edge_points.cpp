@@ -157,7 +157,7 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
     if (found.ends) {
         // The next window must be unknown from its first cell on.
         if (k <= window_cells_ || cell - window_cells_ < 0) return false;
-        found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // placeholder
+        found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // assumed, not seen
         return true;
     }
     const auto height_m = static_cast<double>(top_m - found.lower_m);
