@@ -42,7 +42,7 @@ import { countWords, recordingWords } from "../build/unit/recording_words.js";
 import { findSettings, foundWords, splitKey } from "../build/unit/setting_words.js";
 import { wait_ms } from "../build/unit/reconnecting_socket.js";
 import { arrayBuffer, encodeMap } from "./encode.mjs";
-import { kMachine, kSettings, stairs } from "./fake_service.mjs";
+import { kMachine, kSettings, stairs } from "./fake_messages.mjs";
 
 const verdict = (command, say, text = "") => ({ command, verdict: say, primary: "NONE", text });
 const outlookOf = (...verdicts) => ({ map_version: 1, state: "READY", verdicts });
@@ -441,13 +441,13 @@ function bordersOf(map, attested) {
   const pixels = new Uint32Array(side_px ** 2);
   paintGround(map, { first_ix: 0, first_iy: 0, cells: map.nx }, kDarkColors, pixels, attested);
   const at = (ix, iy) => pixels[(side_px - 1 - iy * kCell_px) * side_px + ix * kCell_px];
-  const [r, g, b] = kDarkColors.vouched;
+  const [r, g, b] = kDarkColors.attested;
   const border = ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
   const row = (iy) => Array.from({ length: map.nx }, (_, ix) => (at(ix, iy) === border ? "#" : ".")).join("");
   return Array.from({ length: map.ny }, (_, iy) => row(iy));
 }
 
-test("the attested area has a border, although no cell of the map is vouched", () => {
+test("the attested area has a border, although no cell of the map is attested", () => {
   const map = new GroundMap();
   const head = { resolution_tenth_mm: 250, nx: 7, ny: 7, whole: 1 };
   assert.ok(map.apply(decode(arrayBuffer(encodeMap(head, [], [])))));
@@ -481,18 +481,18 @@ test("an attestation in force has its radius, its place and its end in words", (
 test("the slider offers radii that the gate accepts, and no other", () => {
   // The soles of the REX reach 0.365 m: GatekeeperTest.an_attestation_too_small_for_the_soles_replaces_none.
   assert.deepEqual(radiusRange(kMachine), { least_m: 0.4, most_m: 1, step_m: 0.05, first_m: 0.6 });
-  assert.deepEqual(radiusRange({ ...kMachine, vouch_radius_m: 0.365 }), {
+  assert.deepEqual(radiusRange({ ...kMachine, attestation_radius_m: 0.365 }), {
     least_m: 0.365,
     most_m: 0.365,
     step_m: 0.05,
     first_m: 0.365,
   });
-  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0.3649 }), undefined, "no radius holds both soles");
-  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0 }), undefined, "the machine file allows none");
+  assert.equal(radiusRange({ ...kMachine, attestation_radius_m: 0.3649 }), undefined, "no radius holds both soles");
+  assert.equal(radiusRange({ ...kMachine, attestation_radius_m: 0 }), undefined, "the machine file allows none");
   const wide = { ...kMachine.feet.left, center_y_m: 0.9, width_m: 0.5 };
   const { least_m, first_m } = radiusRange({
     ...kMachine,
-    vouch_radius_m: 2,
+    attestation_radius_m: 2,
     feet: { ...kMachine.feet, left: wide },
   });
   assert.ok(least_m >= Math.hypot(0.24, 1.15) && least_m < Math.hypot(0.24, 1.15) + 0.05, String(least_m));
