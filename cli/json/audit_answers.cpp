@@ -13,10 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
-constexpr int kIndent = 2;
-
 Json summary_json(const gate_process::AuditSummary& summary) {
     Json damage = nullptr;
     if (summary.damage) {
@@ -40,7 +38,7 @@ Json summary_json(const gate_process::AuditSummary& summary) {
 }  // namespace
 
 std::string audit_json(const gate_process::AuditSummary& summary) {
-    return summary_json(summary).dump(kIndent);
+    return dump_indented(summary_json(summary));
 }
 
 std::string audit_acts_json(const gate_process::AuditSummary& summary,
@@ -58,7 +56,7 @@ std::string audit_acts_json(const gate_process::AuditSummary& summary,
                         {"text", act.text}});
     }
     object["list"] = list;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string audit_replay_json(const gate_process::AuditSummary& summary,
@@ -78,7 +76,7 @@ std::string audit_replay_json(const gate_process::AuditSummary& summary,
                  {"fields", fields}};
     }
     object["first_difference"] = first;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

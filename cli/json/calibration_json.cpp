@@ -3,13 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "service/gate_process/protocol/json_text.hpp"
 #include "surefoot/core/pose.hpp"
 
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
-using Json = nlohmann::ordered_json;
+using gate_process::dump;
+using gate_process::dump_indented;
+using gate_process::Json;
 
 Json camera_fit_json(const CalibratedCamera& this_camera, calibration::LensKind kind) {
     Json parameters = Json::object();
@@ -85,7 +87,7 @@ std::string calibration_json(const CalibrationRun& run) {
     json["rejected"] = rejected_json(run);
     json["advice"] = advice_json(run);
     json["notes"] = run.notes;
-    return json.dump(2);
+    return dump_indented(json);
 }
 
 std::string views_json(const CalibrationRun& run) {
@@ -95,11 +97,10 @@ std::string views_json(const CalibrationRun& run) {
         if (run.cameras() == 2) json["right"] = points_json(view.right, view.right_problem);
         views.push_back(std::move(json));
     }
-    return Json{{"board", run.board_text},
-                {"width", run.size.width},
-                {"height", run.size.height},
-                {"views", views}}
-               .dump() +
+    return dump(Json{{"board", run.board_text},
+                     {"width", run.size.width},
+                     {"height", run.size.height},
+                     {"views", views}}) +
            "\n";
 }
 

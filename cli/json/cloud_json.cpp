@@ -13,10 +13,9 @@
 namespace surefoot::app {
 namespace {
 
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-constexpr int kIndent = 2;
-
 Json vector(const Eigen::Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -31,7 +30,7 @@ std::string voxel_json(const ThinnedCloud& thinned, double size_m, const std::st
                          {"shift_m", vector(thinned.shift_m)},
                          {"notes", thinned.notes},
                          {"file", file}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string sor_json(const KeptPoints& result,
@@ -48,7 +47,7 @@ std::string sor_json(const KeptPoints& result,
                          {"shift_m", vector(result.shift_m)},
                          {"notes", result.notes},
                          {"file", file}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string icp_json(const geometry::CloudAlignment& found, const Eigen::Vector3d& shift_m) {
@@ -82,7 +81,7 @@ std::string icp_json(const geometry::CloudAlignment& found, const Eigen::Vector3
         {"free_directions", found.free_directions},
         {"shift_m", vector(shift_m)},
         {"steps", steps}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string clouds_json(const CloudComparison& comparison) {
@@ -106,7 +105,7 @@ std::string clouds_json(const CloudComparison& comparison) {
         object["significant"] = comparison.significant;
         object["median_lod95_m"] = number(comparison.median_lod95_m);
     }
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 namespace {
@@ -143,7 +142,7 @@ std::string measure_json(const eval::HeightHistogram& heights,
                    {"shift_m", vector(shift_m)}};
     if (door_width_m)
         object["door"] = {{"width_m", *door_width_m ? Json(**door_width_m) : Json(nullptr)}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 void tell_notes(const std::string& cloud, const std::vector<std::string>& notes) {

@@ -13,11 +13,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-constexpr int kIndent = 2;
-
 }  // namespace
 
 std::string measured_depth_json(const MeasuredPair& measured, const std::string& folder) {
@@ -36,7 +34,7 @@ std::string measured_depth_json(const MeasuredPair& measured, const std::string&
                          {"row_error", rows},
                          {"camera", measured.rig ? camera_json(*measured.rig) : Json(nullptr)},
                          {"folder", folder}};
-    return answer.dump(kIndent);
+    return dump_indented(answer);
 }
 
 std::string depth_accuracy_json(const std::string& rig,
@@ -60,7 +58,7 @@ std::string depth_accuracy_json(const std::string& rig,
                                      : Json(nullptr);
         list.push_back(std::move(entry));
     }
-    return Json{{"rig", rig}, {"distances", list}, {"folder", folder}}.dump(kIndent);
+    return dump_indented(Json{{"rig", rig}, {"distances", list}, {"folder", folder}});
 }
 
 std::string depth_design_json(const eval::DepthDesign& design,
@@ -86,7 +84,7 @@ std::string depth_design_json(const eval::DepthDesign& design,
                          {"nearest_floor_m", number(eval::nearest_floor_m(design))},
                          {"ranges", list},
                          {"folder", folder}};
-    return answer.dump(kIndent);
+    return dump_indented(answer);
 }
 
 }  // namespace surefoot::app

@@ -13,11 +13,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-constexpr int kIndent = 2;
-
 /// Summary of a trajectory file.
 Json trajectory_file_json(const io::TrajectoryFile& file) {
     return {{"format", file.format},
@@ -46,11 +44,11 @@ std::string trajectory_json(const eval::TrajectoryErrors& errors,
     object["rpe_by_length"] = list;
     object["estimate"] = trajectory_file_json(estimate);
     object["truth"] = trajectory_file_json(truth);
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string maps_json(const eval::MapComparison& result) {
-    return maps_object(result).dump(kIndent);
+    return dump_indented(maps_object(result));
 }
 
 std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale) {
@@ -75,7 +73,7 @@ std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale)
          {{"used", scale.used},
           {"truth_over_estimate", number(errors.truth_over_estimate)},
           {"suspected", scale.suspected ? Json(*scale.suspected) : Json(nullptr)}}}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

@@ -13,11 +13,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-
-constexpr int kIndent = 2;
 
 Json region_json(const grid::MapRegion& region) {
     const Eigen::Vector2d origin_m = region.geometry().origin_m;
@@ -42,7 +40,7 @@ std::string dem_json(const grid::GridGeometry& geometry,
                          {"points", bounds.points()},
                          {"skipped", bounds.skipped()},
                          {"file", file}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string ground_json(const ground::GroundSighting& sighting) {
@@ -60,7 +58,7 @@ std::string ground_json(const ground::GroundSighting& sighting) {
         {"height_sigma_m",
          known ? number(std::sqrt(sighting.uncertainty.height_var_m2)) : Json(nullptr)},
         {"normal", {number(o.normal.x()), number(o.normal.y()), number(o.normal.z())}}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder) {
@@ -68,7 +66,7 @@ std::string rate_json(const grid::GridGeometry& geometry, const std::string& fol
                          {"height", geometry.ny},
                          {"resolution_m", geometry.resolution_m},
                          {"folder", folder}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string map_info_json(const io::MapFile& map, const std::string& file) {
@@ -89,7 +87,7 @@ std::string map_info_json(const io::MapFile& map, const std::string& file) {
     object["layers"] = layers;
     object["skipped_layers"] = map.skipped_layers;
     object["file"] = file;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string map_merge_json(const grid::MapRegion& merged,
@@ -100,7 +98,7 @@ std::string map_merge_json(const grid::MapRegion& merged,
     object["agreed"] = counts.agreed;
     object["disagreed"] = counts.disagreed;
     object["file"] = file;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string map_export_json(const grid::MapRegion& region,
@@ -109,11 +107,11 @@ std::string map_export_json(const grid::MapRegion& region,
     Json object = region_json(region);
     object["files"] = files;
     object["folder"] = folder;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string fuse_json(std::size_t steps, const std::string& folder) {
-    return Json{{"steps", steps}, {"folder", folder}}.dump(kIndent);
+    return dump_indented(Json{{"steps", steps}, {"folder", folder}});
 }
 
 }  // namespace surefoot::app

@@ -12,11 +12,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-constexpr int kIndent = 2;
-
 }  // namespace
 
 std::string settings_json(const std::vector<io::ConfigEntry>& entries) {
@@ -27,7 +25,7 @@ std::string settings_json(const std::vector<io::ConfigEntry>& entries) {
                         {"range", entry.range},
                         {"comment", entry.comment}});
     }
-    return Json{{"settings", list}}.dump(kIndent);
+    return dump_indented(Json{{"settings", list}});
 }
 
 std::string urdf_json(const io::MachineModel& model, const std::string& file) {
@@ -41,7 +39,7 @@ std::string urdf_json(const io::MachineModel& model, const std::string& file) {
                          {"links", model.links.size()},
                          {"joints", std::move(joints)},
                          {"file", file.empty() ? Json(nullptr) : Json(file)}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string doctor_json(const std::string& version,
@@ -77,13 +75,13 @@ std::string doctor_json(const std::string& version,
         {"floor", {{"near_m", number(view.floor.near_m)}, {"far_m", number(view.floor.far_m)}}},
         {"steps", steps},
         {"cameras", nodes}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string check_json(const std::string& problem) {
     const Json object = {{"valid", problem.empty()},
                          {"problem", problem.empty() ? Json(nullptr) : Json(problem)}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string bench_json(const std::vector<BenchResult>& results) {
@@ -102,7 +100,7 @@ std::string bench_json(const std::vector<BenchResult>& results) {
              {"peer_ms", optional(result.peer ? std::optional(peer.median_ms) : std::nullopt)},
              {"peer_least_cpu_ms", optional(peer.least_cpu_ms)}});
     }
-    return Json{{"benchmarks", list}}.dump(kIndent);
+    return dump_indented(Json{{"benchmarks", list}});
 }
 
 }  // namespace surefoot::app

@@ -13,17 +13,15 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
-constexpr int kIndent = 2;
-
 }  // namespace
 
 std::string scenes_json(const std::vector<sim::SceneInfo>& scenes) {
     Json list = Json::array();
     for (const auto& scene : scenes)
         list.push_back({{"name", scene.name}, {"description", scene.description}});
-    return Json{{"scenes", list}}.dump(kIndent);
+    return dump_indented(Json{{"scenes", list}});
 }
 
 std::string recording_json(const io::RecordingInfo& info) {
@@ -50,7 +48,7 @@ std::string recording_json(const io::RecordingInfo& info) {
         {"width", info.rig.left.width},
         {"height", info.rig.left.height},
         {"baseline_m", info.rig.T_left_right.translation_m.norm()}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string rig_json(const io::RigFile& file, const std::vector<std::string>& written) {
@@ -68,7 +66,7 @@ std::string rig_json(const io::RigFile& file, const std::vector<std::string>& wr
         {"rectified", rig.rectified},
         {"notes", file.notes},
         {"written", written}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string copied_json(const Copied& copied, const std::string& folder) {
@@ -77,12 +75,12 @@ std::string copied_json(const Copied& copied, const std::string& folder) {
                    {"error", copied.error ? Json(copied.error->message) : Json(nullptr)},
                    {"folder", folder}};
     add_broken(copied.broken, object);
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string rendered_boards_json(std::size_t views, const std::string& folder) {
     const Json object = {{"views", views}, {"folder", folder}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string replay_json(const std::vector<FrameReport>& frames,
@@ -96,7 +94,7 @@ std::string replay_json(const std::vector<FrameReport>& frames,
                          {"late", late},
                          {"speed", speed},
                          {"per_frame", list}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string camera_view_json(const CameraView& view) {
@@ -122,7 +120,7 @@ std::string camera_view_json(const CameraView& view) {
                          {"driver", view.driver},
                          {"modes", modes},
                          {"controls", controls}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

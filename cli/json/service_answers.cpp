@@ -13,10 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
-constexpr int kIndent = 2;
-
 Json event_json(const RexLinkRow& row) {
     using rex_link::LinkEventKind;
     const rex_link::LinkEvent& event = row.event;
@@ -59,7 +57,7 @@ std::string serve_json(const std::vector<AskedStep>& steps) {
                         {"verdict", step.verdict},
                         {"text", step.text}});
     }
-    return Json{{"movements", list}}.dump(kIndent);
+    return dump_indented(Json{{"movements", list}});
 }
 
 std::string rex_link_json(const std::string& url, const std::vector<RexLinkRow>& rows) {
@@ -76,7 +74,7 @@ std::string rex_link_json(const std::string& url, const std::vector<RexLinkRow>&
                          {"motions", count(rex_link::LinkEventKind::motion)},
                          {"inhibited", count(rex_link::LinkEventKind::inhibited)},
                          {"events", list}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

@@ -15,16 +15,14 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-
-constexpr int kIndent = 2;
 
 }  // namespace
 
 std::string failure_json(const std::string& error, int exit_code) {
-    return Json{{"error", error}, {"exit_code", exit_code}}.dump(kIndent);
+    return dump_indented(Json{{"error", error}, {"exit_code", exit_code}});
 }
 
 std::string verdict_json(const gate::Verdict& verdict,
@@ -48,7 +46,7 @@ std::string verdict_json(const gate::Verdict& verdict,
         {"max_drift_m", kTenthMm_m * static_cast<double>(e.max_drift_tenth_mm)},
         {"cells", e.cells},
         {"known_cells", e.known_cells},
-        {"vouched_cells", e.attested_cells}};
+        {"attested_cells", e.attested_cells}};
     const Json object = {{"verdict", to_string(verdict.decision)},
                          {"reasons", gate_process::reasons_array(verdict.reasons)},
                          {"text", text},
@@ -57,7 +55,7 @@ std::string verdict_json(const gate::Verdict& verdict,
                          {"command", verdict.command},
                          {"map_version", verdict.map_version},
                          {"config_hash", fmt::format("{:016x}", verdict.config_hash)}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

@@ -17,6 +17,7 @@
 namespace surefoot::app {
 namespace {
 
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
 
@@ -279,14 +280,13 @@ std::string thesis_json(const ThesisResults& results, const ThesisConditions& co
                             {"stations", d.stations},
                             {"points", d.points}});
     }
-    return Json{{"seed", conditions.seed},
-                {"rows", rows},
-                {"runs", runs},
-                {"scans", scans},
-                {"courtyard", figures_json(results.courtyard)},
-                {"datasets", datasets},
-                {"failures", results.failures}}
-        .dump(2);
+    return dump_indented(Json{{"seed", conditions.seed},
+                              {"rows", rows},
+                              {"runs", runs},
+                              {"scans", scans},
+                              {"courtyard", figures_json(results.courtyard)},
+                              {"datasets", datasets},
+                              {"failures", results.failures}});
 }
 
 std::string thesis_csv(const ThesisResults& results, const ThesisConditions& conditions) {

@@ -16,11 +16,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-
-constexpr int kIndent = 2;
 
 /// The `count` numbers of a list; nullopt if the list is missing or has another size or content.
 std::optional<std::vector<double>> numbers_of(const Json& object,
@@ -162,13 +160,13 @@ std::string report_json(const RunRecord& record,
     Json frames = Json::array();
     for (const FrameReport& frame : record.frames) frames.push_back(frame_json(frame));
     object["per_frame"] = frames;
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 std::string run_json(const RunRecord& record,
                      const pipeline::Pipeline& pipeline,
                      const Status& written) {
-    return run_object(record, pipeline, written).dump(kIndent);
+    return dump_indented(run_object(record, pipeline, written));
 }
 
 double parse_report_tilt_sigma_rad(const std::string& report_json) {

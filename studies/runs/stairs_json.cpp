@@ -15,6 +15,7 @@
 namespace surefoot::app {
 namespace {
 
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
 
@@ -226,7 +227,7 @@ std::string feature_errors_json(const eval::FeatureErrors& errors,
     for (auto& [name, value] : json.items()) {
         if (!lists.contains(name)) value = nullptr;
     }
-    return json.dump(2);
+    return dump_indented(json);
 }
 
 namespace {
@@ -307,7 +308,7 @@ std::string stairs_json(const stairs::TerrainFeatures& features,
     json["gravity_source"] = gravity_name(context.gravity_source);
     if (context.unconfirmed != nullptr)
         json["unconfirmed"] = marked_lists(*context.unconfirmed, gravity_assumed);
-    return json.dump(2);
+    return dump_indented(json);
 }
 
 }  // namespace surefoot::app

@@ -7,9 +7,8 @@
 namespace surefoot::app {
 namespace {
 
+using gate_process::dump_indented;
 using gate_process::Json;
-
-constexpr int kIndent = 2;
 
 }  // namespace
 
@@ -20,7 +19,7 @@ std::string scan_json(const Scanned& scanned) {
                          {"complete", !scanned.error.has_value()},
                          {"error", scanned.error ? Json(scanned.error->message) : Json(nullptr)},
                          {"file", scanned.file}};
-    return object.dump(kIndent);
+    return dump_indented(object);
 }
 
 }  // namespace surefoot::app

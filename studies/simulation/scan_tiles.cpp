@@ -6,13 +6,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "service/gate_process/protocol/json_text.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using gate_process::dump_indented;
+using gate_process::Json;
 
 constexpr std::size_t kValuesPerPoint = 5;  // x y z station mixed
 constexpr std::size_t kBlockPoints = 1U << 15U;
@@ -105,7 +107,7 @@ Status ScanTiles::finish(const ScanOrigin& origin) {
                         {"points", points_},
                         {"stations_m", stations},
                         {"tiles", files}};
-    return io::write_file(index_file(folder_), index.dump(2) + "\n");
+    return io::write_file(index_file(folder_), dump_indented(index) + "\n");
 }
 
 }  // namespace surefoot::app

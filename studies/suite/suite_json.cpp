@@ -13,11 +13,9 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-constexpr int kIndent = 2;
-
 Json suite_figures_json(const std::vector<double>& figures) {
     Json object = Json::object();
     for (std::size_t i = 0; i < figures.size(); ++i)
@@ -98,11 +96,11 @@ std::string suite_json(std::span<const SuiteResult> results) {
         }
         return list;
     };
-    return Json{{"cases", cases},
-                {"scenes", rows_json(summarise(results), true)},
-                {"motion_models", rows_json(summarise_by_motion_model(results), false)},
-                {"bins", suite_bins_json(pooled_by_noise(results))}}
-        .dump(kIndent);
+    return dump_indented(
+        Json{{"cases", cases},
+             {"scenes", rows_json(summarise(results), true)},
+             {"motion_models", rows_json(summarise_by_motion_model(results), false)},
+             {"bins", suite_bins_json(pooled_by_noise(results))}});
 }
 
 }  // namespace surefoot::app

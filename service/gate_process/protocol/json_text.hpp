@@ -10,7 +10,7 @@
 
 namespace surefoot::gate_process {
 
-/// JSON whose keys keep their order of insertion: equal answers have equal bytes.
+/// JSON whose keys keep their order of insertion: the same run gives the same bytes.
 using Json = nlohmann::ordered_json;
 
 /// Limits for text from a client.
@@ -29,5 +29,8 @@ struct JsonLimits {
 
 /// Serialises on one line. Invalid UTF-8 becomes U+FFFD, so that no answer is lost.
 [[nodiscard]] std::string dump(const Json& json);
+/// Serialises like dump(), over several lines with an indent of two: for answers and files that
+/// people read.
+[[nodiscard]] std::string dump_indented(const Json& json);
 
 }  // namespace surefoot::gate_process
