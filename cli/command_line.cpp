@@ -66,10 +66,7 @@ void add_common(Verb verb, CommonOptions& common) {
 
 int check_settings(const CommonOptions& common, const std::string& verb, Reads reads) {
     if (reads == Reads::own_settings) return kExitOk;
-    io::Notes notes;
-    if (const auto settings = load_settings(settings_request(common), &notes); !settings)
-        return report(settings.error());
-    for (const std::string& note : notes) log_warning(note);
+    if (const auto settings = load_settings(common); !settings) return report(settings.error());
     const bool given =
         !common.config_file.empty() || !common.preset.empty() || !common.settings.empty();
     if (reads == Reads::no_settings && given)
@@ -129,21 +126,39 @@ int answer_failure(const CLI::App& app, bool json, int exit_code) {
     return exit_code;
 }
 
-/// Options that version 0.2 renamed. Version 0.3 will refuse the old names (docs/migration.md).
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamedOptions{{
-    {"--vouch", "--attest"},
-    {"--carriers", "--motion-models"},
-    {"--eye", "--camera"},
-    {"--thesis", "--lange2016"},
-}};
+/// An option that version 0.2 renamed. Version 0.3 will refuse the old name (docs/migration.md).
+struct RenamedOption {
+    std::string_view verb;
+    std::string_view old_name;
+    std::string_view new_name;
+};
+constexpr std::array kRenamedOptions{
+    RenamedOption{"gate", "--vouch", "--attest"},
+    RenamedOption{"serve", "--vouch", "--attest"},
+    RenamedOption{"eval suite", "--carriers", "--motion-models"},
+    RenamedOption{"eval suite", "--thesis", "--lange2016"},
+    RenamedOption{"calibrate mono", "--eye", "--camera"},
+};
+
+/// The words before the first option: the verb and the arguments that follow it directly.
+std::string first_words(const std::vector<std::string>& words) {
+    std::string first;
+    for (const std::string& word : words) {
+        if (word.starts_with('-')) break;
+        first += word + " ";
+    }
+    return first;
+}
 
 /// The words of the call with today's option names. Warns about each old name.
 std::vector<std::string> words_of_call(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
+    const std::string first = first_words(words);
     for (std::string& word : words) {
-        for (const auto& [old_name, new_name] : kRenamedOptions) {
-            const std::size_t end = std::min(word.find('='), word.size());
-            if (word.substr(0, end) != old_name) continue;
+        const std::size_t end = std::min(word.find('='), word.size());
+        for (const auto& [verb, old_name, new_name] : kRenamedOptions) {
+            if (!first.starts_with(fmt::format("{} ", verb)) || word.substr(0, end) != old_name)
+                continue;
             log_warning(
                 fmt::format("{} is now called {}. Use the new name: version 0.3 refuses "
                             "the old one",

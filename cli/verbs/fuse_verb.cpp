@@ -39,8 +39,7 @@ Result<elevation::AncestorConfig> load(const CommonOptions& options) {
                         "update of the reference implementation",
                         options.preset));
     }
-    if (auto status = apply_overrides(settings_request(options), io::describe_config(settings));
-        !status)
+    if (auto status = apply_overrides(options, io::describe_config(settings)); !status)
         return status.error();
     return settings.ancestor;
 }

@@ -8,13 +8,14 @@
 
 namespace surefoot::app {
 
-/// The settings-related part of the command line.
-[[nodiscard]] inline SettingsRequest settings_request(const CommonOptions& options) {
-    return {options.preset, options.config_file, options.settings};
-}
-[[nodiscard]] inline Result<Settings> load_settings(const CommonOptions& options) {
-    return surefoot::load_settings(settings_request(options));
-}
+/// Loads the settings of a call. Warns about each setting that is given by its former name; a call
+/// that loads twice warns once. Not thread-safe.
+[[nodiscard]] Result<Settings> load_settings(const CommonOptions& options);
+
+/// Applies --config and --set of a call to a program's own settings. Warns like load_settings.
+[[nodiscard]] Status apply_overrides(const CommonOptions& options,
+                                     const io::DescribeConfig& describe);
+
 [[nodiscard]] inline std::unique_ptr<Executor> make_executor(const CommonOptions& options) {
     return surefoot::make_executor(options.threads);
 }

@@ -172,6 +172,7 @@ Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_n
     if (path_or_name.empty()) return std::optional<io::MachineFile>{};
     auto machine = machines::load_machine(path_or_name);
     if (!machine) return machine.error();
+    for (const std::string& note : machine->notes) log_warning(note);
     for (const io::Deviation& deviation : machine->deviations)
         log_warning(path_or_name + ": " + io::text_of(deviation));
     return std::optional<io::MachineFile>(std::move(machine).value());

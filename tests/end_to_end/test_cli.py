@@ -1,6 +1,7 @@
 """Every verb: help, example, exit codes, names in its JSON."""
 import json
 import math
+import os
 import re
 import shlex
 import statistics
@@ -44,7 +45,7 @@ class Verbs(CliTest):
 
     def test_the_limit_of_an_attestation_is_that_of_the_machine_file(self):
         words = " ".join(surefoot("gate", "--help").stdout.split())
-        self.assertIn("At most vouch_radius_m of the machine file", words)
+        self.assertIn("At most attestation_radius_m of the machine file", words)
         self.assertNotIn("[0 - 2]", words)
 
     def test_old_option_names_work_with_a_warning(self):
@@ -54,8 +55,25 @@ class Verbs(CliTest):
         self.assertEqual(old.stdout, new.stdout)
         self.assertIn("--vouch is now called --attest", old.stderr)
         self.assertNotIn("is now called", new.stderr)
-        setting = surefoot("config", "--check", "--set", "trim.enabled=false", cwd=self.dir)
-        self.assertEqual(setting.returncode, 0, setting.stderr)
+        other = surefoot("eval", "suite", "--eye", "left", cwd=self.dir)
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("there is no option --eye", other.stderr)  # only `calibrate mono` had it
+
+    def test_an_old_setting_gives_one_warning_in_every_verb_that_reads_settings(self):
+        old = ("--set", "trim.enabled=false")
+        for words in (["config", "--check"], ["eval", "maps", "nowhere", "nowhere"], ["run", "nowhere", "--out", "x"]):
+            process = surefoot(*words, *old, cwd=self.dir)
+            self.assertEqual(process.stderr.count("'trim.enabled' is now called 'self_calibration.enabled'"), 1,
+                             f"{words}: {process.stderr}")
+
+    def test_text_that_is_not_utf8_still_gives_an_answer_in_json(self):
+        map_dir = os.fsencode(self.dir) + b"/\xff\xfe"
+        process = subprocess.run([os.fsencode(BINARY), b"gate", b"--map", map_dir, b"--pose", b"0,0,0", b"--command", b"9",
+                                  b"--json"], capture_output=True)
+        self.assertEqual(process.returncode, 4)
+        self.assertEqual(json.loads(process.stdout)["verdict"], "ERROR")
+        process = subprocess.run([os.fsencode(BINARY), b"run", map_dir, b"--out", b"x", b"--json"], capture_output=True)
+        self.assertEqual(json.loads(process.stdout)["exit_code"], process.returncode)
 
     def test_wrong_calls_exit_with_2_and_say_why(self):
         for words in (["walk"], ["run"], ["run", "sim:floor"], ["sim", "nowhere", "--out", "x"],
