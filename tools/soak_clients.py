@@ -95,9 +95,9 @@ class Crowd:
                     health = client.call("/surefoot/health")["values"]
                     if health["state"] == "FAULT" and client.call("/surefoot/rearm")["values"]["success"]:
                         self.note("rearmed")
-                    if health["state"] == "READY" and not health["vouching"]:
-                        if client.call("/surefoot/vouch", radius_m=1.0)["values"]["success"]:
-                            self.note("vouched")
+                    if health["state"] == "READY" and not health["attesting"]:
+                        if client.call("/surefoot/attest", radius_m=1.0)["values"]["success"]:
+                            self.note("attested")
             except GONE:
                 client.close()
 

@@ -166,12 +166,13 @@ void add_gate(VerbGroup verbs) {
                 o.explain_file,
                 "picture of the footprint, the corridor and the deciding cell")
         .value("F.png");
-    verb.option("--attest",
-                o.attestation_radius_m,
-                "operator attestation: radius around base_link within which ground that was not "
-                "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
-                "rex); 0 = no attestation. Without this option the gate assumes a disc that "
-                "reaches to the ends of the present feet, and lists it in 'assumed'")
+    verb.option(
+            "--attest",
+            o.attestation_radius_m,
+            "operator attestation: radius around base_link within which ground that was not "
+            "measured counts as level. At most attestation_radius_m of the machine file (1.0 m for "
+            "rex); 0 = no attestation. Without this option the gate assumes a disc that "
+            "reaches to the ends of the present feet, and lists it in 'assumed'")
         .value("M")
         .not_negative();
     verb.option(

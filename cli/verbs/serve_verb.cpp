@@ -124,11 +124,12 @@ void add_serve(VerbGroup verbs) {
                 "largest number of messages per second of one client of the gate")
         .positive()
         .value("HZ");
-    verb.option("--attest",
-                o.attestation_radius_m,
-                "operator attestation: radius around the machine within which ground that was not "
-                "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
-                "rex). The attestation ends when the machine leaves the circle")
+    verb.option(
+            "--attest",
+            o.attestation_radius_m,
+            "operator attestation: radius around the machine within which ground that was not "
+            "measured counts as level. At most attestation_radius_m of the machine file (1.0 m for "
+            "rex). The attestation ends when the machine leaves the circle")
         .not_negative()
         .value("M");
     verb.option("--walk",

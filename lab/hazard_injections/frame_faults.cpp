@@ -42,7 +42,7 @@ std::string room(const std::string& solid) {
            "  - floor: {min_x_m: -3, min_y_m: -4, max_x_m: 6, max_y_m: 4, material: ground}\n"
            "  - walls: {min_x_m: -3, min_y_m: -4, max_x_m: 6, max_y_m: 4, material: patches}\n" +
            solid +
-           "motion:\n  carrier: rex\n  waypoints:\n    - {x_m: 0, y_m: 0, yaw_deg: 0}\n"
+           "motion:\n  motion_model: rex\n  waypoints:\n    - {x_m: 0, y_m: 0, yaw_deg: 0}\n"
            "    - {x_m: -0.25, y_m: 0, yaw_deg: 0, move: back}\n";
 }
 

@@ -633,7 +633,7 @@ Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, b
         {"tilt 90 deg", [&] { l.min_normal_z = 0.0; }},
         {"tilt NaN", [&] { l.min_normal_z = kNan; }},
         {"step 1 m", [&] { l.step[0].up_tenth_mm = 10'000; }},
-        {"vouch radius 100 m", [&] { l.attestation_radius_tenth_mm = 1'000'000; }},
+        {"attestation radius 100 m", [&] { l.attestation_radius_tenth_mm = 1'000'000; }},
         {"body without parts", [&] { file.machine.body.count = 0; }},
         {"sway -1", [&] { file.machine.body.sway_tenth_mm = -1; }},
         {"foot without length", [&] { file.machine.left_foot.length_tenth_mm = 0; }},

@@ -121,7 +121,7 @@ std::string scene_tail(double bottom_m) {
     return fmt::format(
         "  - walls: {{min_x_m: -3, min_y_m: -4, max_x_m: 8, max_y_m: 4, bottom_m: {}, material: "
         "patches, other_material: plaster}}\n"
-        "motion:\n  carrier: rex\n  waypoints: [{{x_m: 0, y_m: 0}}]\n",
+        "motion:\n  motion_model: rex\n  waypoints: [{{x_m: 0, y_m: 0}}]\n",
         bottom_m);
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How do the errors of the odometry's poses affect the map?
-// Usage: own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS
+// Usage: own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [MOTION_MODELS [RIGS
 //        [KEY=VALUE...]]]]]]]
 //   own_poses out/poses.csv demo_stairs,floor 20001 3 zed 160 trolley,rex,hand
 //   zed_vga,zed_vga_rolling odometry.imu.enabled=false     (same command)
 //   SCENES to PROFILES: see scene_cases.hpp. FRAMES: 0 (default) = to the end of the path.
-//   CARRIERS: motion models, default: scene. RIGS: rig presets, default: zed_vga. KEY=VALUE: a
+//   MOTION_MODELS: motion models, default: scene. RIGS: rig presets, default: zed_vga. KEY=VALUE: a
 //   setting of surefoot.
 //
 // The whole pipeline runs on rendered images and starts at the true pose. Beside its map, three
@@ -181,7 +181,7 @@ Result<sim::CarriedBy> motion_model_named(std::string_view name) {
 int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(usage_error(
-            "own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS "
+            "own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [MOTION_MODELS [RIGS "
             "[KEY=VALUE...]]]]]]]"));
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
     const std::string motion_models = words.size() > 6 ? words[6] : "scene";
@@ -191,7 +191,7 @@ int measure_all(const std::vector<std::string>& words) {
     const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
-        "scene,seed,profile,carrier,rig,path_m,end_mm,end_deg,ate_mm,lost,"
+        "scene,seed,profile,motion_model,rig,path_m,end_mm,end_deg,ate_mm,lost,"
         "exact_true_jump_mm,exact_true_spread_mm,exact_own_jump_mm,exact_own_spread_mm,"
         "matched_true_jump_mm,matched_true_spread_mm,matched_own_jump_mm,matched_own_spread_mm\n");
     for (const SceneCase& seen : experiments::scene_cases({words.begin() + 1, words.end()})) {

@@ -420,10 +420,11 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
                folder,
                static_cast<std::uint64_t>(first_seed)};
     out.runs.print(
-        "scene,carrier,seed,noise,late_images,offset_px,drawn_share,spread_m,rms_m,edges_m,"
+        "scene,motion_model,seed,noise,late_images,offset_px,drawn_share,spread_m,rms_m,edges_m,"
         "edges_middle_m,edges_sides_m,coarse_spread_m,coarse_rms_m,coarse_edges_m,"
         "coarse_edges_middle_m,coarse_edges_sides_m,tread0_m,tread1_m,tread2_m,tread3_m\n");
-    out.heights.print("scene,carrier,seed,noise,late_images,offset_px,drawn_share,part,height_m\n");
+    out.heights.print(
+        "scene,motion_model,seed,noise,late_images,offset_px,drawn_share,part,height_m\n");
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
         for (const char* scene : {"floor", "demo_stairs"}) {
             if (drawn && scene != std::string("floor")) continue;

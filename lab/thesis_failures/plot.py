@@ -15,15 +15,15 @@ def thesis_sometimes(lab):
     rows = read(folder / "runs.csv")
     body = []
     for late, share in dict.fromkeys((r["late_images"], r["drawn_share"]) for r in rows):
-        of = lambda carrier, key: [1e3 * float(r[key]) for r in rows  # noqa: E731
-                                   if (r["late_images"], r["drawn_share"], r["carrier"]) == (late, share, carrier)]
+        of = lambda motion_model, key: [1e3 * float(r[key]) for r in rows  # noqa: E731
+                                   if (r["late_images"], r["drawn_share"], r["motion_model"]) == (late, share, motion_model)]
         row = [f"50-500 ms, {100 * float(share):.0f} % of the clouds" if float(share) else f"{1e3 * int(late) / 15:.0f} ms, always"]
         for key in ("spread_m", "rms_m", "coarse_spread_m"):
             trolley, rex = statistics.median(of("trolley", key)), statistics.median(of("rex", key))
             each = ", ".join(f"{r / t:.1f}" for t, r in zip(of("trolley", key), of("rex", key)))
             row.append(f"{trolley:.0f} / {rex:.0f} = x {rex / trolley:.1f} ({each})")
-        for carrier in ("trolley", "rex"):
-            middle, sides = (of(carrier, f"coarse_edges_{part}_m") for part in ("middle", "sides"))
+        for motion_model in ("trolley", "rex"):
+            middle, sides = (of(motion_model, f"coarse_edges_{part}_m") for part in ("middle", "sides"))
             row.append(f"{statistics.median(middle):.0f} - {statistics.median(sides):.0f} "
                        f"({', '.join(f'{m:.0f}-{s:.0f}' for m, s in zip(middle, sides))})")
         body.append(row)
@@ -53,10 +53,10 @@ def failures_table(rows):
     """Medians over the seeds, in mm."""
     groups = collections.defaultdict(list)
     for row in rows:
-        groups[row["late_images"], row["offset_px"], row["scene"], row["carrier"]].append(row)
+        groups[row["late_images"], row["offset_px"], row["scene"], row["motion_model"]].append(row)
 
-    def middle(key, carrier, scene="floor"):
-        mine = groups[late, offset, scene, carrier]
+    def middle(key, motion_model, scene="floor"):
+        mine = groups[late, offset, scene, motion_model]
         return statistics.median(riser_mm(r) if key == "riser" else 1e3 * float(r[key]) for r in mine)
 
     body = []
@@ -65,9 +65,9 @@ def failures_table(rows):
         for key in ("spread_m", "rms_m", "coarse_spread_m"):
             trolley, rex = middle(key, "trolley"), middle(key, "rex")
             row.append(f"{trolley:.0f} / {rex:.0f} = x {rex / trolley:.1f}")
-        for carrier in ("trolley", "rex"):
-            row.append(f"{middle('coarse_edges_middle_m', carrier):.0f} - {middle('coarse_edges_sides_m', carrier):.0f}")
-            row.append(f"{middle('riser', carrier, 'demo_stairs'):.0f}")
+        for motion_model in ("trolley", "rex"):
+            row.append(f"{middle('coarse_edges_middle_m', motion_model):.0f} - {middle('coarse_edges_sides_m', motion_model):.0f}")
+            row.append(f"{middle('riser', motion_model, 'demo_stairs'):.0f}")
         body.append(row)
     return table(["pose late by", "disparity offset", "floor spread, trolley / REX [mm]", "rms of the floor, trolley / REX [mm]", "spread of 0.1 m medians, trolley / REX [mm]",
                   "trolley: jumps p99, middle - sides of the map [mm]", "trolley: riser [mm]", "REX: jumps p99, middle - sides of the map [mm]", "REX: riser [mm]"], body)
@@ -75,9 +75,9 @@ def failures_table(rows):
 
 def failures_maps(folder):
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.4), sharey=True)
-    for axis, (carrier, title) in zip(axes, (("trolley", "trolley"), ("rex", "REX"))):
+    for axis, (motion_model, title) in zip(axes, (("trolley", "trolley"), ("rex", "REX"))):
         heights = [[float(cell) for cell in row] for row in
-                   csv.reader(open(folder / f"map_floor_{carrier}_10001_1_4_0_0.csv", newline=""))]
+                   csv.reader(open(folder / f"map_floor_{motion_model}_10001_1_4_0_0.csv", newline=""))]
         # Rows run along x: x points up and y to the left, as seen from the machine.
         drawn = axis.imshow([[1e3 * cell for cell in row] for row in heights], origin="lower", cmap="RdBu_r", vmin=-60,
                             vmax=60, extent=(-3, 3, -3, 3))
@@ -91,8 +91,8 @@ def failures_maps(folder):
 
 def failures_histograms(rows):
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 3.4))
-    for carrier, title, colour in (("trolley", "trolley", COLOURS[0]), ("rex", "REX", COLOURS[1])):
-        late = [r for r in rows if r["carrier"] == carrier and r["late_images"] == "4" and r["seed"] == "10001"]
+    for motion_model, title, colour in (("trolley", "trolley", COLOURS[0]), ("rex", "REX", COLOURS[1])):
+        late = [r for r in rows if r["motion_model"] == motion_model and r["late_images"] == "4" and r["seed"] == "10001"]
         floor = [1e3 * float(r["height_m"]) for r in late
                  if r["scene"] == "floor" and r["part"] == "floor" and r["offset_px"] == "0"]
         axes[0].hist(floor, bins=range(-100, 101, 4), histtype="step", color=colour, linewidth=1.5, label=title, density=True)

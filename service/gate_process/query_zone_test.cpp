@@ -66,7 +66,7 @@ TEST(QueryZone, cells_outside_of_it_never_change_a_verdict) {
 
 /// The surface that the attested area extends to lies one cell beside the area. Without this ring a
 /// landing there would become DISCONNECTED, or the reverse.
-TEST(QueryZone, holds_the_surfaces_beside_the_vouched_area) {
+TEST(QueryZone, holds_the_surfaces_beside_the_attested_area) {
     gate::testing::Terrain terrain;
     Case c;
     c.map = terrain.snapshot();

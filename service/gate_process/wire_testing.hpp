@@ -100,7 +100,7 @@ class ScriptedGate : public StepGate {
                                 double radius_m,
                                 std::int64_t /*now_ns*/) override {
         if (!(radius_m > 0.0 && radius_m <= 0.5))
-            return input_error("vouch: the radius is not within 0.5 m");
+            return input_error("attest: the radius is not within 0.5 m");
         attested.emplace_back(connection, radius_m);
         return {};
     }

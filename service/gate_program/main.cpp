@@ -234,6 +234,8 @@ int serve(const Options& options, const io::MachineFile& file) {
 int run(Options options) {
     const auto machine = machines::load_machine(options.machine);
     if (!machine) return fail(machine.error());
+    for (const std::string& note : machine->notes)
+        fmt::print(stderr, "surefoot-gate: warning: {}\n", note);
     for (const io::Deviation& deviation : machine->deviations)
         fmt::print(stderr, "surefoot-gate: {}: {}\n", options.machine, io::text_of(deviation));
     auto loaded =
@@ -320,14 +322,23 @@ int main_with_arguments(int argc, char** argv) {
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
         ->type_name("HZ");
-    app.add_option("--attest,--vouch",
-                   options.attestation_radius_m,
-                   "operator attestation, given once when the gate is ready: radius around the "
-                   "machine within which ground that was not measured counts as level. At most "
-                   "vouch_radius_m of the machine file (1.0 m for rex). The attestation ends when "
-                   "the machine leaves the circle")
+    app.add_option(
+           "--attest",
+           options.attestation_radius_m,
+           "operator attestation, given once when the gate is ready: radius around the "
+           "machine within which ground that was not measured counts as level. At most "
+           "attestation_radius_m of the machine file (1.0 m for rex). The attestation ends when "
+           "the machine leaves the circle")
         ->check(CLI::NonNegativeNumber)
         ->type_name("M");
+    app.add_option("--vouch", options.attestation_radius_m)  // the name until 0.1
+        ->check(CLI::NonNegativeNumber)
+        ->group("")
+        ->each([](const std::string&) {
+            fmt::print(stderr,
+                       "surefoot-gate: warning: --vouch is now called --attest. Use the new name: "
+                       "version 0.3 refuses the old one\n");
+        });
     app.add_option("--channel-key",
                    options.key_file,
                    "file with the key of the maps, as given to `surefoot serve`; 32 hexadecimal "

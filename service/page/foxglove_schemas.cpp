@@ -125,7 +125,7 @@ Json evidence() {
                    {"max_drift_m", number()},
                    {"cells", count()},
                    {"known_cells", count()},
-                   {"vouched_cells", count()},
+                   {"attested_cells", count()},
                    {"unproven", array(text())}});
 }
 Json verdict() {

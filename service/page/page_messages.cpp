@@ -83,7 +83,7 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
     return {
         {"name", machine->name},
         {"sole_depth_m", metres(limits.sole_depth_tenth_mm)},
-        {"vouch_radius_m", metres(limits.limits.attestation_radius_tenth_mm)},
+        {"attestation_radius_m", metres(limits.limits.attestation_radius_tenth_mm)},
         {"feet", {{"left", box_json(limits.left_foot)}, {"right", box_json(limits.right_foot)}}},
         {"movements", movements_json(limits)},
         {"body", body_json(*machine)},

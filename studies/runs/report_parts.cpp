@@ -12,7 +12,6 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
 using gate_process::Json;
 using gate_process::number;
 

@@ -62,7 +62,7 @@ TEST(SuitePlan, EverySceneOnceByDefaultAndAFewShortOnesWhenQuick) {
     for (const PlannedCase& planned : *short_cases) EXPECT_EQ(planned.which.max_frames, 3);
 }
 
-TEST(SuitePlan, EveryCarrierThatCanGoTheSceneSWayGoesItOnce) {
+TEST(SuitePlan, EveryMotionModelThatCanGoTheSceneSWayGoesItOnce) {
     EvalSuiteOptions options = choice({"floor", "walk_floor"}, 1, {1.0});
     options.motion_models = {"scene", "rex", "hand"};
     const auto plan = plan_suite(options, {});
@@ -80,7 +80,7 @@ TEST(SuitePlan, EveryCarrierThatCanGoTheSceneSWayGoesItOnce) {
                                      "walk_floor/hand/seed 5/noise 1"}));
 }
 
-TEST(SuitePlan, AWayThatACarrierCannotGoIsLeftOut) {
+TEST(SuitePlan, AWayThatAMotionModelCannotGoIsLeftOut) {
     EvalSuiteOptions options = choice({"walk_descend_backwards", "floor"}, 1, {1.0});
     options.motion_models = {"trolley"};  // no trolley goes down a step
     const auto plan = plan_suite(options, {});

@@ -13,7 +13,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr const char* kCaseHead = "scene,carrier,seed,noise,max_frames";
+constexpr const char* kCaseHead = "scene,motion_model,seed,noise,max_frames";
 constexpr std::size_t kKeyColumns = 5;
 constexpr std::size_t kCaseColumns = 6;  ///< columns before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;

@@ -156,7 +156,7 @@ TEST_F(SuiteTableTest, KeepsThePictureOfTheWorstCaseWhateverComesFirst) {
     }
 }
 
-TEST(SuiteRows, SummariseBySceneNoiseAndCarrier) {
+TEST(SuiteRows, SummariseBySceneNoiseAndMotionModel) {
     std::vector<SuiteResult> results;
     results.push_back(result_of("table", 1, 1.0, std::nan("")));
     for (const double noise : {2.0, 1.0}) {

@@ -190,7 +190,7 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
         !within(limits.future_tolerance_ns, std::int64_t{0}, kSecondNs / 10))
         return "a time limit is outside its range";
     if (!within(limits.attestation_radius_tenth_mm, 0, 20'000))
-        return "the vouched radius is outside 0-2 m";
+        return "the attestation radius is outside 0-2 m";
     return nullptr;
 }
 

@@ -25,7 +25,7 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::time_gap: return "time_gap";
         case HealthReason::repeated_image: return "repeated_image";
         case HealthReason::torn_image: return "torn_image";
-        case HealthReason::cameras_swapped: return "eyes_exchanged";
+        case HealthReason::cameras_swapped: return "cameras_swapped";
         case HealthReason::imu_disagreement: return "imu_disagreement";
         case HealthReason::machine_disagreement: return "machine_disagreement";
         case HealthReason::beyond_machine: return "beyond_machine";

@@ -169,7 +169,7 @@ TEST(Attestation, the_area_lies_around_the_machine_wherever_that_is) {
     EXPECT_FALSE(attestation.area().active);
 }
 
-TEST(Attestation, nobody_can_vouch_for_more_than_the_machine_file_allows) {
+TEST(Attestation, nobody_can_attest_more_than_the_machine_file_allows) {
     const auto map = blind_zone();
     Attestation attestation;
     EXPECT_FALSE(attestation.attest(rex(), *map, 10'001, kNowNs));

@@ -70,7 +70,7 @@ TEST(GateBounds, places_are_within_100_km_and_heights_within_1_km) {
     }
 }
 
-TEST(GateBounds, a_vouched_area_has_a_radius_up_to_the_limit_of_the_machine) {
+TEST(GateBounds, an_attested_area_has_a_radius_up_to_the_limit_of_the_machine) {
     Terrain floor;
     const auto map = floor.snapshot();
     const auto refused = [&](std::int32_t radius, bool active = true) {

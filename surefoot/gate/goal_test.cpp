@@ -77,7 +77,7 @@ TEST(Goal, damage_where_the_machine_stands_is_an_error_though_the_goal_is_elsewh
     EXPECT_EQ(verdict.reasons, ReasonSet(Reason::internal)) << words(verdict);
 }
 
-TEST(Goal, vouched_ground_belongs_to_where_the_machine_stands) {
+TEST(Goal, attested_ground_belongs_to_where_the_machine_stands) {
     Terrain blind;
     blind.box(-0.9, 0.9, -0.9, 0.9, static_cast<double>(kNanF));
     const auto map = blind.snapshot();

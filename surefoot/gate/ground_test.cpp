@@ -30,7 +30,7 @@ GroundCell cell_of(const Ground& ground, const grid::MapSnapshot& map, double x_
     return ground.cell(at % map.nx, at / map.nx);
 }
 
-TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) {
+TEST(Ground, an_unknown_cell_is_attested_only_when_it_lies_wholly_in_the_circle) {
     Terrain nothing;
     nothing.height.fill(kNanF);
     const auto map = nothing.snapshot();
@@ -151,7 +151,7 @@ TEST(ReachableSurfaces, hold_exactly_what_was_added_and_never_the_label_none) {
             << label;
 }
 
-TEST(Ground, a_zone_is_the_sweep_and_the_vouched_area_with_a_cell_beside_both) {
+TEST(Ground, a_zone_is_the_sweep_and_the_attested_area_with_a_cell_beside_both) {
     Terrain floor;
     const auto map = floor.snapshot();
     const auto zone_with = [&](const Query& query) {
@@ -251,7 +251,7 @@ TEST(Ground, a_cell_is_what_the_layers_say_of_it) {
 }
 
 /// The surfaces beside an attested area, compared with plain distances.
-TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
+TEST(ReachableSurfaces, beside_an_attested_area_reach_a_cell_and_a_step) {
     Terrain floor;
     const auto map = floor.snapshot();
     for (std::size_t i = 0; i < 240UL * 240UL; ++i)
@@ -286,7 +286,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     EXPECT_FALSE(none.contains(map->component[lower + 1]));
 }
 
-TEST(ReachableSurfaces, of_a_vouched_area_are_those_that_it_touches_at_its_height) {
+TEST(ReachableSurfaces, of_an_attested_area_are_those_that_it_touches_at_its_height) {
     Terrain islands;
     islands.height.fill(kNanF);
     islands.box(0.50, 0.60, -0.05, 0.05, 0.0);  // touches the circle of 0.5 m

@@ -129,7 +129,7 @@ TEST(SurfacesOfStance, are_those_within_the_swing_clearance_of_the_stance) {
     }
 }
 
-TEST(SurfacesOfStance, vouched_cells_are_of_none_and_the_area_ties_in_what_it_touches) {
+TEST(SurfacesOfStance, attested_cells_are_of_none_and_the_area_ties_in_what_it_touches) {
     Floor floor;
     floor.map->component.fill(3);
     floor.map->source.fill(grid::EvidenceSource::unknown);

@@ -73,7 +73,7 @@ std::map<std::string, SetLimit> setters() {
         {"limits.pose_age_ms", scaled(&GateLimits::pose_age_ns, 1e6)},
         {"limits.future_tolerance_ms", scaled(&GateLimits::future_tolerance_ns, 1e6)},
         {"limits.verdict_ttl_ms", scaled(&GateLimits::verdict_ttl_ns, 1e6)},
-        {"limits.vouch_radius_m", scaled(&GateLimits::attestation_radius_tenth_mm, 1e4)},
+        {"limits.attestation_radius_m", scaled(&GateLimits::attestation_radius_tenth_mm, 1e4)},
     };
 }
 

@@ -106,7 +106,7 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
             expect_valid(m);
             if (wrong) {
                 EXPECT_EQ(m.health, swapped ? Health::lost : Health::degraded) << i;
-                EXPECT_STREQ(to_string(m.reason), swapped ? "eyes_exchanged" : "poor_geometry")
+                EXPECT_STREQ(to_string(m.reason), swapped ? "cameras_swapped" : "poor_geometry")
                     << i;
             }
             // A motion that began at an uncertain pose; depth must be measured again for some time.
@@ -138,7 +138,7 @@ TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
         EXPECT_EQ(m.health, i <= 15 ? Health::lost : i == 16 ? Health::degraded : Health::ok) << i;
         if (i == 15) continue;
         EXPECT_STREQ(to_string(m.reason),
-                     i < 15    ? "eyes_exchanged"
+                     i < 15    ? "cameras_swapped"
                      : i == 16 ? "recovered"
                                : "none")
             << i;

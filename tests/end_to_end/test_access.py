@@ -102,11 +102,11 @@ class Roles(AccessTest):
         gate = self.start("--token-file", self.tokens, "--audit", audit)
         guest = self.client()
         self.assertEqual(guest.step(9)["verdict"], "ERROR")  # no perception, but an answer
-        for service, args in (("/surefoot/vouch", {"radius_m": 0.00005}), ("/surefoot/rearm", {})):
+        for service, args in (("/surefoot/attest", {"radius_m": 0.00005}), ("/surefoot/rearm", {})):
             values = guest.call(service, **args)["values"]
             self.assertFalse(values["success"])
             self.assertIn("this needs the role operator, and this client is rider", values["message"])
-        values = self.client(f"/?token={self.token('operator')}").call("/surefoot/vouch", radius_m=0.00005)["values"]
+        values = self.client(f"/?token={self.token('operator')}").call("/surefoot/attest", radius_m=0.00005)["values"]
         self.assertFalse(values["success"])
         self.assertNotIn("role", values["message"])
         self.assertEqual(self.get("/health", {"Authorization": "Bearer 0123456789abcdef"})[0], 401)
@@ -221,7 +221,7 @@ class Tls(AccessTest):
         self.addCleanup(client.close)
         for _ in range(200):
             self.assertEqual(client.step(9)["verdict"], "ERROR")
-        self.assertFalse(client.call("/surefoot/vouch", radius_m=1.0)["values"]["success"])  # no map
+        self.assertFalse(client.call("/surefoot/attest", radius_m=1.0)["values"]["success"])  # no map
         # Longer than a TLS record.
         client.send(1, json.dumps({"op": "x" * 60000}).encode())
         self.assertEqual(json.loads(client.read()[1])["op"], "status")

@@ -291,7 +291,7 @@ class Simulation(CliTest):
         self.inhibited("UNKNOWN_CELLS", self.demo, (0, 0, 0), FORWARD)
         verdict = self.verdict(self.demo, (0, 0, 0), FORWARD, "--attest", "0.9")
         self.assertEqual(verdict["verdict"], "OK", verdict)
-        self.assertGreater(verdict["evidence"]["vouched_cells"], 0)
+        self.assertGreater(verdict["evidence"]["attested_cells"], 0)
 
     def test_into_the_table(self):
         self.inhibited("CORRIDOR_BLOCKED", self.demo, (1.4, 1.0, 0), FORWARD)

@@ -29,7 +29,7 @@ class GateProcess(CliTest):
         for words, said in ((["--snapshots", "x", "--machine", "no_such_machine"], "no_such_machine"),
                             (["--snapshots", "x", "--bind", "0.0.0.0"], "--certificate"),
                             (["--snapshots", "x", "--assured"], "--audit"),
-                            (["--snapshots", "x", "--attest", "1.1"], "vouch_radius_m"),
+                            (["--snapshots", "x", "--attest", "1.1"], "attestation_radius_m"),
                             (["--snapshots", "x", "--token-file", self.dir], "regular file"),
                             ([], "--snapshots")):
             process = subprocess.run([GATE, *words], capture_output=True, text=True, timeout=60)

@@ -92,22 +92,22 @@ test("the extended service says why", () =>
     assert.equal(again.result_code, -1);
   }));
 
-const vouch = (ros, radius_m) => call(ros, "/surefoot/vouch", "surefoot/Vouch", { radius_m });
+const attest = (ros, radius_m) => call(ros, "/surefoot/attest", "surefoot/Attest", { radius_m });
 
 test("the operator re-arms and attests", () =>
   withRos(async (ros) => {
     assert.equal((await call(ros, "/surefoot/rearm", "std_srvs/Trigger", {})).success, true);
-    assert.equal((await vouch(ros, 0.4)).success, true);
-    assert.equal((await vouch(ros, 4)).success, false);
+    assert.equal((await attest(ros, 0.4)).success, true);
+    assert.equal((await attest(ros, 4)).success, false);
   }, "operator"));
 
 test("a guest is a rider, until roslib authenticates it", () =>
   withRos(async (ros) => {
-    const refused = await vouch(ros, 0.4);
+    const refused = await attest(ros, 0.4);
     assert.equal(refused.success, false);
     assert.match(refused.message, /role operator/);
     ros.authenticate(tokenOf("operator"), "", "", "", 0, "", 0);
-    assert.equal((await vouch(ros, 0.4)).success, true);
+    assert.equal((await attest(ros, 0.4)).success, true);
   }));
 
 test("an observer asks nothing", () =>

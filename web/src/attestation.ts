@@ -23,7 +23,7 @@ const kTenthMm_m = 1e-4;
 
 const tenthMm = (value_m: number) => Math.round(value_m / kTenthMm_m);
 
-/// The least radius [0.1 mm] that holds both soles: `least_vouched_radius_sq` of surefoot/gate/attestation.cpp.
+/// The least radius [0.1 mm] that holds both soles: `least_attested_radius_sq` of surefoot/gate/attestation.cpp.
 function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
   const reach = (center_m: number, size_m: number) =>
     Math.abs(tenthMm(center_m)) + Math.floor((tenthMm(size_m) + 1) / 2);
@@ -35,7 +35,7 @@ function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
 /// Undefined if the machine file allows no attestation, or no radius that holds both soles.
 export function radiusRange(machine: Machine | null | undefined): RadiusRange | undefined {
   if (!machine) return undefined;
-  const most = tenthMm(machine.vouch_radius_m);
+  const most = tenthMm(machine.attestation_radius_m);
   const least = leastRadius_tenth_mm(machine.feet);
   if (most <= 0 || least > most) return undefined;
   const step = tenthMm(kStep_m);
@@ -80,7 +80,7 @@ export function attestedWords(area: AttestedArea | undefined): string {
   return `in force: radius ${radius_m.toFixed(2)} m at x ${x_m.toFixed(2)} m, y ${y_m.toFixed(2)} m`;
 }
 
-/// Whether a cell lies wholly inside the area: `is_vouched` of surefoot/gate/ground.cpp. x and y: its corner.
+/// Whether a cell lies wholly inside the area: `is_attested` of surefoot/gate/ground.cpp. x and y: its corner.
 export function isCellAttested(area: AttestedArea, x_m: number, y_m: number, side_m: number): boolean {
   const far = (low_m: number) => Math.max(Math.abs(low_m), Math.abs(low_m + side_m));
   const far_x_m = far(x_m - area.x_m);

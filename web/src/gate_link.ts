@@ -79,8 +79,8 @@ export class GateLink {
     if (this.#socket.state !== "open") this.#socket.open();
   }
 
-  vouch(radius_m: number): Promise<ActResult> {
-    return this.#call("/surefoot/vouch", "surefoot/Vouch", { radius_m });
+  attest(radius_m: number): Promise<ActResult> {
+    return this.#call("/surefoot/attest", "surefoot/Attest", { radius_m });
   }
 
   rearm(): Promise<ActResult> {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { isCellAttested, type AttestedArea } from "./attestation.ts";
-import { kGround, kGroundMask, kVouched } from "./messages.ts";
+import { kGround, kGroundMask, kAttested } from "./messages.ts";
 import type { GroundMap } from "./ground_map.ts";
 
 /// Pixels along a cell, enough for the patterns.
@@ -16,7 +16,7 @@ export interface GroundColors {
   unsure_dot: Rgb;
   unknown: Rgb;
   unknown_thread: Rgb;
-  vouched: Rgb;
+  attested: Rgb;
 }
 export type Rgb = readonly [number, number, number];
 
@@ -28,13 +28,13 @@ export const kDarkColors: GroundColors = {
   unsure_dot: [88, 34, 66],
   unknown: [30, 33, 39],
   unknown_thread: [52, 57, 66],
-  vouched: [86, 180, 233],
+  attested: [86, 180, 233],
 };
 export const kLightColors: GroundColors = {
   ...kDarkColors,
   unknown: [206, 211, 219],
   unknown_thread: [176, 183, 194],
-  vouched: [0, 114, 178],
+  attested: [0, 114, 178],
 };
 
 /// Old data keep their patterns and lose their colours.
@@ -126,7 +126,7 @@ export function paintGround(
   const side_px = window.cells * kCell_px;
   const origin_ix = map.resolution_m > 0 ? Math.round(map.origin_x_m / map.resolution_m) : 0;
   const origin_iy = map.resolution_m > 0 ? Math.round(map.origin_y_m / map.resolution_m) : 0;
-  const rim_color = packed(colors.vouched, 1);
+  const rim_color = packed(colors.attested, 1);
   const stateAt = (ix: number, iy: number) =>
     ix >= 0 && iy >= 0 && ix < map.nx && iy < map.ny ? map.state[iy * map.nx + ix] : kGround.unknown;
   const side_m = map.resolution_m;
@@ -134,7 +134,7 @@ export function paintGround(
     attested !== undefined &&
     isCellAttested(attested, map.origin_x_m + ix * side_m, map.origin_y_m + iy * side_m, side_m);
   const isAttested = (ix: number, iy: number) =>
-    (stateAt(ix, iy) & kVouched) !== 0 || attestedAt(ix, iy);
+    (stateAt(ix, iy) & kAttested) !== 0 || attestedAt(ix, iy);
   for (let row = 0; row < window.cells; ++row) {
     const iy = window.first_iy + row;
     for (let column = 0; column < window.cells; ++column) {

@@ -297,7 +297,7 @@ export class GroundView {
       context.stroke();
       this.#drawLabel(this.#labelBox(`${radius_m} m`, radius_m * Math.cos(0.62), -radius_m * Math.sin(0.62), 13));
     }
-    const radius_m = this.#store.vouch_radius_m;
+    const radius_m = this.#store.attestation_radius_m;
     if (radius_m === undefined) return;
     context.beginPath();
     context.arc(0, 0, radius_m, 0, 2 * Math.PI);

@@ -87,7 +87,7 @@ export const kKind = { map: 1, pose: 2, image: 3, layer: 4 } as const;
 /// Bits 0-1 of a cell's state, and the flags above them.
 export const kGround = { unknown: 0, free: 1, unsafe: 2, unsure: 3 } as const;
 export const kGroundMask = 3;
-export const kVouched = 4;
+export const kAttested = 4;
 export const kDropEvidence = 8;
 export const kLowOverhead = 16;
 export const kUnknownHeight = -32768;
@@ -280,7 +280,7 @@ export interface Movement {
 export interface Machine {
   name: string;
   sole_depth_m: number;
-  vouch_radius_m: number;
+  attestation_radius_m: number;
   feet: { left: Box; right: Box };
   movements: Movement[];
   body: BodyPart[];

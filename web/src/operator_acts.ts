@@ -10,20 +10,20 @@ import type { Store } from "./store.ts";
 export class OperatorActs {
   readonly #store: Store;
   readonly #gate: GateLink;
-  readonly #vouch = byId<HTMLButtonElement>("vouch");
+  readonly #attest = byId<HTMLButtonElement>("attest");
   readonly #rearm = byId<HTMLButtonElement>("rearm");
-  readonly #vouch_dialog = byId<HTMLDialogElement>("vouch-dialog");
+  readonly #attest_dialog = byId<HTMLDialogElement>("attest-dialog");
   readonly #rearm_dialog = byId<HTMLDialogElement>("rearm-dialog");
   readonly #token_dialog = byId<HTMLDialogElement>("token-dialog");
   readonly #token = byId<HTMLInputElement>("token");
-  readonly #radius = byId<HTMLInputElement>("vouch-radius");
-  readonly #yes = byId<HTMLButtonElement>("vouch-yes");
-  readonly #looked = byId<HTMLInputElement>("vouch-looked");
+  readonly #radius = byId<HTMLInputElement>("attest-radius");
+  readonly #yes = byId<HTMLButtonElement>("attest-yes");
+  readonly #looked = byId<HTMLInputElement>("attest-checked");
 
   constructor(store: Store, gate: GateLink, changed: () => void) {
     this.#store = store;
     this.#gate = gate;
-    this.#vouch.addEventListener("click", () => this.#openVouch(changed));
+    this.#attest.addEventListener("click", () => this.#openAttestation(changed));
     this.#radius.addEventListener("input", () => this.#showRadius(changed));
     this.#looked.addEventListener("change", () => {
       this.#yes.disabled = !this.#looked.checked;
@@ -34,11 +34,11 @@ export class OperatorActs {
       if (!this.#looked.checked) return;
       this.#looked.checked = false;
       const act = `Attestation, radius ${radius_m.toFixed(2)} m`;
-      void gate.vouch(radius_m).then((result) => this.#tell(act, result));
+      void gate.attest(radius_m).then((result) => this.#tell(act, result));
     });
-    this.#vouch_dialog.addEventListener("close", () => {
-      if (this.#vouch_dialog.open) return;
-      store.vouch_radius_m = undefined;
+    this.#attest_dialog.addEventListener("close", () => {
+      if (this.#attest_dialog.open) return;
+      store.attestation_radius_m = undefined;
       changed();
     });
     this.#rearm.addEventListener("click", () => {
@@ -62,8 +62,8 @@ export class OperatorActs {
     const { arrivals, hello, health, attesting, attested, place } = this.#store;
     const there = arrivals.service === "open" && arrivals.gate === "open";
     const off = hello !== undefined && radiusRange(hello.machine) === undefined;
-    this.#vouch.disabled = !there || !radiusRange(hello?.machine);
-    setText(this.#vouch, `I confirm the ground around me${off ? " (the machine file does not allow it)" : ""}`);
+    this.#attest.disabled = !there || !radiusRange(hello?.machine);
+    setText(this.#attest, `I confirm the ground around me${off ? " (the machine file does not allow it)" : ""}`);
     this.#rearm.disabled = !there || health?.state !== "FAULT";
     setText(this.#rearm, this.#rearm.disabled ? "Re-arm (only after a fault)" : "Re-arm");
     const { words, detail } = attestationWords(attesting, attested, place);
@@ -88,7 +88,7 @@ export class OperatorActs {
     setText(byId("act-result"), "The gate accepted the operator token. Repeat the act.");
   }
 
-  #openVouch(changed: () => void): void {
+  #openAttestation(changed: () => void): void {
     const range = radiusRange(this.#store.hello?.machine);
     if (!range) return;
     this.#radius.min = String(range.least_m);
@@ -98,14 +98,14 @@ export class OperatorActs {
     this.#looked.checked = false;
     this.#yes.disabled = true;
     this.#showRadius(changed);
-    this.#vouch_dialog.showModal();
+    this.#attest_dialog.showModal();
   }
 
   #showRadius(changed: () => void): void {
     const { min, max, value } = this.#radius;
-    this.#store.vouch_radius_m = Number(value);
+    this.#store.attestation_radius_m = Number(value);
     const metres = (text: string) => Number(text).toFixed(2);
-    setText(byId("vouch-shown"), `${metres(value)} m (${metres(min)} to ${metres(max)} m)`);
+    setText(byId("attest-shown"), `${metres(value)} m (${metres(min)} to ${metres(max)} m)`);
     changed();
   }
 

@@ -23,8 +23,8 @@ export interface GateHealth {
   map_version: number;
   frame_age_ms: number | null;
   pose_age_ms: number | null;
-  vouching: boolean;
-  vouched?: AttestedArea | null; ///< in odom; older gates do not send it
+  attesting: boolean;
+  attested?: AttestedArea | null; ///< in odom; older gates do not send it
   asked: number;
   allowed: number;
 }
@@ -75,7 +75,7 @@ export class Store {
   stage_times: StageTimes[] = [];
   problem = ""; ///< the last message that could not be read, and why
   chosen: number | undefined; ///< code of the direction that the user chose
-  vouch_radius_m: number | undefined; ///< radius in the open attestation dialog
+  attestation_radius_m: number | undefined; ///< radius in the open attestation dialog
   arrivals: Arrivals = { service: "opening", gate: "opening", has_machine: false };
   freshness: Freshness = judgeFreshness(this.arrivals, 0);
   #listeners: (() => void)[] = [];
@@ -113,12 +113,12 @@ export class Store {
 
   /// Whether an operator's attestation is in force, as far as the page has fresh data of the gate.
   get attesting(): boolean {
-    return this.freshness.verdicts && this.health?.vouching === true;
+    return this.freshness.verdicts && this.health?.attesting === true;
   }
 
   /// The attested area, to be drawn; undefined if no attestation is in force.
   get attested(): AttestedArea | undefined {
-    return this.attesting ? (this.health?.vouched ?? undefined) : undefined;
+    return this.attesting ? (this.health?.attested ?? undefined) : undefined;
   }
 
   /// base_link on the ground; undefined without a pose.

@@ -43,7 +43,7 @@ void for_each_limit(Limits& limits, Visit& visit) {
     visit("pose_age_ns", limits.pose_age_ns);
     visit("future_tolerance_ns", limits.future_tolerance_ns);
     visit("verdict_ttl_ns", limits.verdict_ttl_ns);
-    visit("vouch_radius_tenth_mm", limits.attestation_radius_tenth_mm);
+    visit("attestation_radius_tenth_mm", limits.attestation_radius_tenth_mm);
 }
 
 template <typename Machine, typename Visit>
@@ -80,11 +80,11 @@ void for_each_query_field(Query& query, Visit& visit) {
     visit("sin_yaw", query.sin_yaw);
     visit("stance_source", query.stance_source);
     visit("stance_height_tenth_mm", query.stance_height_tenth_mm);
-    visit("vouched.active", query.attested.active);
-    visit("vouched.center_x_tenth_mm", query.attested.center_x_tenth_mm);
-    visit("vouched.center_y_tenth_mm", query.attested.center_y_tenth_mm);
-    visit("vouched.radius_tenth_mm", query.attested.radius_tenth_mm);
-    visit("vouched.height_tenth_mm", query.attested.height_tenth_mm);
+    visit("attested.active", query.attested.active);
+    visit("attested.center_x_tenth_mm", query.attested.center_x_tenth_mm);
+    visit("attested.center_y_tenth_mm", query.attested.center_y_tenth_mm);
+    visit("attested.radius_tenth_mm", query.attested.radius_tenth_mm);
+    visit("attested.height_tenth_mm", query.attested.height_tenth_mm);
     visit("connection", query.connection);
     visit("sequence", query.sequence);
 }
@@ -113,7 +113,7 @@ void for_each_verdict_field(Verdict& verdict, Visit& visit) {
     visit("evidence.stance_height_tenth_mm", evidence.stance_height_tenth_mm);
     visit("evidence.cells", evidence.cells);
     visit("evidence.known_cells", evidence.known_cells);
-    visit("evidence.vouched_cells", evidence.attested_cells);
+    visit("evidence.attested_cells", evidence.attested_cells);
     visit("evidence.height_delta_tenth_mm", evidence.height_delta_tenth_mm);
     visit("evidence.max_tilt_tan_sq", evidence.max_tilt_tan_sq);
     visit("evidence.max_patch_sigma_sq_tenth_mm2", evidence.max_patch_sigma_sq_tenth_mm2);

@@ -24,7 +24,8 @@ const TopicEntry* find_topic(std::string_view name) noexcept {
 }
 
 const ServiceEntry* find_service(std::string_view name) noexcept {
-    return find_entry(kServices, name);
+    // Until 0.1 the attestation had this name. Version 0.3 will refuse it (docs/migration.md).
+    return find_entry(kServices, names("/surefoot/vouch", name) ? "/surefoot/attest" : name);
 }
 
 bool same_type(std::string_view ours, std::string_view theirs) noexcept {

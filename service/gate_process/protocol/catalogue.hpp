@@ -64,7 +64,7 @@ inline constexpr std::array<ServiceEntry, 23> kServices{{
     {Service::step_with_reasons, "/surefoot/step", "surefoot/Step"},
     {Service::authenticate, "/surefoot/authenticate", "surefoot/Authenticate"},
     {Service::rearm, "/surefoot/rearm", "std_srvs/Trigger"},
-    {Service::attest, "/surefoot/vouch", "surefoot/Vouch"},
+    {Service::attest, "/surefoot/attest", "surefoot/Attest"},
     {Service::health, "/surefoot/health", "surefoot/GetHealth"},
     {Service::list_topics, "/rosapi/topics", "rosapi/Topics"},
     {Service::list_services, "/rosapi/services", "rosapi/Services"},

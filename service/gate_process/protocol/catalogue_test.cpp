@@ -18,6 +18,14 @@ TEST(Catalogue, NamesWithAndWithoutTheirSlash) {
         EXPECT_EQ(find_service(name), nullptr) << name;
 }
 
+TEST(Catalogue, TheFormerNameOfTheAttestationFindsIt) {
+    const ServiceEntry* attest = find_service("/surefoot/attest");
+    ASSERT_NE(attest, nullptr);
+    EXPECT_EQ(attest->service, Service::attest);
+    EXPECT_EQ(find_service("/surefoot/vouch"), attest);
+    EXPECT_EQ(find_service("surefoot/vouch"), attest);
+}
+
 TEST(Catalogue, TypesInTheSpellingOfBothRosVersions) {
     EXPECT_TRUE(same_type("a_msgs/B", "a_msgs/B"));
     EXPECT_TRUE(same_type("a_msgs/B", "a_msgs/msg/B"));

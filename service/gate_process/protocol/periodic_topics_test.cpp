@@ -67,10 +67,10 @@ TEST(PeriodicTopics, EachOfTheFourPartsOfAStateCounts) {
 
 TEST(PeriodicTopics, HealthHasTheAttestedArea) {
     ScriptedGate gate;
-    EXPECT_TRUE(health_object(gate.report_)["vouched"].is_null());
+    EXPECT_TRUE(health_object(gate.report_)["attested"].is_null());
     gate.report_.attestation = true;
     gate.report_.attested = {true, 12'340, -5'000, 6'000, -9'900};
-    const Json area = health_object(gate.report_)["vouched"];
+    const Json area = health_object(gate.report_)["attested"];
     EXPECT_NEAR(area["x_m"].get<double>(), 1.234, 1e-9);
     EXPECT_NEAR(area["y_m"].get<double>(), -0.5, 1e-9);
     EXPECT_NEAR(area["z_m"].get<double>(), -0.99, 1e-9);

@@ -159,7 +159,7 @@ TEST(RosbridgeSession, NothingElseIsDoneUnderOverload) {
     RosbridgeSession session(1, gate, limits, kOperator);
     (void)session.on_message(R"({"op":"status"})", kNowNs);
     for (const char* text : {R"({"op":"call_service","id":"q","service":"/surefoot/rearm"})",
-                             R"({"op":"call_service","id":"q","service":"/surefoot/vouch",)"
+                             R"({"op":"call_service","id":"q","service":"/surefoot/attest",)"
                              R"("args":[0.4]})",
                              R"({"op":"subscribe","topic":"/surefoot/verdict"})",
                              R"({"op":"publish","topic":"/move_base_simple/goal","msg":{}})"}) {
@@ -372,7 +372,7 @@ TEST(RosbridgeSession, OnlyTheOperatorAttestsAndRearms) {
         ScriptedGate gate;
         RosbridgeSession session(7, gate, {}, {role, &kAccess});
         for (const auto& [text, kind] :
-             {std::pair(call_of("/surefoot/vouch", "[0.4]"), ActKind::attest),
+             {std::pair(call_of("/surefoot/attest", "[0.4]"), ActKind::attest),
               std::pair(call_of("/surefoot/rearm", "[]"), ActKind::rearm)}) {
             const Json values = values_of(session.on_message(text, kNowNs));
             EXPECT_EQ(values["success"], false);
@@ -424,8 +424,8 @@ TEST(RosbridgeSession, AClientWithoutAnyRoleGetsNoAnswerAboutSteps) {
 TEST(RosbridgeSession, AnActOfTheOperatorIsNotedWithItsOutcome) {
     ScriptedGate gate;
     RosbridgeSession session(7, gate, {}, kOperator);
-    (void)session.on_message(call_of("/surefoot/vouch", "[0.4]"), kNowNs);
-    (void)session.on_message(call_of("/surefoot/vouch", "[4]"), kNowNs + 1);
+    (void)session.on_message(call_of("/surefoot/attest", "[0.4]"), kNowNs);
+    (void)session.on_message(call_of("/surefoot/attest", "[4]"), kNowNs + 1);
     (void)session.on_message(call_of("/surefoot/rearm", "[]"), kNowNs + 2);
     ASSERT_EQ(gate.acts.size(), 3U);
     EXPECT_EQ(gate.acts[0].outcome, ActOutcome::done);
@@ -452,7 +452,7 @@ TEST(RosbridgeSession, ATokenChangesTheRoleOfARunningConnection) {
         EXPECT_EQ(gate.acts[0].outcome, ActOutcome::done);
         EXPECT_EQ(gate.acts[0].role, Role::operator_);
         const Json values =
-            values_of(session.on_message(call_of("/surefoot/vouch", "[0.4]"), kNowNs));
+            values_of(session.on_message(call_of("/surefoot/attest", "[0.4]"), kNowNs));
         EXPECT_EQ(values["success"], true);
     }
 }

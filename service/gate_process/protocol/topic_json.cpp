@@ -117,8 +117,8 @@ Json health_object(const GateReport& report) {
             {"map_version", report.map_version},
             {"frame_age_ms", age_ms(report.frame_age_ns)},
             {"pose_age_ms", age_ms(report.pose_age_ns)},
-            {"vouching", report.attestation},
-            {"vouched", attested_object(report.attested)},
+            {"attesting", report.attestation},
+            {"attested", attested_object(report.attested)},
             {"asked", report.asked},
             {"allowed", report.allowed}};
 }

@@ -11,9 +11,9 @@
 /// The messages of all topics except the verdicts.
 namespace surefoot::gate_process {
 
-/// {state, why, faults, map_version, frame_age_ms, pose_age_ms, vouching, vouched, asked, allowed}.
-/// An age is null before the first snapshot. `vouched`: the attested area in odom {x_m, y_m, z_m,
-/// radius_m}, or null.
+/// {state, why, faults, map_version, frame_age_ms, pose_age_ms, attesting, attested, asked,
+/// allowed}. An age is null before the first snapshot. `attested`: the attested area in odom {x_m,
+/// y_m, z_m, radius_m}, or null.
 [[nodiscard]] Json health_object(const GateReport& report);
 /// Writes the same data as one line of text, for clients without a JSON reader.
 [[nodiscard]] std::string health_text(const GateReport& report);

@@ -86,7 +86,7 @@ Json evidence_object(const gate::Verdict& verdict) {
                                                      : Json(nullptr)},
             {"cells", e.cells},
             {"known_cells", e.known_cells},
-            {"vouched_cells", e.attested_cells},
+            {"attested_cells", e.attested_cells},
             {"unproven", unproven_array(e)}};
 }
 

@@ -662,18 +662,18 @@ TEST(WebsocketServer, TheRoleComesWithTheConnection) {
     config.access = testing::three_tokens();
     Service service(config);
     Client guest(service, "/", "");
-    EXPECT_EQ(call(guest, "/surefoot/vouch", "[0.4]")["success"], false);
+    EXPECT_EQ(call(guest, "/surefoot/attest", "[0.4]")["success"], false);
     Client observer(service, "/?token=" + testing::three_tokens().observer, "");
     EXPECT_EQ(observer.ask(kStep)["result"], false);
     Client by_url(service, "/?token=" + kToken, "");
-    EXPECT_EQ(call(by_url, "/surefoot/vouch", "[0.4]")["success"], true);
+    EXPECT_EQ(call(by_url, "/surefoot/attest", "[0.4]")["success"], true);
     Client by_header(service);
     by_header.authorize("Bearer " + kToken);
     by_header.open();
     EXPECT_EQ(call(by_header, "/surefoot/rearm")["success"], true);
     EXPECT_EQ(call(guest, "/surefoot/authenticate", R"({"token":")" + kToken + "\"}")["role"],
               "operator");
-    EXPECT_EQ(call(guest, "/surefoot/vouch", "[0.4]")["success"], true);
+    EXPECT_EQ(call(guest, "/surefoot/attest", "[0.4]")["success"], true);
     service.end();
     const auto acts_of = [&](std::uint64_t connection) {
         std::string text;

@@ -160,7 +160,7 @@ TEST(HeightDrift, ResidualsOfALittleWhileAgoAreLessSure) {
     EXPECT_EQ(report.reason, not_significant);
 }
 
-TEST(HeightDrift, YoungerCellsNeitherCountNorAreVouchedFor) {
+TEST(HeightDrift, YoungerCellsNeitherCountNorAreAttested) {
     const Patch patch;
     Residuals both = patch.residuals();
     const std::size_t older = both.size();

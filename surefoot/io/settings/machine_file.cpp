@@ -136,7 +136,7 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.pose_age_ns = group.duration_ns("pose_age_ms", 1, 1000);
     limits.future_tolerance_ns = group.duration_ns("future_tolerance_ms", 0, 100);
     limits.verdict_ttl_ns = group.duration_ns("verdict_ttl_ms", 1, 1000);
-    limits.attestation_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
+    limits.attestation_radius_tenth_mm = group.length("attestation_radius_m", 0.0, 2.0);
 }
 
 /// Checks limits that no gait of the class can reach: a foot cannot land higher than
@@ -177,13 +177,49 @@ void read_document(YamlReader& reader, Group& root, MachineFile& out) {
     root.finish();
 }
 
+/// Gives keys with the names of version 0.1 the names of today (docs/migration.md). Returns a
+/// sentence for each.
+std::vector<std::string> use_current_names(YamlNode& document, const std::string& file) {
+    constexpr std::string_view kFormer = "vouch_radius_m";
+    constexpr std::string_view kCurrent = "attestation_radius_m";
+    std::vector<std::string> notes;
+    const auto note = [&](int line) {
+        notes.push_back(fmt::format(
+            "{}:{}: '{}' is now called '{}'. Use the new name: version 0.3 refuses the old one",
+            file,
+            line,
+            kFormer,
+            kCurrent));
+    };
+    for (YamlNode& group : document.items) {
+        if (group.key == "limits" && group.find(kCurrent) == nullptr) {
+            for (YamlNode& limit : group.items) {
+                if (limit.key != kFormer) continue;
+                limit.key = kCurrent;
+                note(limit.line);
+            }
+        } else if (group.key == "deviations") {
+            for (YamlNode& deviation : group.items) {
+                for (YamlNode& field : deviation.items) {
+                    if (field.key != "key" || field.scalar != fmt::format("limits.{}", kFormer))
+                        continue;
+                    field.scalar = fmt::format("limits.{}", kCurrent);
+                    note(field.line);
+                }
+            }
+        }
+    }
+    return notes;
+}
+
 }  // namespace
 
 Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file) {
     Result<YamlNode> document = parse_yaml(yaml, file);
     if (!document) return usage_error(document.error().message);
-    YamlReader reader(file, *document);
     MachineFile out;
+    out.notes = use_current_names(*document, file);
+    YamlReader reader(file, *document);
     const CalibrationKind kind = kind_of_document(*document);
     if (kind != CalibrationKind::machine && kind != CalibrationKind::unknown)
         return usage_error(

@@ -31,6 +31,7 @@ struct MachineFile {
     double turn_deg_s = 0.0;       ///< fastest turn of base_link; 0 = unknown
     std::vector<JointRange> joints;
     std::vector<Deviation> deviations;  ///< limits laxer than rated, each signed by a person
+    std::vector<std::string> notes;     ///< a sentence for each key that has a former name
     std::uint64_t hash = 0;             ///< FNV-1a of the file's bytes, for logs
 };
 

@@ -149,6 +149,36 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
 
 const std::string kWalk = "walk: {enabled: true, up_m: 0.02, down_m: 0.02}";
 
+TEST(MachineFile, the_former_name_of_the_attestation_radius_is_read_with_a_note) {
+    const auto today = parse_machine(rex_text(), "m.yaml");
+    ASSERT_TRUE(today.ok());
+    EXPECT_TRUE(today->notes.empty());
+    const auto former =
+        parse_machine(rex_with("attestation_radius_m: 1.0", "vouch_radius_m: 0.7"), "m.yaml");
+    ASSERT_TRUE(former.ok()) << former.error().message;
+    EXPECT_EQ(former->machine.limits.attestation_radius_tenth_mm, 7000);
+    ASSERT_EQ(former->notes.size(), 1U);
+    EXPECT_TRUE(contains(former->notes[0], "'vouch_radius_m' is now called 'attestation_radius_m'"));
+    const auto both = parse_machine(
+        rex_with("attestation_radius_m: 1.0", "attestation_radius_m: 1.0\n  vouch_radius_m: 0.7"),
+        "m.yaml");
+    ASSERT_FALSE(both.ok());
+    EXPECT_TRUE(contains(both.error().message, "vouch_radius_m"));
+}
+
+TEST(MachineFile, a_signature_for_the_former_name_of_a_limit_counts) {
+    const std::string line =
+        "deviations:\n  - {key: limits.vouch_radius_m, value: 1.5, reason: a wider inspected area, "
+        "signed: J. Doe, date: 2026-01-31}\n";
+    const std::string laxer = rex_with("attestation_radius_m: 1.0", "vouch_radius_m: 1.5");
+    EXPECT_FALSE(parse_machine(laxer, "m.yaml").ok());
+    const auto is_signed = parse_machine(laxer + line, "m.yaml");
+    ASSERT_TRUE(is_signed.ok()) << is_signed.error().message;
+    ASSERT_EQ(is_signed->deviations.size(), 1U);
+    EXPECT_EQ(is_signed->deviations[0].key, "limits.attestation_radius_m");
+    EXPECT_EQ(is_signed->notes.size(), 2U);
+}
+
 /// The REX file with a laxer limit and a line of `deviations` (none for an empty one).
 std::string signed_rex(const std::string& line) {
     return rex_with("tilt_deg: 6.0", "tilt_deg: 8") +

@@ -41,7 +41,7 @@ constexpr std::array kRatedLimits{
     RatedLimit{"limits.future_tolerance_ms", 5, true, "clocks may disagree by more"},
     RatedLimit{"limits.verdict_ttl_ms", 300, true, "an approval is older when it is used"},
     RatedLimit{
-        "limits.vouch_radius_m", 1.0, true, "an operator cannot inspect ground farther away"},
+        "limits.attestation_radius_m", 1.0, true, "an operator cannot inspect ground farther away"},
 };
 
 const YamlNode* node_at(const YamlNode& root, std::string_view key) {

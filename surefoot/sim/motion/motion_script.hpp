@@ -12,7 +12,7 @@
 
 namespace surefoot::sim {
 
-/// Motion model: the carrier of the camera.
+/// Motion model: how the camera is carried.
 enum class MotionModel : std::uint8_t { trolley, rex, hand };
 inline constexpr const char* kMotionModelNames[] = {"trolley", "rex", "hand"};
 

@@ -33,12 +33,12 @@ namespace surefoot::sim {
 ///     scan:                             # where a laser scanner stands, for `sim --scan`
 ///       stations: [{x_m: 0, y_m: 2}, {x_m: 5, y_m: 0, above_m: 1.2}]
 ///     motion:                           # a variant may have its own
-///       carrier: trolley                              # or rex, hand
+///       motion_model: trolley                              # or rex, hand
 ///       waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: end_m, y_m: 0}]
 ///
 /// Instead of waypoints a motion may name one of motion_scripts.hpp with its figures:
 ///
-///     motion: {carrier: rex, script: back_to_table, table_x_m: distance_m, left_m: 0.95}
+///     motion: {motion_model: rex, script: back_to_table, table_x_m: distance_m, left_m: 0.95}
 ///     # approach: distance_m; turn_round: turn_deg; pivot_and_reverse: distance_m;
 ///     # sidestep_through_door: door_x_m, door_y_m, beyond_m; descend_backwards: steps_ahead,
 ///     riser_m

@@ -287,8 +287,8 @@ TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
     const std::string way =
         "  waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1.75, y_m: 0}, {x_m: 3, y_m: 0, "
         "ground_z_m: 1}]\n";
-    const auto made =
-        read_scene({"test.yaml", text_with("  carrier: hand\n  height_m: 1.8\n" + way)}, "", 1);
+    const auto made = read_scene(
+        {"test.yaml", text_with("  motion_model: hand\n  height_m: 1.8\n" + way)}, "", 1);
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_NEAR(made->motion->at(0.0).T_world_body.translation_m.z(), 1.8, 1e-9);
     EXPECT_NEAR(made->motion->at(1e3).T_world_body.translation_m.z(), 2.8, 1e-9);
@@ -300,9 +300,9 @@ TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
         << error_of(way);
     EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is allowed for a hand only"),
               std::string::npos);
-    EXPECT_NE(
-        error_of("  carrier: hand\n  height_m: 0.1\n" + way).find("height_m is 0.1; for a hand"),
-        std::string::npos);
+    EXPECT_NE(error_of("  motion_model: hand\n  height_m: 0.1\n" + way)
+                  .find("height_m is 0.1; for a hand"),
+              std::string::npos);
 }
 
 TEST(SceneFileTest, AVariantMayGoItsOwnWay) {
@@ -453,8 +453,8 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
         {replaced("motion:", "lighting: {lamp: -1}\nmotion:"), "test.yaml:7: 'lamp' is -1"},
         {replaced("motion:", "lighting: {shadows: 3}\nmotion:"),
          "test.yaml:7: 'shadows' needs true or false, not '3'"},
-        {replaced("waypoints:", "carrier: horse\n  waypoints:"),
-         "test.yaml:8: 'carrier' 'horse' is not one of trolley, rex, hand"},
+        {replaced("waypoints:", "motion_model: horse\n  waypoints:"),
+         "test.yaml:8: 'motion_model' 'horse' is not one of trolley, rex, hand"},
         {replaced("[{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]", "[]"),
          "test.yaml:8: 'waypoints' are 0; 1 to 1000 are allowed"},
         {replaced("pause_s: 1", "pause_s: -1"), "test.yaml:8: 'pause_s' is -1"},

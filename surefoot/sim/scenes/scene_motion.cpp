@@ -40,7 +40,7 @@ struct MotionModelSpec {
     double height_m = 0.0;
     void describe(ConfigVisitor& visitor) {
         visitor.enumeration(
-            "carrier", motion_model, kMotionModelNames, "motion model of the camera");
+            "motion_model", motion_model, kMotionModelNames, "motion model of the camera");
         visitor.number("speed_m_s",
                        speed_m_s,
                        0.0,
@@ -161,7 +161,7 @@ std::optional<std::string> ScriptSpec::problem() const {
     if (steps_ahead < 1) return "key 'steps_ahead' is missing";
     if (carried.motion_model == MotionModel::rex) return std::nullopt;
     return fmt::format(
-        "script descend_backwards needs a walking machine: carrier must be rex, not {}",
+        "script descend_backwards needs a walking machine: motion_model must be rex, not {}",
         kMotionModelNames[static_cast<int>(carried.motion_model)]);
 }
 
@@ -243,7 +243,13 @@ void check_free(SceneReader& reader,
 
 }  // namespace
 
-MotionScript read_motion(SceneReader& reader, const SceneNode& group) {
+MotionScript read_motion(SceneReader& reader, const SceneNode& node) {
+    SceneNode group = node;
+    for (SceneNode& value : group.items) {
+        // Until 0.1 the key had this name. Version 0.3 will refuse it (docs/migration.md).
+        if (value.key == "carrier" && group.find("motion_model") == nullptr)
+            value.key = "motion_model";
+    }
     if (group.find("waypoints") != nullptr) return read_waypoints(reader, group);
     if (group.find("script") != nullptr) return read_script(reader, group);
     reader.fail(group, "needs 'waypoints' or 'script'");

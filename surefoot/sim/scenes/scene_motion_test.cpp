@@ -46,16 +46,16 @@ std::string refusal(const std::string& motion, const std::string& solids = "") {
 
 TEST(SceneMotionTest, AFileNamesAScriptWithItsFigures) {
     const std::vector<std::pair<std::string, MotionScript>> motions{
-        {"script: approach, carrier: rex, distance_m: 2 * half_m",
+        {"script: approach, motion_model: rex, distance_m: 2 * half_m",
          approach_script(MotionModel::rex, 1.2)},
-        {"script: turn_round, carrier: rex, turn_deg: -30 * three",
+        {"script: turn_round, motion_model: rex, turn_deg: -30 * three",
          turn_round_script(MotionModel::rex, -0.5 * 3.14159265358979323846)},
-        {"script: back_to_table, carrier: rex, table_x_m: 2.1, left_m: 0.9",
+        {"script: back_to_table, motion_model: rex, table_x_m: 2.1, left_m: 0.9",
          back_to_table_script(MotionModel::rex, 2.1, 0.9)},
-        {"script: sidestep_through_door, carrier: hand, door_x_m: 1.4, door_y_m: -0.1, "
+        {"script: sidestep_through_door, motion_model: hand, door_x_m: 1.4, door_y_m: -0.1, "
          "beyond_m: half_m",
          sidestep_through_door_script(MotionModel::hand, 1.4, -0.1, 0.6)},
-        {"script: descend_backwards, carrier: rex, steps_ahead: three - 1, riser_m: 0.17",
+        {"script: descend_backwards, motion_model: rex, steps_ahead: three - 1, riser_m: 0.17",
          descend_backwards_script(2, 0.17)},
         {"script: pivot_and_reverse, distance_m: 1",
          pivot_and_reverse_script(MotionModel::trolley, 1.0)}};
@@ -80,32 +80,42 @@ TEST(SceneMotionTest, AFileNamesAScriptWithItsFigures) {
 
 TEST(SceneMotionTest, SpeedAndMovesReachTheRex) {
     const ScriptedScene slow =
-        read("script: approach, carrier: rex, speed_m_s: 0.02, distance_m: 0.4");
+        read("script: approach, motion_model: rex, speed_m_s: 0.02, distance_m: 0.4");
     ASSERT_EQ(slow.steps.size(), 1U);
     EXPECT_NEAR(slow.steps[0].end_s - slow.steps[0].start_s, 20.0, kExact_m);
     const ScriptedScene back =
-        read("carrier: rex, waypoints: [{x_m: 0, y_m: 0}, {x_m: -0.5, y_m: 0, move: back}]");
+        read("motion_model: rex, waypoints: [{x_m: 0, y_m: 0}, {x_m: -0.5, y_m: 0, move: back}]");
     ASSERT_EQ(back.steps.size(), 2U);
     EXPECT_EQ(back.steps[0].command, 17) << "backward";
 }
 
+TEST(SceneMotionTest, TheFormerNameOfTheMotionModelIsRead) {
+    const std::string way = "waypoints: [{x_m: 0, y_m: 0}, {x_m: -0.5, y_m: 0, move: back}]";
+    EXPECT_EQ(read("carrier: rex, " + way).steps.size(), 2U);
+    EXPECT_EQ(read("motion_model: rex, " + way).steps.size(), 2U);
+    EXPECT_EQ(read(way).steps.size(), 0U) << "a trolley makes no steps";
+}
+
 TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
     const std::vector<std::pair<std::string, std::string>> motions{
-        {"carrier: rex", "test.yaml:5: 'motion' needs 'waypoints' or 'script'"},
+        {"motion_model: rex", "test.yaml:5: 'motion' needs 'waypoints' or 'script'"},
+        {"script: approach, distance_m: 1, carrier: rex, motion_model: rex",
+         "unknown key 'carrier'"},
         {"script: dance", "test.yaml:5: 'script' 'dance' is not one of approach, turn_round, "},
         {"script: approach", "test.yaml:5: key 'distance_m' is missing"},
         {"script: approach, distance_m: 0", "'distance_m' is 0; it must be 0.1 to 100"},
         {"script: approach, distance_m: 1, turn_deg: 3", "unknown key 'turn_deg'"},
         {"script: approach, distance_m: 1, waypoints: [{x_m: 0, y_m: 0}]",
-         "unknown key 'script'; known keys: carrier, speed_m_s, height_m, waypoints"},
+         "unknown key 'script'; known keys: motion_model, speed_m_s, height_m, waypoints"},
         {"script: approach, distance_m: far", "no number is named 'far'"},
         {"script: back_to_table, table_x_m: 1, left_m: 2", "left_m 2 must be at most table_x_m 1"},
-        {"script: descend_backwards, riser_m: 0.1, carrier: rex", "key 'steps_ahead' is missing"},
-        {"script: descend_backwards, riser_m: 0.1, steps_ahead: 2, carrier: hand",
-         "script descend_backwards needs a walking machine: carrier must be rex, not hand"},
-        {"script: descend_backwards, riser_m: 0.3, steps_ahead: 2, carrier: rex",
+        {"script: descend_backwards, riser_m: 0.1, motion_model: rex",
+         "key 'steps_ahead' is missing"},
+        {"script: descend_backwards, riser_m: 0.1, steps_ahead: 2, motion_model: hand",
+         "script descend_backwards needs a walking machine: motion_model must be rex, not hand"},
+        {"script: descend_backwards, riser_m: 0.3, steps_ahead: 2, motion_model: rex",
          "'riser_m' is 0.3; it must be 0 to 0.2"},
-        {"script: approach, carrier: rex, speed_m_s: 1, distance_m: 1",
+        {"script: approach, motion_model: rex, speed_m_s: 1, distance_m: 1",
          "cannot be followed: simulator: speed_m_s is 1; a rex moves at 0.02 to 0.1"},
         {"waypoints: [{x_m: 0, y_m: 0, move: jump}]",
          "'move' 'jump' is not one of auto, ahead, back, side"}};
@@ -116,7 +126,7 @@ TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
     }
 }
 
-const std::string kTwoSteps = "script: approach, carrier: rex, distance_m: 0.8";
+const std::string kTwoSteps = "script: approach, motion_model: rex, distance_m: 0.8";
 
 double last_z_m(const ScriptedScene& scene) {
     return scene.steps.back().T_world_after.translation_m.z();
@@ -157,7 +167,7 @@ TEST(SceneMotionTest, WhatFeetCannotDoIsRefused) {
               std::string::npos)
         << refusal(kTwoSteps, post);
     // Steps off the end of the floor.
-    EXPECT_NE(refusal("script: approach, carrier: rex, distance_m: 10")
+    EXPECT_NE(refusal("script: approach, motion_model: rex, distance_m: 10")
                   .find("would go -1000.000 m in height"),
               std::string::npos);
 }

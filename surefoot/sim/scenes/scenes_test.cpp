@@ -414,7 +414,7 @@ TEST(ScenesTest, ThePlacesOfTheThesisHaveTheirSizeAndManyThings) {
 
 /// The motion model is a choice: each of the three models can follow the path of each place, except
 /// for the flight, which only the hand-held camera climbs.
-TEST(ScenesTest, EveryCarrierCanGoThroughThePlacesOfTheThesis) {
+TEST(ScenesTest, EveryMotionModelCanGoThroughThePlacesOfTheThesis) {
     for (const SceneInfo& info : list_scenes()) {
         if (!info.name.starts_with("thesis_") || info.name.ends_with("_climbed")) continue;
         for (const MotionModel motion_model :

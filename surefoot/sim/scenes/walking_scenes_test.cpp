@@ -169,7 +169,7 @@ TEST(WalkingScenesTest, AHandTakesNoSteps) {
     EXPECT_LT(scene.motion->duration_s(), 30.0);
 }
 
-TEST(WalkingScenesTest, AnotherCarrierGoesTheSameWayThroughTheSamePlace) {
+TEST(WalkingScenesTest, AnotherMotionModelGoesTheSameWayThroughTheSamePlace) {
     const ScriptedScene driven = make_scene("kerb_down_100", 3).value();
     const ScriptedScene walked = make_scene("kerb_down_100", 3, MotionModel::rex).value();
     const ScriptedScene carried = make_scene("kerb_down_100", 3, MotionModel::hand).value();
