@@ -136,7 +136,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor",
                         sensor,
                         kSensorNames,
-                        "sensor that records the scene; analytic computes depth without images");
+                        "sensor that records the scene; 'analytic' computes depth without images");
     visitor.enumeration("motion_model",
                         motion_model,
                         kCarriedByNames,
@@ -344,14 +344,15 @@ Status SceneSource::make_depth_camera(const SceneOptions& options) {
 
 Status SceneSource::make_analytic(const SceneOptions& options, const camera::StereoRig& rig) {
     if (!rig.right) {
-        return usage_error(fmt::format(
-            "simulator: rig '{}' has no right camera; sim.sensor = analytic models stereo matching",
-            rig.name));
+        return usage_error(
+            fmt::format("simulator: rig '{}' has no right camera, but sim.sensor = analytic models "
+                        "stereo matching; use a stereo rig",
+                        rig.name));
     }
     if (needs_images(options.faults)) {
         return usage_error(
             "simulator: sim.sensor = analytic makes no images that could be torn, repeated or "
-            "frozen; of sim.faults only drop_probability can be used with it");
+            "frozen; of sim.faults, set only drop_probability");
     }
     const auto rectifier = camera::Rectifier::make(rig);
     if (!rectifier) return rectifier.error();

@@ -75,7 +75,7 @@ Status check_waypoint(std::size_t i, const Waypoint& stop) {
     if (!usable) {
         return usage_error(
             fmt::format("simulator: waypoint {} is at x {} y {} z {} yaw {} rad; give finite "
-                        "numbers up to {:.0f}",
+                        "numbers with a magnitude up to {:.0f}",
                         i,
                         stop.x_m,
                         stop.y_m,
@@ -114,8 +114,8 @@ Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
         return usage_error(
-            fmt::format("simulator: height_m is allowed for a hand only; a {} has a fixed height; "
-                        "remove height_m",
+            fmt::format("simulator: height_m is allowed for a hand only, because a {} has a fixed "
+                        "height; remove height_m",
                         kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
@@ -127,7 +127,8 @@ Status check_height(const MotionScript& script) {
 }
 
 Status check(const MotionScript& script) {
-    if (script.waypoints.empty()) return usage_error("simulator: a motion has no waypoint");
+    if (script.waypoints.empty())
+        return usage_error("simulator: a motion has no waypoint; add at least one");
     const auto motion_model = static_cast<std::size_t>(script.motion_model);
     const Limits& speeds = kSpeeds[motion_model];
     if (script.speed_m_s != 0.0 &&

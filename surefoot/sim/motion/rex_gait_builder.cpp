@@ -409,9 +409,8 @@ Status RexMotionBuilder::check(const RexStep& step) const {
                 leg_angles(side, T_world_body.inverse() * motion_.foot(side, t_s).T_world_sole);
             if (!angles) {
                 return usage_error(
-                    fmt::format("{}: the {} leg does not reach its foot; make the step "
-                                "smaller or the ground "
-                                "more even",
+                    fmt::format("{}: the {} leg cannot reach the position of its foot; make the "
+                                "step smaller or the ground more even",
                                 where,
                                 kSideNames[static_cast<int>(side)]));
             }
@@ -432,7 +431,7 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     if (!(std::abs(rise_m) <= kMaxRise_m)) {
         return usage_error(fmt::format(
             "simulator: step {} of the rex (code {}, at x {:.2f} y {:.2f}) would go {:+.3f} m in "
-            "height, limit is {:.2f} m; move the waypoints off that edge",
+            "height, limit is {:.2f} m; move the waypoints away from the edge",
             motion_.steps_.size() + 1,
             step.movement.command,
             step.before.x_m,

@@ -197,10 +197,11 @@ Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
         planner.go_to(waypoints[i]);
         if (planner.count() >= kMaxSteps) {
-            return usage_error(fmt::format(
-                "simulator: the way of the rex to waypoint {} takes more than {} steps; shorten it",
-                i,
-                kMaxSteps));
+            return usage_error(
+                fmt::format("simulator: the path of the rex to waypoint {} takes more than {} "
+                            "steps; shorten the path",
+                            i,
+                            kMaxSteps));
         }
         planner.wait(waypoints[i].pause_s);
     }

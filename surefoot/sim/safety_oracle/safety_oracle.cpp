@@ -105,9 +105,10 @@ std::string describe(const Finding& f) {
         case Danger::not_level_here:
             return fmt::format(
                 "the ground here tilts by {:.1f} deg, limit {:.1f} deg", f.value, f.limit);
-        case Danger::no_ground: return "no ground under a landing foot " + at;
+        case Danger::no_ground: return "there is no ground under a landing foot " + at;
         case Danger::drop_off: return against("a landing foot hangs over a drop of");
-        case Danger::edge_too_near: return against("a drop beside a landing foot at a distance of");
+        case Danger::edge_too_near:
+            return against("a drop lies beside a landing foot at a distance of");
         case Danger::step_up: return against("a landing foot meets a step up of");
         case Danger::step_down: return against("a landing foot meets a step down of");
         case Danger::tilt:
@@ -115,12 +116,15 @@ std::string describe(const Finding& f) {
                                f.value,
                                at,
                                f.limit);
-        case Danger::roughness: return against("uneven ground under a landing foot by");
+        case Danger::roughness: return against("the ground under a landing foot is uneven by");
         case Danger::obstacle_in_way:
             return against("an obstacle in the path of a foot has a height of");
         case Danger::body_hits: return against("the body hits an object that begins at");
         case Danger::overhang_too_low: return against("an object above the machine begins at");
-        case Danger::disconnected: return "the ground of landing is cut off " + at;
+        case Danger::disconnected:
+            return "the ground under a landing foot is not connected to the ground under the "
+                   "standing feet " +
+                   at;
     }
     return "unknown danger";
 }

@@ -78,7 +78,9 @@ class Parser {
     }
 
     double factor(int depth) {
-        if (depth >= kMaxDepth) fail(fmt::format("nested deeper than {} levels", kMaxDepth));
+        if (depth >= kMaxDepth)
+            fail(fmt::format("nested deeper than {} levels; use fewer parentheses and signs",
+                             kMaxDepth));
         if (error_) return 0.0;
         const char c = next();
         if (c == '-' || c == '+') {
@@ -106,7 +108,7 @@ class Parser {
         double value = 0.0;
         const char* begin = text_.data() + at_;
         const auto [end, problem] = std::from_chars(begin, text_.data() + text_.size(), value);
-        if (problem != std::errc{}) fail("not a number");
+        if (problem != std::errc{}) fail("not a number in the range of a double");
         at_ += static_cast<std::size_t>(end - begin);
         return value;
     }
@@ -117,7 +119,7 @@ class Parser {
         const std::string_view name = text_.substr(at_, end - at_);
         const auto found = names_.find(name);
         if (found == names_.end()) {
-            fail(fmt::format("no number is named '{}'", name));
+            fail(fmt::format("no number is named '{}'; define a parameter of this name", name));
             return 0.0;
         }
         at_ = end;

@@ -30,7 +30,9 @@ struct Entry {
 void check_info(SceneReader& reader, const Entry& entry) {
     if (!is_name(entry.info.name)) {
         reader.fail(entry.line,
-                    fmt::format("'{}' is not a valid name for a scene", entry.info.name));
+                    fmt::format("'{}' is not a valid name for a scene; use letters, digits and _, "
+                                "with no digit at the start",
+                                entry.info.name));
     }
     const std::string& text = entry.info.description;
     if (text.empty() || text.find('\n') != std::string::npos) {
@@ -48,11 +50,12 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
         const std::string name = text_of(root, "name");
         entries.push_back({{name, text_of(root, "description")}, nullptr, root.line});
     } else if (const auto* variants = reader.required(root, "variants", SceneNode::Kind::group)) {
-        if (root.find("name") != nullptr) reader.fail(root, "has both 'name' and 'variants'");
+        if (root.find("name") != nullptr)
+            reader.fail(root, "the file has both 'name' and 'variants'; remove one of them");
         for (const SceneNode& node : variants->items) {
             entries.push_back({{node.key, text_of(node, "description")}, &node, node.line});
         }
-        if (entries.empty()) reader.fail(*variants, "names no scene");
+        if (entries.empty()) reader.fail(*variants, "names no scene; add at least one");
     }
     for (const Entry& entry : entries) {
         if (!reader.error()) check_info(reader, entry);
@@ -156,7 +159,8 @@ const Entry* choose(SceneReader& reader,
         names.push_back(entry.info.name);
     }
     reader.fail(1,
-                name.empty() ? fmt::format("holds {} scenes; add '#NAME' with one of: {}",
+                name.empty() ? fmt::format("the file holds {} scenes; add '#NAME' to the file "
+                                           "name, with one of these names: {}",
                                            names.size(),
                                            fmt::join(names, ", "))
                              : fmt::format("no scene is named '{}'{}; there are: {}",

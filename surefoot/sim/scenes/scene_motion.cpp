@@ -46,12 +46,12 @@ struct MotionModelSpec {
                        0.0,
                        2.0,
                        "speed of the motion; 0 = default of the motion model");
-        visitor.number(
-            "height_m",
-            height_m,
-            0.0,
-            3.0,
-            "height of base_link if the camera is hand-held; 0 = default of the motion model");
+        visitor.number("height_m",
+                       height_m,
+                       0.0,
+                       3.0,
+                       "height of base_link above the ground if the camera is hand-held; 0 = "
+                       "default of the motion model");
     }
 };
 
@@ -205,8 +205,9 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     const SceneNode* stops = reader.required(group, "waypoints", SceneNode::Kind::list);
     if (stops == nullptr) return script;
     if (stops->items.empty() || stops->items.size() > kMaxWaypoints) {
-        reader.fail(*stops,
-                    fmt::format("are {}; 1 to {} are allowed", stops->items.size(), kMaxWaypoints));
+        reader.fail(
+            *stops,
+            fmt::format("has {} entries; 1 to {} are allowed", stops->items.size(), kMaxWaypoints));
     }
     for (const SceneNode& item : stops->items) {
         WaypointSpec stop;

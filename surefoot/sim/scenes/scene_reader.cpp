@@ -189,10 +189,14 @@ void SceneReader::read_keys(const SceneNode& group,
 
 void SceneReader::define(const SceneNode& origin, const std::string& name, double value) {
     if (!is_name(name)) {
-        return fail(origin.line, fmt::format("'{}' is not a valid name for a parameter", name));
+        return fail(origin.line,
+                    fmt::format("'{}' is not a valid name for a parameter; use letters, digits and "
+                                "_, with no digit at the start",
+                                name));
     }
     if (numbers_.contains(name) || words_.contains(name)) {
-        return fail(origin.line, fmt::format("parameter '{}' is defined twice", name));
+        return fail(origin.line,
+                    fmt::format("parameter '{}' is defined twice; remove one definition", name));
     }
     numbers_[name] = value;
 }
@@ -232,7 +236,10 @@ void SceneReader::define_drawn(const SceneNode& parameter, Rng& rng) {
     const double low = number(how.items[0]);
     const double high = number(how.items[1]);
     if (!error_ && low > high) {
-        fail(parameter, fmt::format("has its low end {} above its high end {}", low, high));
+        fail(parameter,
+             fmt::format("has its low end {} above its high end {}; give the smaller number first",
+                         low,
+                         high));
     }
     const double drawn = rng.uniform(low, high);
     if (!error_) define(parameter, parameter.key, drawn);

@@ -220,15 +220,20 @@ void SpiralSpec::describe(ConfigVisitor& visitor) {
 std::optional<std::string> SpiralSpec::problem() const {
     if (steps < 1) return "key 'steps' is missing";
     if (std::abs(turn_deg) < 1.0) {
-        return fmt::format("turn_deg {} is below 1 deg a step", turn_deg);
+        return fmt::format(
+            "turn_deg {} is too small; a step must turn by at least 1 deg to the left or right",
+            turn_deg);
     }
     if (outer_radius_m - inner_radius_m < 0.1) {
-        return fmt::format("outer_radius_m {} is not 0.1 m above inner_radius_m {}",
+        return fmt::format("outer_radius_m {} must be at least 0.1 m above inner_radius_m {}",
                            outer_radius_m,
                            inner_radius_m);
     }
     if (steps * std::abs(turn_deg) > 360.0) {
-        return fmt::format("{} steps of {} deg go round more than once", steps, turn_deg);
+        return fmt::format(
+            "{} steps of {} deg go round more than once; use fewer steps or a smaller turn_deg",
+            steps,
+            turn_deg);
     }
     return std::nullopt;
 }

@@ -96,7 +96,7 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
         stride,
         1,
         16,
-        "distance between the rows and columns that are used; 1 = every row and column");
+        "distance in pixels between the rows and columns that are used; 1 = every row and column");
     visitor.number("sigma_px",
                    sigma_px,
                    0.0,
@@ -118,27 +118,38 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    1.0,
                    "share of the correlated variance that is attached to the surface and repeats "
                    "in every frame");
-    visitor.number("fixed_size_m",
-                   fixed_size_m,
-                   0.001,
-                   10.0,
-                   "size of the pattern on a surface of the noise that is attached to the surface");
     visitor.number(
-        "locking_px", locking_px, 0.0, 0.5, "amplitude of the pull towards whole disparities");
-    visitor.number(
-        "sigma_factor", sigma_factor, 0.01, 100.0, "reported sigma divided by true sigma");
+        "fixed_size_m",
+        fixed_size_m,
+        0.001,
+        10.0,
+        "correlation length, on the surface, of the noise that is attached to the surface");
+    visitor.number("locking_px",
+                   locking_px,
+                   0.0,
+                   0.5,
+                   "amplitude of the error that pulls disparities towards whole pixels");
+    visitor.number("sigma_factor",
+                   sigma_factor,
+                   0.01,
+                   100.0,
+                   "reported sigma of a disparity divided by its true sigma");
     visitor.number("jump_px",
                    shadow.jump_px,
                    0.0,
                    100.0,
                    "smallest disparity jump between neighbouring pixels that counts as an edge");
-    visitor.number("fattening_px",
-                   shadow.fattening_px,
-                   0.0,
-                   100.0,
-                   "width of the seam by which the nearer surface grows at an edge");
     visitor.number(
-        "ramp_px", shadow.ramp_px, 0.0, 250.0, "largest width of the ramps that bridge an edge");
+        "fattening_px",
+        shadow.fattening_px,
+        0.0,
+        100.0,
+        "width of the seam beside an edge that gets the disparity of the nearer surface");
+    visitor.number("ramp_px",
+                   shadow.ramp_px,
+                   0.0,
+                   250.0,
+                   "largest width of the ramps of disparities that bridge an edge");
     visitor.number("invented_share",
                    invented_share,
                    0.0,
@@ -148,20 +159,19 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    edge_suspicion,
                    0.0,
                    1.0,
-                   "outlier probability reported in seams and ramps");
+                   "outlier probability reported in the seams and ramps beside edges");
     visitor.number("plain_suspicion",
                    plain_suspicion,
                    0.0,
                    1.0,
-                   "outlier probability reported outside seams and ramps");
+                   "outlier probability reported outside the seams and ramps beside edges");
     visitor.number(
         "max_disparity_px", max_disparity_px, 1.0, 4096.0, "largest disparity of the search range");
-    visitor.number(
-        "missing_share",
-        missing_share,
-        0.0,
-        1.0,
-        "share of all other pixels that are lost in patches, without a cause in the scene");
+    visitor.number("missing_share",
+                   missing_share,
+                   0.0,
+                   1.0,
+                   "share of the pixels that are lost in patches without a cause in the scene");
     visitor.number("patch_px",
                    patch_px,
                    1.0,
@@ -181,7 +191,8 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    least_contrast,
                    0.0,
                    1.0,
-                   "contrast of a texture below which pixels are lost, in proportion");
+                   "contrast of a texture below which pixels are lost; at half of this contrast, "
+                   "half of them");
 }
 
 Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,
@@ -189,16 +200,17 @@ Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,
                                             const AnalyticStereoConfig& config,
                                             std::uint64_t seed) {
     if (config.stride < 1 || config.stride > std::min(rig.width, rig.height)) {
-        return usage_error(fmt::format(
-            "simulator: analytic stereo: stride = {} must be between 1 and the {} px of the image",
-            config.stride,
-            std::min(rig.width, rig.height)));
+        return usage_error(
+            fmt::format("simulator: analytic stereo: stride = {} must be between 1 and the {} px "
+                        "of the shorter image side",
+                        config.stride,
+                        std::min(rig.width, rig.height)));
     }
     const auto is_share = [](double value) { return value >= 0.0 && value <= 1.0; };
     if (!is_share(config.correlated_share) || !is_share(config.fixed_share)) {
         return usage_error(
             fmt::format("simulator: analytic stereo: correlated_share = {} and fixed_share = {} "
-                        "are shares of a variance, between 0 and 1",
+                        "must both be between 0 and 1",
                         config.correlated_share,
                         config.fixed_share));
     }

@@ -62,18 +62,20 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "smallest sigma of the axial noise, at depth axial_center_m");
-    visitor.number("axial_slope_1_m",
-                   axial_slope_1_m,
-                   0.0,
-                   1.0,
-                   "growth of the axial noise with the squared distance from axial_center_m");
+    visitor.number(
+        "axial_slope_1_m",
+        axial_slope_1_m,
+        0.0,
+        1.0,
+        "growth of the axial sigma per squared distance of the depth from axial_center_m");
     visitor.number(
         "axial_center_m", axial_center_m, 0.0, 10.0, "depth at which the axial noise is smallest");
-    visitor.number("axial_angle",
-                   axial_angle,
-                   0.0,
-                   1.0,
-                   "growth of the axial noise towards grazing incidence");
+    visitor.number(
+        "axial_angle",
+        axial_angle,
+        0.0,
+        1.0,
+        "factor of the part of the axial sigma that grows with the angle of incidence, in m^1.5");
     visitor.number("lateral_share",
                    lateral_share,
                    0.0,
@@ -96,12 +98,13 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
                    max_incidence_deg,
                    0.0,
                    90.0,
-                   "largest angle of incidence that is measured");
-    visitor.number("least_return",
-                   least_return,
-                   0.0,
-                   1.0,
-                   "share of returned light below which pixels are lost, in proportion");
+                   "largest angle of incidence at which a depth is measured");
+    visitor.number(
+        "least_return",
+        least_return,
+        0.0,
+        1.0,
+        "share of returned light below which pixels are lost; at half of this share, half of them");
     visitor.boolean("mixes_edges",
                     mixes_edges,
                     "true: pixels on an edge lie between the two surfaces, as with time of flight");

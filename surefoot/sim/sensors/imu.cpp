@@ -133,12 +133,12 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_density_rad_s_sqrt_hz,
                    0.0,
                    1.0,
-                   "white noise of the gyroscope");
+                   "density of the white noise of the gyroscope");
     visitor.number("accel_density_m_s2_sqrt_hz",
                    accel_density_m_s2_sqrt_hz,
                    0.0,
                    10.0,
-                   "white noise of the accelerometer");
+                   "density of the white noise of the accelerometer");
     visitor.number("gyro_bias_sigma_rad_s",
                    gyro_bias_sigma_rad_s,
                    0.0,
@@ -153,22 +153,22 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_walk_rad_s2_sqrt_hz,
                    0.0,
                    1.0,
-                   "random walk of the gyroscope's bias");
+                   "density of the random walk of the gyroscope's bias");
     visitor.number("accel_walk_m_s3_sqrt_hz",
                    accel_walk_m_s3_sqrt_hz,
                    0.0,
                    10.0,
-                   "random walk of the accelerometer's bias");
+                   "density of the random walk of the accelerometer's bias");
     visitor.number("gyro_range_rad_s",
                    gyro_range_rad_s,
                    0.0,
                    1e3,
-                   "range limit at which the gyroscope saturates; 0 = no limit");
+                   "turn rate at which the gyroscope saturates; 0 = no limit");
     visitor.number("accel_range_m_s2",
                    accel_range_m_s2,
                    0.0,
                    1e4,
-                   "range limit at which the accelerometer saturates; 0 = no limit");
+                   "acceleration at which the accelerometer saturates; 0 = no limit");
     visitor.number("gyro_step_rad_s",
                    gyro_step_rad_s,
                    0.0,

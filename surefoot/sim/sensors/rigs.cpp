@@ -117,8 +117,8 @@ Result<camera::StereoRig> rig_preset(const std::string& name) {
     const std::vector<std::string> names = rig_presets();
     const std::string likely = did_you_mean(name, names);
     return usage_error(
-        fmt::format("simulator: no file and no rig is named '{}'{} There are: {}; another "
-                    "rig can be given as a file",
+        fmt::format("simulator: no file and no rig is named '{}'{} The rigs are: {}; to use "
+                    "another rig, give its file",
                     name,
                     likely.empty() ? "." : likely,
                     fmt::join(names, ", ")));
