@@ -63,7 +63,7 @@ struct FacingSide {
 // at once and under every instruction set.
 
 /// Directions from an optical frame into the world: R_world_camera * (x, y, z)[i] for the rays
-/// [range.first, range.end); `x` is that of ray 0, and so on.
+/// [range.first, range.end). Element 0 of `x`, `y` and `z` belongs to ray 0.
 void turn_rays(const Eigen::Matrix3d& R_world_camera,
                const double* x,
                const double* y,

@@ -12,7 +12,7 @@ namespace surefoot::sim {
 
 /// When and how long pixels collect light. ExposureConfig holds the exposure time.
 struct ShutterConfig {
-    int blur_samples = 0;  ///< instants averaged over an exposure; 0 or 1 = a sharp image
+    int blur_samples = 0;  ///< number of images averaged over an exposure; 0 or 1 = a sharp image
     bool rolling = true;   ///< rows are exposed one after another if the rig has a read-out time
 
     void describe(ConfigVisitor& visitor);

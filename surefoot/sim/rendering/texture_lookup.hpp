@@ -121,7 +121,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
 inline TextureTable::Place first_tap(TextureTable::Place middle,
                                      TextureTable::Place step,
                                      int taps) noexcept {
-    // in range: an integer becomes one
+    // in range: a conversion from unsigned to signed keeps all bits
     const std::int32_t way = (taps - 1) * static_cast<std::int32_t>(step);
     return middle - static_cast<TextureTable::Place>(way >> 1);
 }

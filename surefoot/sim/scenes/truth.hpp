@@ -63,7 +63,7 @@ enum class DemReduce : std::uint8_t {
 
 struct EdgeConfig {
     double jump_m =
-        0.03;  ///< between neighbouring cells; slopes below jump / cell size are no edge
+        0.03;  ///< smallest jump between neighbours; a slope below jump / cell size is no edge
     int margin_cells = 2;  ///< also masks cells this near (larger of |dx| and |dy|)
 };
 

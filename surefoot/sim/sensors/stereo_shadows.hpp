@@ -26,8 +26,8 @@ struct ShadowMap {
 
 struct ShadowConfig {
     double jump_px = 0.5;       ///< smallest jump between neighbours on two surfaces
-    double fattening_px = 2.0;  ///< width of the seam
-    double ramp_px = 8.0;       ///< width that bridges may cover, from the jump
+    double fattening_px = 2.0;  ///< width of the seam beside the nearer surface
+    double ramp_px = 8.0;       ///< largest width of a bridge, measured from the jump
 };
 
 /// Finds shadows from exact disparities and the surface of each pixel (-1 = none). Neighbouring
