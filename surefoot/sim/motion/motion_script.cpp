@@ -22,7 +22,8 @@ struct Limits {
     double slowest_m_s;
     double fastest_m_s;
 };
-/// Speed limits: the REX takes 4 to 20 s a step; trolley and hand go up to a brisk walk.
+/// Speed limits. The REX takes 4 to 20 s per step; trolley and hand-held camera go up to a brisk
+/// walk.
 constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
 constexpr double kFarthest_m = 1000.0;
 constexpr double kLongestPause_s = 3600.0;
@@ -44,7 +45,7 @@ void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     }
 }
 
-/// Height of the path through the waypoints at its point nearest to (x, y).
+/// Height of the path through the waypoints, at the point of the path nearest to (x, y).
 double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) {
     double nearest_sq = std::numeric_limits<double>::infinity();
     double z_m = stops.front().ground_z_m;

@@ -99,7 +99,8 @@ Shot ExposureControl::shot(double since_start_s) const {
 
 void ExposureControl::settle(const Image<float>& signal_dn) {
     if (!config_.automatic) return;
-    // The mean grows with the product: bisect its logarithm.
+    // The mean grows with the product of exposure time and gain, so bisect the logarithm of the
+    // product.
     double low = least();
     double high = most();
     for (int i = 0; i < 40; ++i) {
@@ -111,7 +112,7 @@ void ExposureControl::settle(const Image<float>& signal_dn) {
 
 void ExposureControl::update(const Image<float>& signal_dn, double step_s) {
     if (!config_.automatic) return;
-    // An image below a tenth of a grey value is black: the control opens to its limit.
+    // A mean below a tenth of a grey value is black; the control then opens to its limit.
     const double mean_dn = std::max(metered_mean_dn(signal_dn, product_), 0.1);
     const double share = config_.lag_s > 0.0 ? 1.0 - std::exp(-step_s / config_.lag_s) : 1.0;
     product_ *= std::pow(config_.target_dn / mean_dn, share);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kQuantiles = 1U << 14U;
 
-/// A hash of 64 bits serves four neighbouring pixels, 14 bits each.
+/// One hash of 64 bits gives numbers to four neighbouring pixels, 14 bits to each.
 constexpr std::uint32_t kPixelsPerHash = 4;
 
 std::size_t quantile(std::uint64_t hash, std::uint32_t lane) noexcept {
@@ -33,7 +33,7 @@ double normal_quantile(double p) {
     return x;
 }
 
-/// Value that truncates to the nearest grey value; max() gives 0 for NaN.
+/// Returns a value whose integer part is the nearest grey value; max() gives 0 for NaN.
 float as_grey(float value_dn) {
     return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
 }

@@ -13,7 +13,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Appends the cells of one level, which wrap at its end.
+/// Appends the cells of one level; the level repeats beyond its border.
 void append_cells(const Image<float>& field, std::vector<std::uint32_t>& cells) {
     const int mask = field.width() - 1;
     const auto stored = [&](int x, int y) {

@@ -50,7 +50,8 @@ const Movement* movement_of(const Machine& machine, int command) {
     return movement.configured && enabled ? &movement : nullptr;
 }
 
-/// Stance on the ground under the present feet, if this ground is near the height of the pose.
+/// Stance on the ground under the feet before the movement, if this ground is near the pose's
+/// height.
 rules::Stance stance_here(const Scene& scene,
                           const Figures& figures,
                           const PlanarPose& T_world_field,
@@ -167,7 +168,8 @@ SafetyAnswer judge(const Scene& scene,
     if (!stance.known) return refused(Danger::no_stance, {here_m.x(), here_m.y(), sole_z_m});
 
     const Figures wide = rules::stricter(figures, margin.limit_share, margin.position_m);
-    constexpr double kReach_m = 1.0;  // no corner of the region moves farther by a turn
+    // A turn by an angle a moves every corner of the region by at most kReach_m * a.
+    constexpr double kReach_m = 1.0;
     const double slack_m =
         margin.position_m + kReach_m * margin.yaw_rad + 2.0 * GroundField::kSpacing_m;
     const GroundField field(

@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Limit of the nesting; deeper nesting would exhaust the stack and no scene needs it.
+/// Limit of the nesting. Deeper nesting could exhaust the stack, and no scene needs it.
 constexpr int kMaxDepth = 64;
 
 bool is_letter(char c) noexcept {
@@ -31,7 +31,7 @@ bool is_space(char c) noexcept {
 ///   sum     = product { (+|-) product }
 ///   product = factor { (*|/) factor }
 ///   factor  = (+|-) factor | number | name | ( sum )
-/// After the first error every function returns at once; its value no longer counts.
+/// After the first error every function returns at once; the value then does not count.
 class Parser {
   public:
     Parser(std::string_view text, const NamedNumbers& names) : text_(text), names_(names) {}
@@ -45,7 +45,7 @@ class Parser {
     }
 
   private:
-    /// The next character that is not a space; '\0' at the end.
+    /// Returns the next character that is not a space; '\0' at the end.
     char next() {
         while (at_ < text_.size() && is_space(text_[at_])) ++at_;
         return at_ < text_.size() ? text_[at_] : '\0';

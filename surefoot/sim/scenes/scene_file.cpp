@@ -20,10 +20,11 @@ namespace {
 
 constexpr std::uint64_t kParameterStream = 0x706172616d;
 
-/// A scene within its file.
+/// One scene of a file.
 struct Entry {
     SceneInfo info;
-    const SceneNode* figures = nullptr;  ///< the variant, or nullptr
+    /// Group of the variant; nullptr if the file has no variants.
+    const SceneNode* figures = nullptr;
     int line = 1;
 };
 
@@ -63,8 +64,8 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
     return entries;
 }
 
-/// Defines the parameters. The figures of a variant come first; each replaces the parameter of its
-/// name, which is the default of the other variants.
+/// Defines the parameters. The figures of a variant come first. A figure replaces the parameter of
+/// the same name, whose value is the default of the other variants.
 void define_parameters(SceneReader& reader,
                        const SceneNode& root,
                        const Entry& entry,
@@ -148,7 +149,7 @@ ScriptedScene build(SceneReader& reader,
     return out;
 }
 
-/// The entry of that name; the only one for an empty name.
+/// Returns the entry of that name. An empty name selects the only entry of a file.
 const Entry* choose(SceneReader& reader,
                     const std::vector<Entry>& entries,
                     const std::string& name) {
@@ -195,7 +196,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     if (reader.error()) return *reader.error();
     const Entry* entry = choose(reader, entries, name);
     if (entry == nullptr) return *reader.error();
-    // The same seed must not draw the same light and distance in every scene.
+    // Without the name, the same seed would draw the same light and distance in every scene.
     const std::uint64_t scene_seed = mix_seed(seed, fnv1a(entry->info.name));
     ScriptedScene scene = build(reader, *root, *entry, scene_seed, motion_model);
     if (reader.error()) return *reader.error();

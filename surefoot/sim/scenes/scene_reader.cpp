@@ -78,7 +78,7 @@ class GroupReader final : public ConfigVisitor {
         value = static_cast<int>(found - names.begin());
     }
 
-    /// Refuses keys of the current group that nobody has read.
+    /// Refuses keys of the current group that neither the config nor the caller reads.
     void refuse_unknown_keys(const std::vector<std::string_view>& other_keys) {
         if (levels_.back().group == nullptr) return;
         std::vector<std::string_view> known = levels_.back().asked;
@@ -88,7 +88,7 @@ class GroupReader final : public ConfigVisitor {
 
   private:
     struct Level {
-        const SceneNode* group = nullptr;  ///< nullptr where the file leaves the group out
+        const SceneNode* group = nullptr;  ///< nullptr if the file leaves the group out
         std::vector<std::string_view> asked;
     };
 
@@ -204,7 +204,7 @@ void SceneReader::define(const SceneNode& origin, const std::string& name, doubl
 void SceneReader::define_value(const SceneNode& name, const SceneNode& value) {
     if (value.kind == SceneNode::Kind::text && looks_like_a_word(value.text, numbers_)) {
         const std::string meant = word(value);
-        define(name, name.key, 0.0);  // the name must be free
+        define(name, name.key, 0.0);  // fails if the name is already used
         forget(name.key);
         words_[name.key] = meant;
         return;

@@ -22,7 +22,7 @@ struct Entry {
     const SceneFile* file = nullptr;
 };
 
-/// The scenes inside the program; read once.
+/// The scenes that are compiled into the program; read once.
 const std::vector<Entry>& index() {
     static const std::vector<Entry> all = [] {
         std::vector<Entry> entries;
@@ -67,7 +67,7 @@ Result<ScriptedScene> make_scene(const std::string& name,
         if (entry.info.name == name) return read_scene(*entry.file, name, seed, motion_model);
         names.push_back(entry.info.name);
     }
-    // A list of a hundred names would hide the likely one.
+    // The message names only the likely scene, because a list of a hundred names would hide it.
     const std::string likely = did_you_mean(name, names);
     return usage_error(
         fmt::format("simulator: no scene is named '{}'{} 'surefoot sim --list' "

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Limit of coordinates: scenes are places to walk through, not landscapes.
+/// Limit of coordinates: scenes are places to walk through, no landscapes.
 constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 
@@ -54,7 +54,7 @@ int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// Box in the frame of a place.
+/// Makes a box in the frame of a place.
 Prism placed_box(const Place& place,
                  const Vector2d& center_m,
                  const Vector2d& size_m,
@@ -329,7 +329,7 @@ std::optional<std::string> DoorSpec::problem() const {
 
 void DoorSpec::add(Site& site) const {
     const Place place = site.place.then(x_m, y_m, z_m, heading_deg);
-    // From y = `right_m` to y = `left_m` in the frame of the door.
+    // Adds a part of the wall from y = `right_m` to y = `left_m` in the frame of the door.
     const auto part =
         [&](double right_m, double left_m, double bottom_m, double top_m, int look, Label label) {
             if (left_m - right_m < kMinSize_m || top_m - bottom_m < kMinSize_m) return;

@@ -23,7 +23,8 @@ int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// One tread and its support, in the frame of the flight: along x, above z = 0 at its beginning.
+/// One tread and its support, in the frame of the flight: x along the flight, z = 0 at its
+/// beginning.
 struct Tread {
     double begin_m = 0.0;
     double end_m = 0.0;
@@ -42,7 +43,7 @@ void add_block(
                    flight.label);
 }
 
-/// Adds a solid block, or a board with or without a block under it; the block is set back by the
+/// Adds a solid block, or a board with or without a block under it. The block is set back by the
 /// nosing.
 void add_tread(
     Site& site, const FlightSpec& flight, const Place& place, Tread tread, double bottom_m) {
@@ -64,7 +65,7 @@ void add_tread(
     if (under_m - bottom_m > 1e-6) add_block(site, flight, place, support, bottom_m);
 }
 
-/// A wedge of a spiral as a convex prism; the outer border is a chain of chords.
+/// Makes a wedge of a spiral as a convex prism. A chain of chords replaces its outer arc.
 Prism wedge(const Vector2d& axis_m,
             const SpiralSpec& spiral,
             double from_rad,
@@ -158,7 +159,7 @@ void FlightSpec::add(Site& site) const {
     const double bottom_m = (up ? 0.0 : -steps * rise_m) - base_m;
     for (int step = 1; step <= steps; ++step) {
         const bool last = step == steps;
-        if (last && !up && landing_m == 0.0) break;  // the floor below follows
+        if (last && !up && landing_m == 0.0) break;  // the floor below the flight follows
         Tread tread;
         tread.begin_m = (step - 1) * going_m;
         tread.end_m = tread.begin_m + (last && landing_m > 0.0 ? landing_m : going_m);

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, and its derivatives by s.
+/// Rises from 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, with derivatives by s.
 struct Blend {
     double value;
     double first;
