@@ -48,7 +48,7 @@ struct SceneOptions {
     /// A REX under live command: it stands at the start of the scene's path and takes its steps
     /// from `SceneSource::commanded`. The run ends only after `frames`.
     bool commanded = false;
-    int frames = 0;  ///< 0 = to the end of the path
+    int frames = 0;  ///< number of frames; 0 = to the end of the path
     double rate_hz = 10.0;
     Sensor sensor = Sensor::stereo;
     ImuKind imu = ImuKind::consumer;               ///< model of the IMU; used if the rig has an IMU
@@ -84,14 +84,14 @@ struct SceneOptions {
 /// a dropped frame come with the next frame that arrives.
 class SceneSource final : public camera::FrameSource {
   public:
-    SceneSource(const SceneSource&) = delete;  // the sensors point into the truth
+    SceneSource(const SceneSource&) = delete;  // the sensors hold pointers into the truth
     SceneSource& operator=(const SceneSource&) = delete;
 
     [[nodiscard]] const camera::StereoRig& rig() const override { return truth_.rig; }
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
-    /// Fills in the images of a frame whose stamp is set; returns false if it has none.
+    /// Fills in the images of a frame whose stamp is set; returns false if there are none.
     using KnownImages = std::function<bool(StereoFrame& frame)>;
     /// Skips rendering of frames whose images `known` has from a run with the same options. Returns
     /// false, and renders all frames, if an image depends on earlier images: automatic exposure, or
@@ -114,7 +114,7 @@ class SceneSource final : public camera::FrameSource {
     /// for hours and keeps only the pose of the last frame.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// All faults of the recording. `InjectedFault::frame` counts poses of `truth().trajectory`;
-    /// frames have smaller indices, because a dropped frame has no StereoFrame.
+    /// frames that arrive have smaller indices, because a dropped frame has no StereoFrame.
     [[nodiscard]] const std::vector<InjectedFault>& faults() const noexcept { return faults_; }
     /// Exposure of the last frame (sensors with images only).
     [[nodiscard]] const Shot& last_shot() const noexcept { return shot_; }

@@ -16,8 +16,8 @@ namespace surefoot::sim {
 /// lower ends, because arms damp the motion. Peaks of the vertical acceleration are then 1.9-2.3
 /// m/s^2; its rms is 1.4 m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
-    double height_m = 1.30;   ///< base_link above the ground, held in front of the chest
-    double speed_m_s = 1.0;   ///< slower than normal walking, because the person watches a screen
+    double height_m = 1.30;   ///< height of base_link above the ground, in front of the chest
+    double speed_m_s = 1.0;   ///< walking speed; slow, because the person watches a screen
     double ramp_s = 0.8;      ///< time to reach speed_m_s
     double cadence_hz = 1.8;  ///< steps per second, both feet counted
     double bob_m = 0.016;     ///< vertical amplitude, at the cadence

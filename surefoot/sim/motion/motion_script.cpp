@@ -72,7 +72,7 @@ double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) 
 Status check_waypoint(std::size_t i, const Waypoint& stop) {
     const bool usable = std::abs(stop.x_m) <= kFarthest_m && std::abs(stop.y_m) <= kFarthest_m &&
                         std::abs(stop.ground_z_m) <= kFarthest_m &&
-                        std::abs(stop.yaw_rad) <= kFarthest_m;  // false for NaN too
+                        std::abs(stop.yaw_rad) <= kFarthest_m;  // also false for NaN
     if (!usable) {
         return usage_error(
             fmt::format("simulator: waypoint {} is at x {} y {} z {} yaw {} rad; give finite "

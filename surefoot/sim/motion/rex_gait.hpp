@@ -22,23 +22,23 @@ struct Spread {
 /// ASSUMPTION for every value except the step time and the gait trace: the model proposed in the
 /// project's safety notes. Replace the values when a recording of a real REX exists.
 struct RexGaitConfig {
-    double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
+    double step_s = 10.0;                ///< step time: 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;               ///< standing time within step_s, until the ringing stops
     double foot_clearance_m = 0.01;      ///< height of the toes of a swinging foot; ankles: 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< roll of base_link toward the standing foot
     Spread yaw_deg{1.5, 3.0};            ///< yaw of base_link toward the foot behind
-    Spread ring_hz{2.0, 6.0};            ///< structural ringing after a foot strike
+    Spread ring_hz{2.0, 6.0};            ///< frequency of the ringing after a foot strike
     Spread ring_mm{1.0, 3.0};            ///< largest vertical deflection of the ringing
     Spread ring_deg{0.1, 0.3};           ///< largest roll and pitch of the ringing
     Spread strike_m_s2{0.5, 2.0};        ///< vertical acceleration pulse of a foot strike
-    bool ground_under_body = false;      ///< query the ground below base_link instead of each sole
+    bool ground_under_body = false;      ///< true: query the ground below base_link, not the soles
 };
 
 /// Pose of one foot in the world. A foot stands flat on the ground, also on a ramp.
 struct FootState {
-    Pose T_world_sole;    ///< sole below the ankle
-    bool carries = true;  ///< stands flat; false while it swings or has its heel up
+    Pose T_world_sole;    ///< point of the sole below the ankle
+    bool carries = true;  ///< true: stands flat; false: swings or has its heel up
 };
 
 /// Quasi-static walk of the REX. A step plays the gait trace: the leading foot moves half the way,

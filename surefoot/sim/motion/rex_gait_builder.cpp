@@ -211,7 +211,7 @@ class RexMotionBuilder {
 /// Position of a sole on the ground. The ground under the middle of the sole carries the sole, so
 /// toes or heels may reach over an edge.
 Vector3d RexMotionBuilder::sole_m(Side side, const RexStand& stand) const {
-    constexpr double kMiddle_x_m = 0.057;  // machines/rex.yaml, feet
+    constexpr double kMiddle_x_m = 0.057;  // key feet of machines/rex.yaml
     constexpr double kMiddle_y_m = 0.180;
     const double c = std::cos(stand.yaw_rad);
     const double s = std::sin(stand.yaw_rad);

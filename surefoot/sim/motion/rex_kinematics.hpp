@@ -21,7 +21,7 @@ inline constexpr const char* kSideNames[] = {"left", "right"};
 namespace rex {
 inline constexpr double kUpperLeg_m = 0.430;
 inline constexpr double kLowerLeg_m = 0.416;
-inline constexpr double kAnkleHeight_m = 0.144;  ///< height above the sole
+inline constexpr double kAnkleHeight_m = 0.144;  ///< height of the ankle above the sole
 inline constexpr double kToes_m = 0.240;         ///< distance ahead of the ankle: 0.366 - 0.126 m
 /// Half the pelvis' width, 0.470 m. The ankle is straight below: the foot is centred 0.180 m beside
 /// base_link, is 0.190 m wide, and its inner edge is 0.150 m from the ankle.

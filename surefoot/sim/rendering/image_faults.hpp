@@ -31,7 +31,7 @@ struct InjectedFault {
     friend bool operator==(const InjectedFault&, const InjectedFault&) = default;
 };
 
-/// Fault probabilities per frame; a frame has at most one. Frames in `planned` get only that fault.
+/// Fault probabilities per frame. No frame has two faults; frames in `planned` get only that fault.
 struct ImageFaultConfig {
     double drop_probability = 0.0;
     double repeat_probability = 0.0;

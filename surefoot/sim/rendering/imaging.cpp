@@ -101,7 +101,7 @@ std::uint8_t exposed_pixel(const ImagingConfig& config,
     const auto read = static_cast<float>(gain * config.read_noise_dn);
     const auto shot = static_cast<float>(gain * config.shot_noise_dn);
     const float value = signal_dn + std::sqrt(read * read + shot * signal_dn) * normal;
-    return static_cast<std::uint8_t>(as_grey(value));  // in range, NaN too
+    return static_cast<std::uint8_t>(as_grey(value));  // in range: 0 to 255, also for NaN
 }
 
 void expose_row(const ImagingConfig& config,
@@ -116,7 +116,7 @@ void expose_row(const ImagingConfig& config,
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float signal = factor * signal_dn[i];
         const float value = signal + std::sqrt(read * read + shot * signal) * normals[i];
-        out[i] = static_cast<std::uint8_t>(static_cast<int>(as_grey(value)));  // in range, NaN too
+        out[i] = static_cast<std::uint8_t>(static_cast<int>(as_grey(value)));  // in range: NaN too
     }
 }
 

@@ -14,7 +14,7 @@ struct ImagingConfig {
     double exposure = 1.4;        ///< grey value of a white surface facing the lamp, share of 255
     double vignetting = 0.25;     ///< share of light lost in the image corner
     double read_noise_dn = 1.0;   ///< one sigma of the noise that does not depend on the light
-    double shot_noise_dn = 0.02;  ///< variance per grey value (inverse gain): sigma 1.6 at 128
+    double shot_noise_dn = 0.02;  ///< variance of the shot noise per grey value: sigma 1.6 at 128
     double noise_size_px = 0.0;   ///< one sigma of the Gaussian that smooths the noise, as
                                   ///< denoising and compression do; 0 = independent pixels
 

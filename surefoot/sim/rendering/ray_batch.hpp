@@ -14,8 +14,8 @@ struct RayHit {
     int face = -1;
 };
 
-/// As many rays as a block of pixels has, stored coordinate by coordinate for SIMD. Only the
-/// entries that are read are filled.
+/// Number of rays of a block of pixels. A batch stores them coordinate by coordinate for SIMD. Only
+/// the entries that are read are filled.
 inline constexpr std::size_t kBatchRays = 256;
 template <typename T>
 using BatchArray = std::array<T, kBatchRays>;

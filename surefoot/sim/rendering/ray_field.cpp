@@ -70,7 +70,7 @@ RayField::Cone RayField::enclosing(int block_x, int block_y) const {
                 smallest_cos = std::min(smallest_cos, cone.axis.dot(ray(u, v)));
         }
     }
-    constexpr double kMargin_rad = 1e-6;  // rounding of the cosine near 1
+    constexpr double kMargin_rad = 1e-6;  // margin for the rounding of the cosine near 1
     cone.half_angle_rad = std::acos(std::clamp(smallest_cos, -1.0, 1.0)) + kMargin_rad;
     cone.empty = false;
     return cone;

@@ -19,9 +19,10 @@ void ShutterConfig::describe(ConfigVisitor& visitor) {
         0,
         64,
         "number of images, taken during one exposure, that are averaged; 0 or 1 = a sharp image");
-    visitor.boolean("rolling",
-                    rolling,
-                    "true: rows are exposed one after another, if the rig has a read-out time");
+    visitor.boolean(
+        "rolling",
+        rolling,
+        "true: the rows of an image are exposed one after another if the rig has a read-out time");
 }
 
 double row_offset_s(int row, int height, double readout_s) noexcept {

@@ -56,7 +56,7 @@ struct Material {
     Pattern pattern = Pattern::carpet;
     double albedo = 0.45;    ///< mean reflectance, 0..1
     double contrast = 0.6;   ///< contrast of the pattern; 0 = uniform
-    double texel_m = 0.002;  ///< size of the finest detail
+    double texel_m = 0.002;  ///< size of the finest detail of the pattern
     double yaw_rad = 0.0;    ///< rotation of the pattern on the surface
     std::uint64_t seed = 0;  ///< shifts the pattern; combined with the seed of the scene
     Finish finish = Finish::matte;

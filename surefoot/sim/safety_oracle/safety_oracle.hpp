@@ -19,13 +19,13 @@ enum class Danger : std::uint8_t {
     unknown_command,   ///< the machine has no such movement, or its class is disabled
     unknown_pose,      ///< a number of the pose is not finite
     no_stance,         ///< a foot is not supported now, or the feet stand at two heights
-    not_level_here,    ///< the ground under the present feet is too steep [deg]
+    not_level_here,    ///< the ground under the standing feet is too steep [deg]
     no_ground,         ///< some part of a landing foot has no ground
     drop_off,          ///< a part of a landing foot lies over a drop
     edge_too_near,     ///< a drop is inside the drop band of a landing foot (value: distance)
     step_up,           ///< ground under a landing foot is higher than this movement class allows
     step_down,         ///< ground under a landing foot is lower than this movement class allows
-    tilt,              ///< the foot would stand too steep [deg]
+    tilt,              ///< a landing foot would tilt too steeply [deg]
     roughness,         ///< a patch of the sole is too far from the plane of the foot
     obstacle_in_way,   ///< an object in the path of a swinging foot (value: its height)
     body_hits,         ///< a solid in the space of the body (value: height of its underside)
@@ -56,7 +56,7 @@ struct SafetyAnswer {
     bool safe = false;  ///< false unless every rule was checked and holds
     /// The answer stays the same within the margin.
     bool clear_cut = false;
-    std::vector<Finding> dangers;  ///< one for each danger, the one that matters most first
+    std::vector<Finding> dangers;  ///< one for each danger, most important first
 
     [[nodiscard]] bool has(Danger danger) const noexcept;
     /// Describes the answer in one sentence.

@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rims belong to the solid: a point outside by at most this distance still stands on the solid.
 constexpr double kRim_m = 1e-9;
-/// A primitive does not cover a cell that overlaps it by less. This keeps the cell before a riser
-/// at the height of the floor if riser and cell border coincide.
+/// A primitive does not cover a cell that overlaps it by less than this width. This keeps the cell
+/// before a riser at the height of the floor if riser and cell border coincide.
 constexpr double kTouch_m = 1e-6;
 
 bool inside(const Rect& rect, double x_m, double y_m, double margin_m) {

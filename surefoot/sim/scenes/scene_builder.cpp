@@ -58,10 +58,12 @@ void SceneBuilder::place_one(const SceneNode& node, const Spec& spec, const Plac
     ++solids_;
     lines_.resize(static_cast<std::size_t>(scene_.primitives()), node.line);
     if (scene_.primitives() > kMaxPrimitives) {
-        reader_.fail(node,
-                     fmt::format("brings the scene to {} primitives; a scene may have at most {}",
-                                 scene_.primitives(),
-                                 kMaxPrimitives));
+        reader_.fail(
+            node,
+            fmt::format(
+                "brings the scene to {} primitives; a scene may have at most {}. Remove objects",
+                scene_.primitives(),
+                kMaxPrimitives));
     }
 }
 

@@ -59,7 +59,8 @@ class Copier {
             return fail(line, fmt::format("more than {} keys in a group", kMaxKeys));
         }
         if (out.find(key.Scalar()) != nullptr) {
-            return fail(line, fmt::format("key '{}' appears twice", key.Scalar()));
+            return fail(line,
+                        fmt::format("key '{}' appears twice; remove one of the two", key.Scalar()));
         }
         SceneNode item = copy(value, depth + 1);
         item.key = key.Scalar();

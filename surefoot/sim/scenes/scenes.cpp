@@ -28,7 +28,7 @@ const std::vector<Entry>& index() {
         std::vector<Entry> entries;
         for (const SceneFile& file : embedded_scenes()) {
             const auto infos = read_scene_infos(file);
-            SUREFOOT_ASSERT(infos.ok());  // tests read all embedded scenes
+            SUREFOOT_ASSERT(infos.ok());  // cannot fail: tests read all embedded scenes
             for (const SceneInfo& info : *infos) entries.push_back({info, &file});
         }
         return entries;
@@ -90,7 +90,7 @@ double drawn_number(const ScriptedScene& script, std::string_view name) {
                                     script.parameters.end(),
                                     [&](const SceneParameter& p) { return p.name == name; });
     SUREFOOT_ASSERT(found != script.parameters.end());
-    return std::stod(found->value);  // drawn values are written exactly
+    return std::stod(found->value);  // exact, because the text of a drawn value is exact
 }
 
 }  // namespace surefoot::sim

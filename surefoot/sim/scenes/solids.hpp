@@ -142,7 +142,7 @@ struct WallsSpec {
     void add(Site& site) const;
 };
 
-/// A board on four legs; a seat when it is low.
+/// A board on four legs: a table, or a seat if it is low.
 struct TableSpec {
     MaterialNames materials;
     int material = kRequiredChoice;
@@ -207,10 +207,10 @@ struct FlightSpec {
     double rise_m = kRequired;
     double going_m = kRequired;
     double width_m = kRequired;
-    double landing_m = 0.0;           ///< depth; 0 = the last tread of an upward flight is normal
+    double landing_m = 0.0;           ///< landing depth; 0 = the last tread up is a normal tread
     double base_m = 0.0;              ///< depth of the solid below the lower end of the flight
     double nosing_m = 0.0;            ///< overhang of each tread over its riser
-    double tread_thickness_m = 0.04;  ///< used if the stairs have a nosing or no risers
+    double tread_thickness_m = 0.04;  ///< tread thickness; used with a nosing or without risers
     bool open = false;                ///< true: the flight has no risers
     double rise_variation_m = 0.0;    ///< largest deviation of a rise; the sum of rises is exact
     void describe(ConfigVisitor& visitor);

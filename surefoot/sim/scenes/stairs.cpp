@@ -72,7 +72,7 @@ Prism wedge(const Vector2d& axis_m,
             double to_rad,
             double bottom_m,
             double top_m) {
-    constexpr int kChords = 6;  // 1 mm of sagitta at 1 m and 30 deg
+    constexpr int kChords = 6;  // at 1 m and 30 deg the chords are 1 mm off the arc
     const auto corner = [&](double radius_m, double angle_rad) -> Vector2d {
         return axis_m + radius_m * Vector2d(std::cos(angle_rad), std::sin(angle_rad));
     };

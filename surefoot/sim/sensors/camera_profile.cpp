@@ -36,7 +36,7 @@ void apply_profile(CameraProfile profile, double noise, CameraConfig& camera) {
     const ProfileFigures figures = figures_of(profile);
     ImagingConfig& imaging = camera.imaging;
     imaging.read_noise_dn = noise * std::hypot(imaging.read_noise_dn, figures.noise_dn);
-    imaging.shot_noise_dn *= noise * noise;  // a variance
+    imaging.shot_noise_dn *= noise * noise;  // shot_noise_dn is a variance
     if (imaging.noise_size_px == 0.0) imaging.noise_size_px = figures.noise_size_px;
     camera.optics.smear_sigma_px = std::hypot(camera.optics.smear_sigma_px, figures.smear_sigma_px);
 }

@@ -23,7 +23,7 @@ struct DepthCameraConfig {
     double axial_offset_m = 0.0012;
     double axial_slope_1_m = 0.0019;  ///< factor of the squared distance from the centre [1/m]
     double axial_center_m = 0.4;
-    double axial_angle = 0.0001;         ///< factor of the term of the incidence [m^1.5]
+    double axial_angle = 0.0001;         ///< factor of the term with the angle theta [m^1.5]
     double lateral_share = 0.001376915;  ///< share of z, in the image plane: 0.8 px of a Kinect
     double min_range_m = 0.35;           ///< smallest z for which the model is valid
     double max_range_m = 3.0;
@@ -33,7 +33,7 @@ struct DepthCameraConfig {
     /// Structured light: disparities are quantised to 1/8 px (same paper). The axial noise already
     /// includes this part. 0 = none.
     double disparity_step_px = 0.125;
-    double max_incidence_deg = 80.0;  ///< ASSUMPTION: nothing is measured at grazing incidence
+    double max_incidence_deg = 80.0;  ///< ASSUMPTION: nothing is measured at a larger incidence
     /// ASSUMPTION: share of returned light (reflectance times cosine) below which pixels are lost;
     /// at half of this share, half of them are lost.
     double least_return = 0.06;

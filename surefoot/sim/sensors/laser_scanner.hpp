@@ -31,7 +31,7 @@ struct LaserScannerConfig {
     double elevation_min_deg =
         -62.5;  ///< elevation of the first row; the field of view is 305 deg, through the zenith
     double elevation_max_deg = 90.0;
-    double step_deg = 0.036;     ///< 4 steps of 0.009 deg: 10 000 columns of 4237 points
+    double step_deg = 0.036;     ///< beam spacing, 4 x 0.009 deg: 10 000 columns of 4237 points
     double min_range_m = 0.6;    ///< smallest range, along the beam
     double max_range_m = 120.0;  ///< largest range for 90 % reflectance; shorter if dark or slanted
     double noise_floor_m = 0.575e-3;
@@ -83,7 +83,7 @@ class LaserScanner {
         std::vector<Eigen::Vector3d> directions_scanner;
         std::vector<Eigen::Vector3d> directions;  ///< world
         std::vector<RayHit> hits;
-        std::vector<Eigen::Vector3d> ring;  ///< four per beam, one after another
+        std::vector<Eigen::Vector3d> ring;  ///< four rays per beam, one beam after another
         std::vector<RayHit> ring_hits;
     };
     void scan_column(const Pose& T_world_scanner,

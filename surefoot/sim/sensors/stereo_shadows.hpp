@@ -13,7 +13,7 @@ enum class Shadow : std::uint8_t {
     none,      ///< both cameras see the same point
     fattened,  ///< near a closer surface: the window takes that surface's disparity
     ramp,      ///< both cameras see the point, but a smooth matcher may bridge to a nearer surface
-    occluded,  ///< hidden from the right camera: a bridge, or unknown
+    occluded,  ///< hidden from the right camera: bridged or unknown
     outside,   ///< outside the right image
 };
 
