@@ -54,7 +54,7 @@ StampedPose pose_of_frame(const Motion& motion, int frame, double rate_hz) {
 }
 
 Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, double rate_hz) {
-    // Half a nanosecond of slack: the last frame belongs to the path when it falls on its end.
+    // Slack of 1e-6 frames: a last frame that falls on the end of the path belongs to the path.
     const double last_frame = std::floor(motion.duration_s() * rate_hz + 1e-6);
     const int count = frames > 0 ? frames : saturated_integer<int>(last_frame + 1.0);
     if (count > kMaxFrames) {
@@ -72,7 +72,7 @@ Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, doubl
     return poses;
 }
 
-/// The depth camera, at the position of the left camera of `rig`.
+/// Returns the rig of the depth camera, at the position of the left camera of `rig`.
 camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) {
     if (!rig.right) return rig;
     camera::StereoRig single = rig;
@@ -85,7 +85,7 @@ camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) 
     return single;
 }
 
-/// The renderer needs pairs: a depth camera gets an unused right camera.
+/// Adds an unused right camera to a depth camera, because the renderer needs pairs.
 camera::StereoRig as_pair(const camera::StereoRig& single) {
     camera::StereoRig pair = single;
     pair.right = single.left;
@@ -93,7 +93,7 @@ camera::StereoRig as_pair(const camera::StereoRig& single) {
     return pair;
 }
 
-/// The stereo camera whose raw images are those of `view`.
+/// Returns the stereo camera whose raw images are the rectified images of `view`.
 camera::StereoRig rectified_rig(const camera::StereoRig& rig, const camera::RectifiedRig& view) {
     camera::PinholeRadTan lens;
     lens.fx_px = view.fx_px;
@@ -111,7 +111,7 @@ camera::StereoRig rectified_rig(const camera::StereoRig& rig, const camera::Rect
     return ideal;
 }
 
-/// Whether a fault needs images: only images can be torn or repeated.
+/// Whether a fault needs images. A dropped frame needs none.
 bool needs_images(const ImageFaultConfig& faults) {
     return faults.repeat_probability > 0.0 || faults.tear_probability > 0.0 ||
            faults.freeze_probability > 0.0 ||
@@ -136,7 +136,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor",
                         sensor,
                         kSensorNames,
-                        "sensor that records the scene; analytic computes depth without images");
+                        "sensor that records the scene; 'analytic' computes depth without images");
     visitor.enumeration("motion_model",
                         motion_model,
                         kCarriedByNames,
@@ -285,7 +285,7 @@ Status SceneSource::let_command(const SceneOptions& options, const MotionScript&
 }
 
 double SceneSource::now_s() const noexcept {
-    // Half a frame after the last stamp: exposures and rolling shutters end earlier.
+    // The time is half a frame after the last stamp. Exposures and rolling shutters end earlier.
     const double frames = next_pose_ == 0 ? 0.0 : static_cast<double>(next_pose_) - 0.5;
     return frames / rate_hz_;
 }
@@ -294,7 +294,7 @@ std::optional<RexJoints> SceneSource::rex_joints(std::int64_t time_ns) const {
     return walker_->rex_joints(seconds_from_ns(time_ns - kStart_ns));
 }
 
-/// For a commanded source this sets the pose of the next frame.
+/// Also sets the pose of the next frame of a commanded source.
 bool SceneSource::has_next() {
     if (!commanded_) return next_pose_ < truth_.trajectory.size();
     if (next_pose_ == frame_limit_) return false;
@@ -302,7 +302,7 @@ bool SceneSource::has_next() {
     return true;
 }
 
-/// Sets the rig of the truth: the rig that the frames claim to come from.
+/// Sets the rig of the truth, which is the rig that the frames claim to come from.
 Status SceneSource::make_sensor(const SceneOptions& options, const camera::StereoRig& rig) {
     switch (options.sensor) {
         case Sensor::stereo: truth_.rig = rig; return make_renderer(options);
@@ -344,14 +344,15 @@ Status SceneSource::make_depth_camera(const SceneOptions& options) {
 
 Status SceneSource::make_analytic(const SceneOptions& options, const camera::StereoRig& rig) {
     if (!rig.right) {
-        return usage_error(fmt::format(
-            "simulator: rig '{}' has no right camera; sim.sensor = analytic models stereo matching",
-            rig.name));
+        return usage_error(
+            fmt::format("simulator: rig '{}' has no right camera, but sim.sensor = analytic models "
+                        "stereo matching; use a stereo rig",
+                        rig.name));
     }
     if (needs_images(options.faults)) {
         return usage_error(
             "simulator: sim.sensor = analytic makes no images that could be torn, repeated or "
-            "frozen; of sim.faults only drop_probability can be used with it");
+            "frozen; of sim.faults, set only drop_probability");
     }
     const auto rectifier = camera::Rectifier::make(rig);
     if (!rectifier) return rectifier.error();
@@ -369,7 +370,7 @@ Pose SceneSource::carried_body(const StampedPose& now) const {
     return motion_->at(seconds_from_ns(now.time_ns - kStart_ns)).T_world_body;
 }
 
-/// Exposes both cameras at a stamp. The exposure control continues even if the images get lost.
+/// Exposes both cameras at a stamp. The exposure control continues even if the images are lost.
 void SceneSource::take_pictures(const StampedPose& now) {
     const double since_start_s = seconds_from_ns(now.time_ns - kStart_ns);
     std::swap(older_left_, pair_.left);
@@ -404,7 +405,7 @@ void SceneSource::damage(const InjectedFault* fault) {
     tear(older_depth_m_, fault->tear_row, shown_depth_m_);
 }
 
-/// Depth that the processing chain would compute from images; they are not rendered.
+/// Returns the depth that the processing chain would compute from images. It renders no images.
 DepthImage SceneSource::model_depth(const StampedPose& now) {
     DepthImage depth;
     const int frame = static_cast<int>(next_pose_);

@@ -42,25 +42,25 @@ inline constexpr const char* kCarriedByNames[] = {"scene", "trolley", "rex", "ha
 struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";         ///< ignored if `rig` is set
-    std::optional<camera::StereoRig> rig;       ///< any stereo rig; keeps its T_body_left
+    std::optional<camera::StereoRig> rig;       ///< replaces `rig_preset`; keeps its T_body_left
     std::uint64_t seed = 1;                     ///< seed of textures, noise and path offsets
     CarriedBy motion_model = CarriedBy::scene;  ///< error if it cannot follow the scene's path
     /// A REX under live command: it stands at the start of the scene's path and takes its steps
     /// from `SceneSource::commanded`. The run ends only after `frames`.
     bool commanded = false;
-    int frames = 0;  ///< 0 = to the end of the path
+    int frames = 0;  ///< number of frames; 0 = to the end of the path
     double rate_hz = 10.0;
     Sensor sensor = Sensor::stereo;
-    ImuKind imu = ImuKind::consumer;               ///< inertial samples, if the rig has an IMU
+    ImuKind imu = ImuKind::consumer;               ///< model of the IMU; used if the rig has an IMU
     CameraProfile profile = CameraProfile::ideal;  ///< errors of a real camera, added to `camera`
     double noise = 1.0;                  ///< factor on every noise amplitude of images and depths
-    CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
+    CameraConfig camera;                 ///< settings of imaging, optics, shutter and exposure
     double contrast = 1.0;               ///< factor on the contrast of every material
-    CalibrationError calibration_error;  ///< error of the images; `rig()` stays nominal
+    CalibrationError calibration_error;  ///< changes only the images; `rig()` stays nominal
     ImageFaultConfig faults;
-    KnockConfig knock;  ///< the true poses are the machine's, before and after the knock
+    KnockConfig knock;  ///< the true poses are those of the machine, also after the knock
     ImuNoiseConfig imu_noise = imu_noise_of(imu);
-    /// Also its lens, unless `rig` is an RGB-D rig. It sits at the place of the left camera.
+    /// Model of errors and lens (an RGB-D `rig` keeps its lens), at the place of the left camera.
     DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
     DepthCameraConfig depth_errors = depth_camera_preset(depth_camera).config;
     AnalyticStereoConfig analytic;
@@ -69,8 +69,8 @@ struct SceneOptions {
     /// measurement. The analytic sensor always carries known motion.
     bool known_motion = false;
     DriftConfig drift;
-    /// Frames carry the machine's own motion estimate: the true motion with this error. The default
-    /// is a guess for joints that are read to a few tenths of a degree.
+    /// Frames carry the machine's motion estimate: the true motion with `machine_drift`. The
+    /// default is a guess for joints that are read to a few tenths of a degree.
     bool machine_motion = false;
     DriftConfig machine_drift = {.position_m_sqrt_m = 0.01, .turn_deg_sqrt_m = 0.5};
 
@@ -84,14 +84,14 @@ struct SceneOptions {
 /// a dropped frame come with the next frame that arrives.
 class SceneSource final : public camera::FrameSource {
   public:
-    SceneSource(const SceneSource&) = delete;  // the sensors point into the truth
+    SceneSource(const SceneSource&) = delete;  // the sensors hold pointers into the truth
     SceneSource& operator=(const SceneSource&) = delete;
 
     [[nodiscard]] const camera::StereoRig& rig() const override { return truth_.rig; }
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
-    /// Fills in the images of a frame whose stamp is set; returns false if it has none.
+    /// Fills in the images of a frame whose stamp is set; returns false if there are none.
     using KnownImages = std::function<bool(StereoFrame& frame)>;
     /// Skips rendering of frames whose images `known` has from a run with the same options. Returns
     /// false, and renders all frames, if an image depends on earlier images: automatic exposure, or
@@ -107,14 +107,14 @@ class SceneSource final : public camera::FrameSource {
     }
     /// Earliest motion time that no frame has exposed yet.
     [[nodiscard]] double now_s() const noexcept;
-    /// Joint angles of a REX at the time of a frame; no value for the other motion models. A
-    /// commanded motion has dropped the steps that it was told to forget.
+    /// Joint angles of a REX at the time of a frame; no value for the other motion models. For
+    /// forgotten steps of a commanded motion see CommandedMotion::forget_before.
     [[nodiscard]] std::optional<RexJoints> rex_joints(std::int64_t time_ns) const;
     /// The scene and the poses of all frames, future frames included. A commanded source can run
     /// for hours and keeps only the pose of the last frame.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// All faults of the recording. `InjectedFault::frame` counts poses of `truth().trajectory`;
-    /// frames have smaller indices, because a dropped frame has no StereoFrame.
+    /// frames that arrive have smaller indices, because a dropped frame has no StereoFrame.
     [[nodiscard]] const std::vector<InjectedFault>& faults() const noexcept { return faults_; }
     /// Exposure of the last frame (sensors with images only).
     [[nodiscard]] const Shot& last_shot() const noexcept { return shot_; }
@@ -134,7 +134,7 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] Status make_renderer(const SceneOptions& options);
     [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
     [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
-    /// Pose of base_link as the camera sees it: equal to the machine's until the camera is knocked.
+    /// Pose of base_link as the camera sees it: that of the machine until the camera is knocked.
     [[nodiscard]] Pose carried_body(const StampedPose& now) const;
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
@@ -160,7 +160,7 @@ class SceneSource final : public camera::FrameSource {
     CleanPair clean_;
     Shot shot_;
     RenderedPair pair_;     ///< images of the last exposure, without faults
-    GreyImage older_left_;  ///< left image of the exposure before
+    GreyImage older_left_;  ///< left image of the previous exposure
     GreyImage older_right_;
     GreyImage shown_left_;  ///< left image as delivered
     GreyImage shown_right_;

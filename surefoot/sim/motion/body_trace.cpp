@@ -37,8 +37,8 @@ LinkBox trunk_box(double length_m, double width_m, double low_m, double high_m) 
             {0.5 * length_m, 0.5 * width_m, high_m - rex::kStand_m}};
 }
 
-/// Extends the boxes by points of the parts. A point extends the box least if it is expressed in
-/// the base_link pose that brings it nearest to the present box.
+/// Extends the boxes by points of the parts. Each point is expressed in the base_link pose that
+/// brings it nearest to the box, so that it extends the box least.
 class Boxes {
   public:
     explicit Boxes(const RexMovement& still) : movement_(still) {

@@ -78,10 +78,13 @@ Result<StepEvent> CommandedMotion::step(int command, double time_s) {
     const auto movement = std::find_if(
         movements_.begin(), movements_.end(), [&](const auto& m) { return m.command == command; });
     if (movement == movements_.end())
-        return usage_error(fmt::format("simulated REX: it has no movement {}", command));
+        return usage_error(fmt::format(
+            "simulated REX: no movement has the command {}; send a command of the machine file",
+            command));
     if (time_s < free_s_)
         return usage_error(
-            fmt::format("simulated REX: a step at {:.2f} s, but the last one ends at {:.2f} s",
+            fmt::format("simulated REX: a step cannot begin at {:.2f} s, because the last step "
+                        "ends at {:.2f} s; begin it later",
                         time_s,
                         free_s_));
     RexPlan plan;

@@ -67,7 +67,7 @@ TEST(CommandedMotionTest, WhatItCannotDoIsRefusedAndChangesNothing) {
     ASSERT_TRUE(step.ok());
     const auto during = motion->step(kForward, 5.0);
     ASSERT_FALSE(during.ok());
-    EXPECT_NE(during.error().message.find("the last one ends at"), std::string::npos);
+    EXPECT_NE(during.error().message.find("the last step ends at"), std::string::npos);
     EXPECT_EQ(motion->steps().size(), 1U);
     EXPECT_TRUE(motion->step(kForward, motion->duration_s()).ok());
 }

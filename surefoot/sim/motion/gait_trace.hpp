@@ -19,9 +19,9 @@ struct GaitSample {
 };
 
 /// One forward step of the REX, simulated in V-REX (M. Lange, "Viability of Commercial Depth
-/// Sensors for the REX Medical Exoskeleton", 2016): right foot half a step, left a full one, right
-/// closes. Angles are relative to the pelvis, which stays upright in that record. 64 samples at
-/// equal intervals: 12.6 s at 5 Hz; through the kinematics they advance 0.51 m.
+/// Sensors for the REX Medical Exoskeleton", 2016): the right foot moves half a step, the left a
+/// full step, then the right closes. Angles are relative to the upright pelvis. 64 samples at equal
+/// intervals: 12.6 s at 5 Hz; through the kinematics they advance 0.51 m.
 [[nodiscard]] std::span<const GaitSample> gait_trace() noexcept;
 
 /// Link angle of a foot that stands flat: the constant offset between foot link and sole.

@@ -23,7 +23,7 @@ TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& conf
     return TrolleyMotion::trolley(waypoints, trolley);
 }
 
-/// Samples of an envelope over the whole path; the first and the last sample are zero.
+/// Samples an envelope over the whole path; the first and the last sample are zero.
 template <typename Value>
 SmoothCurve envelope(const TrolleyMotion& way, Value value) {
     const int count = std::max(1, saturated_integer<int>(way.duration_s() / kFade_s) - 1);
@@ -87,7 +87,7 @@ MotionState HandMotion::at(double time_s) const {
         moves[axis] = walking * steps_[axis].at(t_s) +
                       alive * (drifts_[axis][0].at(t_s) + drifts_[axis][1].at(t_s));
     }
-    // The path is level: its yaw turns about the body's z axis alone.
+    // The path is level, so its yaw turns about the z axis of the body only.
     const Jet yaw{yaw_rad(base.T_world_body),
                   base.angular_velocity_body_rad_s.z(),
                   base.angular_acceleration_body_rad_s2.z()};

@@ -12,22 +12,22 @@
 namespace surefoot::sim {
 
 /// A camera that a walking person carries. All amplitudes are an ASSUMPTION: ordinary walking has
-/// 1.8-2 steps a second and 30-40 mm of vertical motion, peak to peak. We take the lower ends
-/// because arms damp them: peaks of the vertical acceleration are 1.9-2.3 m/s^2, its rms is 1.4
-/// m/s^2. Every amplitude varies by 10 % with the seed.
+/// 1.8-2 steps a second and 30-40 mm of vertical motion, peak to peak. The defaults are at the
+/// lower ends, because arms damp the motion. Peaks of the vertical acceleration are then 1.9-2.3
+/// m/s^2; its rms is 1.4 m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
-    double height_m = 1.30;   ///< base_link above the ground, held in front of the chest
-    double speed_m_s = 1.0;   ///< slower than normal walking, because the person watches a screen
-    double ramp_s = 0.8;      ///< time to reach that speed
-    double cadence_hz = 1.8;  ///< steps of both feet
-    double bob_m = 0.016;     ///< amplitude, at the cadence
-    double surge_m = 0.006;   ///< fore and aft, at the cadence
-    double sway_m = 0.015;    ///< sideways, at half the cadence: one sway every two steps
-    double roll_deg = 1.5;    ///< roll at half the cadence
-    double pitch_deg = 1.0;   ///< pitch at the cadence
-    double yaw_deg = 1.5;     ///< yaw at half the cadence
-    double drift_deg = 1.5;   ///< slow drift of roll, pitch and yaw, also while standing
-    double drift_m = 0.008;   ///< slow drift of the hands
+    double height_m = 1.30;   ///< height of base_link above the ground, in front of the chest
+    double speed_m_s = 1.0;   ///< walking speed; slow, because the person watches a screen
+    double ramp_s = 0.8;      ///< time to reach speed_m_s
+    double cadence_hz = 1.8;  ///< steps per second, both feet counted
+    double bob_m = 0.016;     ///< vertical amplitude, at the cadence
+    double surge_m = 0.006;   ///< amplitude fore and aft, at the cadence
+    double sway_m = 0.015;    ///< amplitude sideways, at half the cadence: one sway in two steps
+    double roll_deg = 1.5;    ///< amplitude of the roll, at half the cadence
+    double pitch_deg = 1.0;   ///< amplitude of the pitch, at the cadence
+    double yaw_deg = 1.5;     ///< amplitude of the yaw, at half the cadence
+    double drift_deg = 1.5;   ///< amplitude of the slow drift of roll, pitch and yaw, also at rest
+    double drift_m = 0.008;   ///< amplitude of the slow drift of the hands
 };
 
 /// Hand-held camera: the level path of a trolley plus periodic and slow movements. The gait part
@@ -56,7 +56,7 @@ class HandMotion final : public Motion {
     static constexpr std::size_t kAxes = 6;
 
     TrolleyMotion way_;
-    SmoothCurve walking_;  ///< 0 standing, 1 at full speed
+    SmoothCurve walking_;  ///< 0 while standing, 1 at full speed
     SmoothCurve alive_;    ///< 0 at the start and at the end of the motion
     std::array<Wave, kAxes> steps_;
     std::array<std::array<Wave, 2>, kAxes> drifts_;

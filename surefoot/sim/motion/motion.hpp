@@ -18,9 +18,9 @@ struct MotionState {
     Eigen::Vector3d angular_acceleration_body_rad_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Pose of base_link over time, available at any time, because images and inertial samples lie
-/// between the frames too. Immutable and safe to query from several threads. The body stands still
-/// before the start and after the end.
+/// Pose of base_link over time. It can be queried at any time, because image rows and inertial
+/// samples lie between the frame stamps. Immutable and safe to query from several threads. The body
+/// stands still before the start and after the end.
 class Motion {
   public:
     virtual ~Motion() = default;

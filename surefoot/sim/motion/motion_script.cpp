@@ -22,7 +22,8 @@ struct Limits {
     double slowest_m_s;
     double fastest_m_s;
 };
-/// Speed limits: the REX takes 4 to 20 s a step; trolley and hand go up to a brisk walk.
+/// Speed limits. The REX takes 4 to 20 s per step; trolley and hand-held camera go up to a brisk
+/// walk.
 constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
 constexpr double kFarthest_m = 1000.0;
 constexpr double kLongestPause_s = 3600.0;
@@ -44,7 +45,7 @@ void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     }
 }
 
-/// Height of the path through the waypoints at its point nearest to (x, y).
+/// Height of the path through the waypoints, at the point of the path nearest to (x, y).
 double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) {
     double nearest_sq = std::numeric_limits<double>::infinity();
     double z_m = stops.front().ground_z_m;
@@ -71,11 +72,11 @@ double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) 
 Status check_waypoint(std::size_t i, const Waypoint& stop) {
     const bool usable = std::abs(stop.x_m) <= kFarthest_m && std::abs(stop.y_m) <= kFarthest_m &&
                         std::abs(stop.ground_z_m) <= kFarthest_m &&
-                        std::abs(stop.yaw_rad) <= kFarthest_m;  // false for NaN too
+                        std::abs(stop.yaw_rad) <= kFarthest_m;  // also false for NaN
     if (!usable) {
         return usage_error(
             fmt::format("simulator: waypoint {} is at x {} y {} z {} yaw {} rad; give finite "
-                        "numbers up to {:.0f}",
+                        "numbers with a magnitude up to {:.0f}",
                         i,
                         stop.x_m,
                         stop.y_m,
@@ -114,8 +115,8 @@ Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
         return usage_error(
-            fmt::format("simulator: height_m is allowed for a hand only; a {} has a fixed height; "
-                        "remove height_m",
+            fmt::format("simulator: height_m is allowed for a hand only, because a {} has a fixed "
+                        "height; remove height_m",
                         kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
@@ -127,7 +128,8 @@ Status check_height(const MotionScript& script) {
 }
 
 Status check(const MotionScript& script) {
-    if (script.waypoints.empty()) return usage_error("simulator: a motion has no waypoint");
+    if (script.waypoints.empty())
+        return usage_error("simulator: a motion has no waypoint; add at least one");
     const auto motion_model = static_cast<std::size_t>(script.motion_model);
     const Limits& speeds = kSpeeds[motion_model];
     if (script.speed_m_s != 0.0 &&

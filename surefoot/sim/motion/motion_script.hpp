@@ -19,7 +19,7 @@ inline constexpr const char* kMotionModelNames[] = {"trolley", "rex", "hand"};
 /// A path through a scene, as its scene file describes it.
 struct MotionScript {
     MotionModel motion_model = MotionModel::trolley;
-    /// 0 = model default. For the REX: step length ahead divided by step duration.
+    /// 0 = default of the motion model. For the REX: step length ahead divided by step duration.
     double speed_m_s = 0.0;
     /// Height of base_link above the ground, hand-held only; 0 = default of the motion model.
     double height_m = 0.0;
@@ -31,7 +31,7 @@ struct StepEvent {
     double start_s = 0.0;  ///< time of the joystick code; the machine still stands
     double end_s = 0.0;    ///< time from which the machine stands again
     int command = 0;       ///< joystick code of the machine file
-    Pose T_world_before;   ///< base_link standing, level
+    Pose T_world_before;   ///< base_link of the standing machine, level
     Pose T_world_after;
 };
 
@@ -48,11 +48,11 @@ struct ScriptedMotion {
 };
 
 /// Builds the motion of a script. The seed moves all waypoints but the first by about a centimetre
-/// and a third of a degree, and draws the irregularities. An unwalkable script is a usage error.
+/// and a third of a degree, and draws small irregularities. An unwalkable script is a usage error.
 ///
 /// The feet of the REX land on `ground_z_m`, queried under the middle of each sole. Without this
 /// function the ground is linear between the waypoint heights, queried under base_link. The other
-/// motion models ignore it and follow the waypoints alone.
+/// motion models ignore this function and follow the waypoints alone.
 [[nodiscard]] Result<ScriptedMotion> make_motion(const MotionScript& script,
                                                  std::uint64_t seed,
                                                  const GroundHeight& ground_z_m = {});

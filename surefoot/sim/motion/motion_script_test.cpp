@@ -32,7 +32,7 @@ std::string refusal(const MotionScript& script) {
 
 TEST(MotionScriptTest, ImpossibleScriptsAreRefusedInWords) {
     MotionScript script;
-    EXPECT_EQ(refusal(script), "simulator: a motion has no waypoint");
+    EXPECT_EQ(refusal(script), "simulator: a motion has no waypoint; add at least one");
     script.waypoints = {{}, {std::numeric_limits<double>::quiet_NaN(), 0.0}};
     EXPECT_NE(refusal(script).find("waypoint 1 is at x nan"), std::string::npos);
     script.waypoints = {{0.0, 0.0, 0.0, -1.0}};

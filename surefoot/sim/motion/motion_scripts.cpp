@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kQuarter_rad = 0.5 * std::numbers::pi;
 constexpr double kHalf_rad = std::numbers::pi;
-constexpr double kLook_s = 1.0;   ///< standing before the first movement
-constexpr double kPause_s = 0.5;  ///< between movements
+constexpr double kLook_s = 1.0;   ///< standing time before the first movement
+constexpr double kPause_s = 0.5;  ///< standing time between two movements
 
 MotionScript through(MotionModel motion_model, std::vector<Waypoint> stops) {
     MotionScript script;
@@ -41,7 +41,7 @@ MotionScript turn_round_script(MotionModel motion_model, double turn_rad) {
 }
 
 MotionScript back_to_table_script(MotionModel motion_model, double table_x_m, double left_m) {
-    // The machine extends 0.33 m behind base_link: it stops about 0.1 m before the table.
+    // The machine extends 0.33 m behind base_link, so it stops about 0.1 m before the table.
     constexpr double kBehind_m = 0.45;
     return through(motion_model,
                    {kStart,
@@ -54,7 +54,7 @@ MotionScript sidestep_through_door_script(MotionModel motion_model,
                                           double door_x_m,
                                           double door_y_m,
                                           double beyond_m) {
-    // Half the machine's depth, 0.33 m, and its sway need room to turn.
+    // The machine needs room to turn: half of its depth (0.33 m) and its sway.
     constexpr double kBefore_m = 0.6;
     const double before_x_m = door_x_m - kBefore_m;
     return through(motion_model,

@@ -26,7 +26,7 @@ struct PlanarPose {
                 cos_yaw * T_b_c.cos_yaw - sin_yaw * T_b_c.sin_yaw,
                 sin_yaw * T_b_c.cos_yaw + cos_yaw * T_b_c.sin_yaw};
     }
-    /// p_b of a point given in a.
+    /// Returns p_b of a point that is given in frame a.
     [[nodiscard]] Eigen::Vector2d inverse_times(const Eigen::Vector2d& p_a) const {
         const Eigen::Vector2d d = p_a - position_m;
         return {cos_yaw * d.x() + sin_yaw * d.y(), -sin_yaw * d.x() + cos_yaw * d.y()};

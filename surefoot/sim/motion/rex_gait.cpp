@@ -12,17 +12,17 @@ namespace {
 
 constexpr double kRing_s = 1.2;  ///< duration of a ringing
 constexpr double kHanging_rad =
-    3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: toes of a swinging foot
+    3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: a swinging foot's toes hang down by this angle
 constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: length of a foot strike
 
-/// u^n of a time that runs from 0 to 1 within `length_s`.
+/// u^n and its derivatives by time, for u that rises from 0 to 1 within `length_s`.
 Jet power(double u, double length_s, int n) {
     return {std::pow(u, n),
             n * std::pow(u, n - 1) / length_s,
             n * (n - 1) * std::pow(u, n - 2) / (length_s * length_s)};
 }
 
-/// u^n of a time that runs from 1 to 0.
+/// (1 - u)^n and its derivatives by time.
 Jet falling_power(double u, double length_s, int n) {
     Jet jet = power(1.0 - u, length_s, n);
     jet.rate = -jet.rate;
@@ -44,7 +44,7 @@ Jet strike_dip(double t_s) {
            (power(u, kPulse_s, 3) * falling_power(u, kPulse_s, 3));
 }
 
-/// A sole turned about its toes, heel up.
+/// Pose of a sole that is turned about its toes, with the heel up.
 Pose about_toes(double lift_rad) {
     const Eigen::Vector3d toes_m(rex::kToes_m, 0.0, 0.0);
     Pose T;
@@ -55,8 +55,8 @@ Pose about_toes(double lift_rad) {
 
 }  // namespace
 
-/// Share of its tilt that a foot has: the heel rises before the swing and falls during it, or rises
-/// during the swing and falls after it.
+/// Share of its full tilt that a foot has. The heel rises before the swing and falls during it, or
+/// rises during the swing and falls after it.
 double RexMotion::lifted(const Swing& swing, double time_s, double share) {
     if (swing.heel_up_s < swing.start_s) {
         if (time_s >= swing.start_s) return 1.0 - share;
@@ -121,12 +121,12 @@ FootState RexMotion::foot(Side side, double time_s) const {
         (time_s - swing.start_s) / std::max(swing.end_s - swing.start_s, 1e-9), 0.0, 1.0);
     const double share = eased(u);
     Eigen::Vector3d at_m = swing.from_m + share * (swing.to_m - swing.from_m);
-    // Up first, then over the edge; down only behind it.
+    // The foot rises before it moves over the edge, and comes down only behind the edge.
     const double rise_m = swing.to_m.z() - swing.from_m.z();
     at_m.z() = swing.from_m.z() + rise_m * eased(rise_m > 0.0 ? 2.0 * u : 2.0 * u - 1.0);
     const double yaw_rad = swing.from_yaw_rad + share * (swing.to_yaw_rad - swing.from_yaw_rad);
     const Eigen::Quaterniond flat(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()));
-    // While it swings the toes also hang down a little: the ankle need not bend so far.
+    // During the swing the toes also hang down a little, so that the ankle need not bend so far.
     const double bump = 64.0 * std::pow(u * (1.0 - u), 3);
     at_m.z() += swing.clearance_m * bump;
     const double tilt_rad = swing.lift_rad * lifted(swing, time_s, share) + kHanging_rad * bump;

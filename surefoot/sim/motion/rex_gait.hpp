@@ -22,23 +22,23 @@ struct Spread {
 /// ASSUMPTION for every value except the step time and the gait trace: the model proposed in the
 /// project's safety notes. Replace the values when a recording of a real REX exists.
 struct RexGaitConfig {
-    double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
-    double settle_s = 1.5;               ///< part of step_s: standing until ringing stops
+    double step_s = 10.0;                ///< step time: 0.35 m at the data sheet's 0.0347 m/s
+    double settle_s = 1.5;               ///< standing time within step_s, until the ringing stops
     double foot_clearance_m = 0.01;      ///< height of the toes of a swinging foot; ankles: 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
-    Spread roll_deg{3.0, 4.0};           ///< toward the standing foot
-    Spread yaw_deg{1.5, 3.0};            ///< toward the foot behind
-    Spread ring_hz{2.0, 6.0};            ///< structural ringing after a foot strike
+    Spread roll_deg{3.0, 4.0};           ///< roll of base_link toward the standing foot
+    Spread yaw_deg{1.5, 3.0};            ///< yaw of base_link toward the foot behind
+    Spread ring_hz{2.0, 6.0};            ///< frequency of the ringing after a foot strike
     Spread ring_mm{1.0, 3.0};            ///< largest vertical deflection of the ringing
     Spread ring_deg{0.1, 0.3};           ///< largest roll and pitch of the ringing
     Spread strike_m_s2{0.5, 2.0};        ///< vertical acceleration pulse of a foot strike
-    bool ground_under_body = false;      ///< query the ground below base_link instead of each sole
+    bool ground_under_body = false;      ///< true: query the ground below base_link, not the soles
 };
 
 /// Pose of one foot in the world. A foot stands flat on the ground, also on a ramp.
 struct FootState {
-    Pose T_world_sole;    ///< sole below the ankle
-    bool carries = true;  ///< stands flat; false while it swings or has its heel up
+    Pose T_world_sole;    ///< point of the sole below the ankle
+    bool carries = true;  ///< true: stands flat; false: swings or has its heel up
 };
 
 /// Quasi-static walk of the REX. A step plays the gait trace: the leading foot moves half the way,
@@ -48,7 +48,7 @@ struct FootState {
 ///
 /// The trace gives the path, pitch and bob of base_link. In every sample the standing leg carries
 /// the pelvis, and the pitch of the pelvis makes the sole flat (between two standing feet: a mean
-/// by load). These values scale with the step length; the shift of weight is added; the pelvis
+/// by load). These values scale with the step length. The shift of weight is added. The pelvis
 /// sinks where a leg would be too short. All curves are cubic B-splines of the samples, so the
 /// acceleration is continuous. The sharp transition is the foot strike: a pulse of 0.12 s, then
 /// ringing. Foot poses are exact and legs follow by inverse kinematics, so a standing foot never
@@ -57,8 +57,8 @@ struct FootState {
 /// them. `at` includes these movements; `pelvis` and `joints` do not.
 class RexMotion final : public Motion {
   public:
-    /// Usage error: a step that the legs cannot reach, or a joint outside its range on level
-    /// ground. Steps up and down are checked for reach only: the heel lift is not modelled.
+    /// Returns a usage error if the legs cannot reach a step or, on level ground, a joint leaves
+    /// its range. Steps up and down are checked for reach only: the heel lift is not modelled.
     [[nodiscard]] static Result<RexMotion> make(const RexPlan& plan,
                                                 const RexGaitConfig& config,
                                                 const GroundHeight& ground_z_m,

@@ -23,18 +23,18 @@ constexpr int kTrace = 64;
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
 /// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
-/// that foot is 42 mm higher then. The heel rises during this number of samples, after the other
-/// foot has landed.
+/// that foot is then 42 mm higher than with a flat sole. The heel rises during this number of
+/// samples, after the other foot has landed.
 constexpr double kHeelLift_rad = 10.0 * kRadPerDeg;
 constexpr double kHeel = 6.0;
 /// Smallest height difference of a step on stairs.
 constexpr double kStair_m = 0.02;
-/// Highest riser: the stair limit of the machine file, 0.18 m, plus 20 mm for irregular stairs.
+/// Highest riser: the stair limit of the machine file (0.18 m) plus 20 mm for irregular stairs.
 constexpr double kMaxRise_m = 0.20;
-/// Limit of the ringing acceleration: it keeps fast ringing within the acceleration of a strike.
+/// Limit of the acceleration of the ringing; it stays within the acceleration of a foot strike.
 constexpr double kMaxRing_m_s2 = 2.0;
 
-/// From one sample of the trace to another.
+/// Part of a step, from one sample of the trace to another.
 struct Phase {
     double from;
     double to;
@@ -54,7 +54,8 @@ struct Phases {
     Phase to_trail_again;
     Phase to_middle;
 };
-/// From the kinematics of the trace: a foot lands when the pelvis has moved over the other foot.
+/// Phases of a step ahead, from the kinematics of the trace. A foot lands when the pelvis has moved
+/// over the other foot.
 constexpr Phases kAhead{
     {5.0, 20.0}, {26.0, 44.0}, {52.0, 60.0}, {-5.0, 5.0}, {16.0, 26.0}, {41.0, 51.0}, {58.0, 68.0}};
 constexpr Phases kBackward{kAhead.lead_closes.played_backwards(),
@@ -69,22 +70,22 @@ const Phases& phases_of(const RexMovement& movement) {
     return movement.forward_m < 0.0 ? kBackward : kAhead;
 }
 
-/// Base_link through the trace, right foot leading, seen from the left sole of the start.
+/// Path of base_link through the trace, seen from the left sole at the start; the right foot leads.
 struct TraceWay {
     double length_m = 0.0;                  ///< length of the whole step
     std::array<double, kTrace> progress{};  ///< progress of base_link, 0 to 1
-    std::array<double, kTrace> sink_m{};    ///< height against standing
+    std::array<double, kTrace> sink_m{};    ///< height relative to standing
     std::array<double, kTrace> pitch_rad{};
 };
 
 struct Carried {
-    double x_m;  ///< position of the hips over the carrying sole
+    double x_m;  ///< position of the hips relative to the carrying sole
     double z_m;
     double other_x_m;  ///< position of the other sole
     double pitch_rad;
 };
 
-/// Ankle, then sole point, hanging from the hips.
+/// Position of the sole point relative to the hips: down the leg to the ankle, then to the sole.
 Eigen::Vector2d hanging(const LinkAngles& leg) {
     const double sole = leg.foot_rad - kFlatFoot_rad;
     return {
@@ -113,7 +114,7 @@ TraceWay make_trace_way() {
     for (std::size_t i = 0; i < kTrace; ++i) {
         left[i] = carried_by(trace[i].left, trace[i].right);
         right[i] = carried_by(trace[i].right, trace[i].left);
-        // Both feet stand while the weight goes from left to right.
+        // Both feet stand while the weight moves from left to right.
         if (i >= 16 && i < 26) between_m += 0.1 * left[i].other_x_m;
     }
     TraceWay way;
@@ -127,7 +128,7 @@ TraceWay make_trace_way() {
         way.sink_m[i] = (1.0 - on_right) * left[i].z_m + on_right * right[i].z_m - left[0].z_m;
         way.pitch_rad[i] = (1.0 - on_right) * left[i].pitch_rad + on_right * right[i].pitch_rad;
     }
-    // The record stops a fraction of a millimetre and of a degree too early.
+    // The record stops a fraction of a millimetre and of a degree before the end of the step.
     way.progress[kTrace - 1] = 1.0;
     way.sink_m[kTrace - 1] = 0.0;
     way.pitch_rad[kTrace - 1] = 0.0;
@@ -154,7 +155,7 @@ Pose level_pose(double x_m, double y_m, double z_m, double yaw_rad) {
     return T;
 }
 
-/// A sample of base_link.
+/// One sample of the motion of base_link.
 struct Row {
     Vector3d at_m;
     double pitch_rad;
@@ -183,7 +184,7 @@ class RexMotionBuilder {
         double shift_m;
         double roll_rad;
         double yaw_rad;
-        double size;  ///< scale of the trace relative to its own step
+        double size;  ///< scale of the trace; 1 = the step of the trace
     };
     [[nodiscard]] double interval_s() const {
         return (config_.step_s - config_.settle_s) / (kSamples + 1);
@@ -207,10 +208,10 @@ class RexMotionBuilder {
     double now_s_ = 0.0;
 };
 
-/// Position of a sole on the ground. The ground under the middle of the sole carries it: toes or
-/// heels may reach over an edge.
+/// Position of a sole on the ground. The ground under the middle of the sole carries the sole, so
+/// toes or heels may reach over an edge.
 Vector3d RexMotionBuilder::sole_m(Side side, const RexStand& stand) const {
-    constexpr double kMiddle_x_m = 0.057;  // machines/rex.yaml, feet
+    constexpr double kMiddle_x_m = 0.057;  // key feet of machines/rex.yaml
     constexpr double kMiddle_y_m = 0.180;
     const double c = std::cos(stand.yaw_rad);
     const double s = std::sin(stand.yaw_rad);
@@ -247,8 +248,8 @@ void RexMotionBuilder::stand(const RexStand& place) {
     }
 }
 
-/// Adds a swing. `lift_rad` > 0: the heel rises before the swing; < 0: it comes down after the
-/// swing.
+/// Adds a swing. If `lift_rad` > 0, the heel rises before the swing. If `lift_rad` < 0, the heel
+/// comes down after the swing.
 void RexMotionBuilder::swing(
     Side side, const Phase& phase, double lift_rad, const RexStand& to, Rng& rng) {
     auto& swings = motion_.swings_[static_cast<std::size_t>(side)];
@@ -311,13 +312,13 @@ std::vector<Row> RexMotionBuilder::rows(const RexStep& step, Side lead, const Sw
         const int in_trace = std::clamp(sample, 0, kTrace - 1);
         const auto i = static_cast<std::size_t>(backward ? kTrace - 1 - in_trace : in_trace);
         const double share = backward ? 1.0 - way.progress[i] : way.progress[i];
-        // The weight moves over the trailing foot, the leading foot, the trailing foot, then back
-        // to the middle.
+        // The weight moves over the trailing foot, the leading foot and the trailing foot again,
+        // then back to the middle.
         const double over_trail =
             phases.to_trail.share(sample) - 2.0 * phases.to_lead.share(sample) +
             2.0 * phases.to_trail_again.share(sample) - phases.to_middle.share(sample);
         const double to_left = lead == Side::right ? over_trail : -over_trail;
-        // The pelvis turns with the foot in front.
+        // The pelvis turns with the foot that is in front.
         const double lead_ahead = phases.lead_swings.share(sample) -
                                   2.0 * phases.trail_swings.share(sample) +
                                   phases.lead_closes.share(sample);
@@ -409,9 +410,8 @@ Status RexMotionBuilder::check(const RexStep& step) const {
                 leg_angles(side, T_world_body.inverse() * motion_.foot(side, t_s).T_world_sole);
             if (!angles) {
                 return usage_error(
-                    fmt::format("{}: the {} leg does not reach its foot; make the step "
-                                "smaller or the ground "
-                                "more even",
+                    fmt::format("{}: the {} leg cannot reach the position of its foot; make the "
+                                "step smaller or the ground more even",
                                 where,
                                 kSideNames[static_cast<int>(side)]));
             }
@@ -432,7 +432,7 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     if (!(std::abs(rise_m) <= kMaxRise_m)) {
         return usage_error(fmt::format(
             "simulator: step {} of the rex (code {}, at x {:.2f} y {:.2f}) would go {:+.3f} m in "
-            "height, limit is {:.2f} m; move the waypoints off that edge",
+            "height, limit is {:.2f} m; move the waypoints away from the edge",
             motion_.steps_.size() + 1,
             step.movement.command,
             step.before.x_m,
@@ -446,10 +446,11 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     Rng rng(seed);
     Sway sway{};
     sway.size = std::abs(movement.forward_m) / trace_way().length_m;
-    // ASSUMPTION: a step sideways or a turn sways less than a whole one ahead, in proportion.
+    // ASSUMPTION: sway shrinks with the forward length of the step, down to half for a step
+    // sideways or a turn.
     const double calm = 0.5 + 0.5 * std::min(1.0, std::abs(movement.forward_m) / 0.40);
-    // A flat foot stands with its leg leaning by 9 deg at most (range of the ankle), 0.13 m at the
-    // hip; half of a sideways step needs its part of that.
+    // A flat foot stands with its leg leaning by 9 deg at most (range of the ankle), which moves
+    // the hip by 0.13 m. Half of a sideways step takes its part of these 0.13 m.
     constexpr double kLean_m = 0.12;
     sway.shift_m =
         std::min(drawn(rng, config_.lateral_shift_m), kLean_m - 0.5 * std::abs(movement.left_m));

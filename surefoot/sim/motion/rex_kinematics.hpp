@@ -21,13 +21,13 @@ inline constexpr const char* kSideNames[] = {"left", "right"};
 namespace rex {
 inline constexpr double kUpperLeg_m = 0.430;
 inline constexpr double kLowerLeg_m = 0.416;
-inline constexpr double kAnkleHeight_m = 0.144;  ///< height above the sole
-inline constexpr double kToes_m = 0.240;         ///< ahead of the ankle: 0.366 - 0.126 m
-/// Half the pelvis' width, 0.470 m. The foot, centred 0.180 m beside base_link, 0.190 m wide and
-/// with its inner edge 0.150 m from the ankle, has its ankle straight below.
+inline constexpr double kAnkleHeight_m = 0.144;  ///< height of the ankle above the sole
+inline constexpr double kToes_m = 0.240;         ///< distance ahead of the ankle: 0.366 - 0.126 m
+/// Half the pelvis' width, 0.470 m. The ankle is straight below: the foot is centred 0.180 m beside
+/// base_link, is 0.190 m wide, and its inner edge is 0.150 m from the ankle.
 inline constexpr double kHip_y_m = 0.235;
-/// Ankles of the gait trace behind the hips, when standing. In the machine file the ankles are
-/// below base_link (heels 0.126 m behind them), so the hip axis is ahead of base_link.
+/// Distance of the ankles behind the hips in the stand of the gait trace. In the machine file the
+/// ankles are below base_link (heels 0.126 m behind), so the hip axis is ahead of base_link.
 inline constexpr double kHip_x_m = 0.0563;
 /// Height of base_link above the soles in the stand of the trace, knees bent by 3.5 deg (0.990 m
 /// with straight legs).
@@ -35,8 +35,8 @@ inline constexpr double kStand_m = 0.9877;
 }  // namespace rex
 
 /// Joint angles of a leg: each child link against its parent, about the parent's axes (x forward, y
-/// left, z up), in the order of the chain. ASSUMPTION: the data sheet has no hip rotation, so the
-/// few degrees that a turn in place and the swaying pelvis need count as play of the frame.
+/// left, z up), in the order of the chain. ASSUMPTION: hip rotation is play of the frame, because
+/// the data sheet has none. A turn in place and the swaying pelvis need a few degrees of it.
 struct LegAngles {
     double hip_rotation_rad = 0.0;  ///< about z
     double hip_roll_rad = 0.0;      ///< about x

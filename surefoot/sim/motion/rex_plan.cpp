@@ -17,8 +17,9 @@ namespace surefoot::sim {
 namespace {
 
 constexpr double kHalfTurn_rad = std::numbers::pi;
-constexpr std::size_t kMaxSteps = 2000;  // 5.5 h at 10 s a step: an error in the script
-/// A step that reduces the distance by less is not worth ten seconds.
+// Limit of 5.5 h at 10 s a step; a longer path is an error in the script.
+constexpr std::size_t kMaxSteps = 2000;
+/// Smallest reduction of the distance that is worth a step of ten seconds.
 constexpr double kWorthwhile_m = 0.04;
 /// ASSUMPTION: 1 sigma of the landing error relative to the commanded position.
 constexpr double kLandingSigma_m = 0.003;
@@ -33,7 +34,8 @@ struct Gait {
     Move move;
     double bearing_rad;
     double step_m;
-    bool any_sector = false;  ///< not only those about the direction
+    /// True: all sectors are allowed; false: only those near the direction of travel.
+    bool any_sector = false;
 };
 
 double distance_m(const RexStand& from, const Waypoint& to) {
@@ -124,7 +126,7 @@ bool Planner::allowed(const RexMovement& movement, const Gait& gait) const {
     const double along = std::cos(gait.bearing_rad) * movement.forward_m +
                          std::sin(gait.bearing_rad) * movement.left_m;
     // Allows the sectors near the direction of travel, also those of the inner ring. A sideways
-    // step is short: a sector nearly ahead would move just as far to the side.
+    // step is short, so a sector nearly ahead moves just as far to the side.
     return along > (gait.move == Move::side ? 0.45 : 0.3) * gait.step_m;
 }
 
@@ -146,13 +148,14 @@ void Planner::walk(const Waypoint& goal, const Gait& gait) {
 }
 
 void Planner::go_to(const Waypoint& goal) {
-    // The shortest forward step is half a step; a point nearer than half of that counts as reached.
+    // The shortest forward step is half a step. A point nearer than half of the shortest step
+    // counts as reached.
     const double near_m = goal.move == Move::automatic ? 0.25 * sizes_.forward_m : kWorthwhile_m;
     if (distance_m(now_, goal) > near_m) {
         Gait gait = choose(goal);
         turn_to(std::atan2(goal.y_m - now_.y_m, goal.x_m - now_.x_m) - gait.bearing_rad);
         walk(goal, gait);
-        // Other sectors correct the lateral error that the 15 deg of heading leave.
+        // Other sectors correct the lateral error that remains because turns have steps of 15 deg.
         gait.any_sector = true;
         if (distance_m(now_, goal) > 0.4 * sizes_.forward_m) walk(goal, gait);
     }
@@ -197,10 +200,11 @@ Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
         planner.go_to(waypoints[i]);
         if (planner.count() >= kMaxSteps) {
-            return usage_error(fmt::format(
-                "simulator: the way of the rex to waypoint {} takes more than {} steps; shorten it",
-                i,
-                kMaxSteps));
+            return usage_error(
+                fmt::format("simulator: the path of the rex to waypoint {} takes more than {} "
+                            "steps; shorten the path",
+                            i,
+                            kMaxSteps));
         }
         planner.wait(waypoints[i].pause_s);
     }

@@ -27,7 +27,7 @@ struct RexStepSizes {
 };
 
 /// All codes of machines/rex.yaml. 9-24: sectors clockwise from ahead on the ellipse through the
-/// four steps. 1-8: half as far. 25 and 26: turns to the left and to the right.
+/// four steps. 1-8: steps half as long. 25 and 26: turns to the left and to the right.
 [[nodiscard]] std::vector<RexMovement> rex_movements(const RexStepSizes& sizes);
 
 /// Pose of base_link of a standing machine on the floor plan.

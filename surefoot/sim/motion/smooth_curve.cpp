@@ -43,7 +43,8 @@ SmoothCurve::SmoothCurve(double start_s, double interval_s, std::vector<double> 
 
 Jet SmoothCurve::at(double time_s) const {
     const auto count = static_cast<double>(samples_.size());
-    // Sample i stands at x = i; one interval before the first and after the last the curve rests.
+    // Sample i is at x = i. The curve rests from one interval before the first sample and after the
+    // last.
     const double x = std::clamp((time_s - start_s_) / interval_s_, 0.0, count + 1.0) - 1.0;
     const double knot = std::floor(x);
     const double u = x - knot;
@@ -83,7 +84,7 @@ MotionState motion_state(const std::array<Jet, 3>& position_m,
     const double cr = std::cos(roll.value);
     const double sp = std::sin(pitch.value);
     const double cp = std::cos(pitch.value);
-    // omega = (roll') + (pitch') turned by roll + (yaw') turned by both, in body axes.
+    // omega = roll' + (pitch' turned by roll) + (yaw' turned by pitch and roll), in body axes.
     state.angular_velocity_body_rad_s = {roll.rate - yaw.rate * sp,
                                          pitch.rate * cr + yaw.rate * sr * cp,
                                          -pitch.rate * sr + yaw.rate * cr * cp};

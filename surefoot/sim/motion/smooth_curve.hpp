@@ -25,9 +25,9 @@ struct Jet {
 [[nodiscard]] double eased(double u) noexcept;
 
 /// Uniform cubic B-spline over time; the control values are the samples of a curve. Its second
-/// derivative is continuous, it smooths single outliers by [1 4 1] / 6, and it stays in the range
-/// of four neighbouring samples (de Boor, "A Practical Guide to Splines", 1978). The first and the
-/// last sample are repeated, so that the curve rests on them at both ends.
+/// derivative is continuous. The curve smooths single outliers by [1 4 1] / 6 and stays in the
+/// range of four neighbouring samples (de Boor, "A Practical Guide to Splines", 1978). The first
+/// and the last sample are repeated, so that the curve rests on them at both ends.
 class SmoothCurve {
   public:
     /// Requires at least one sample. Duration: (samples + 1) intervals.

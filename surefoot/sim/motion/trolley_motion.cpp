@@ -18,7 +18,7 @@ struct Progress {
     double acceleration_m_s2 = 0.0;
 };
 
-/// Acceleration from rest: v = V (3u^2 - 2u^3), u = t / T; the distance after T is V T / 2.
+/// Acceleration from rest: v = V (3u^2 - 2u^3), u = t / T. The distance after T is V T / 2.
 Progress speeding_up(double speed_m_s, double ramp_s, double t_s) {
     const double u = t_s / ramp_s;
     return {speed_m_s * ramp_s * u * u * u * (1.0 - 0.5 * u),
@@ -33,7 +33,7 @@ Progress progress(double length_m, double speed_m_s, double ramp_s, double durat
     return {length_m - mirrored.way_m, mirrored.speed_m_s, -mirrored.acceleration_m_s2};
 }
 
-/// Height gain and slope on a ramp after some distance; the slope with its derivatives by distance.
+/// Height gain and slope after some distance on a ramp. The slope has its derivatives by distance.
 struct Ramp {
     double rise_m = 0.0;
     Jet slope;
@@ -186,8 +186,8 @@ MotionState TrolleyMotion::at(double time_s) const {
                      here.slope.value * way.rate,
                      here.slope.rate * way.rate * way.rate + here.slope.value * way.acceleration};
     const Jet yaw = Jet{segment.from.yaw_rad, 0.0, 0.0} + turn_rad * part;
-    // In body axes the slope rises toward the direction of travel; a quarter turn more makes the
-    // cosine a sine.
+    // In body axes the slope rises toward the direction of travel. Turning by a quarter turn
+    // changes the cosine to a sine.
     const double direction_rad = std::atan2(way_m.y(), way_m.x());
     const Jet ahead = slope * cosine(yaw, -direction_rad);
     const Jet left = slope * cosine(yaw, 0.5 * std::numbers::pi - direction_rad);

@@ -13,7 +13,7 @@ namespace surefoot::sim {
 struct TrolleyConfig {
     double height_m = 0.95;     ///< height of base_link above the ground
     double speed_m_s = 0.25;    ///< speed between waypoints
-    double ramp_s = 1.0;        ///< time to reach that speed, and to stop
+    double ramp_s = 1.0;        ///< time to reach speed_m_s, and time to stop
     double turn_lever_m = 0.8;  ///< a turn by 1 rad takes as long as this distance
     bool tilts = true;          ///< follows the slope between two waypoints of different height
 };

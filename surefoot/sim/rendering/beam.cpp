@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 constexpr double kMargin_rad = 1e-6;
 constexpr double kMargin_m = 1e-9;
 
-/// Sine of the angle of the axis to the plane through the tip and an edge of a polygon. Positive on
-/// the inner side of the plane, negative on the outer side.
+/// Sine of the angle between the axis and the plane through the tip and an edge of a polygon.
+/// Positive on the inner side of the plane, negative on the outer side.
 double sine_inside(const Vector3d& to_a_m, const Vector3d& to_b_m, const Vector3d& axis) {
     const Vector3d inward = to_b_m.cross(to_a_m);
     const double length = inward.norm();
@@ -34,8 +34,8 @@ Beam::Beam(const Vector3d& tip_m, const Vector3d& axis, double half_angle_rad, d
       cosine_(std::cos(half_angle_rad_)),
       tip_radius_m_(tip_radius_m + kMargin_m) {}
 
-/// Uses the distance of the centre from the nearest line of the cone; behind the tip the true
-/// distance is larger.
+/// Uses the distance from the centre to the nearest line of the cone. Behind the tip the true
+/// distance is larger than this value, so the test stays conservative.
 bool Beam::misses(const Sphere& sphere) const {
     if (!(cosine_ > 0.0)) return false;
     const Vector3d to_center = sphere.center_m - tip_m_;
@@ -44,7 +44,7 @@ bool Beam::misses(const Sphere& sphere) const {
     return across_m * cosine_ - along_m * sine_ > sphere.radius_m + tip_radius_m_;
 }
 
-/// Searches a separating plane among the planes that touch the cone on eight sides.
+/// Searches for a separating plane among the planes that touch the cone on eight sides.
 bool Beam::misses(std::span<const Vector3d> corners_m) const {
     if (!(cosine_ > 0.0)) return false;
     const Vector3d side = axis_.unitOrthogonal();
@@ -68,7 +68,8 @@ bool Beam::misses(std::span<const Vector3d> corners_m) const {
 }
 
 double Beam::sine_of_hits(double above_m) const {
-    // A point at least `above_m` away moves by at most this angle between viewpoints in the ball.
+    // The direction to a point at least `above_m` away differs by at most the asin() between
+    // viewpoints in the ball.
     if (!(above_m > 2.0 * tip_radius_m_)) return 2.0;
     const double angle_rad = half_angle_rad_ + std::asin(tip_radius_m_ / (above_m - tip_radius_m_));
     return angle_rad < 0.5 * std::numbers::pi ? std::sin(angle_rad) : 2.0;

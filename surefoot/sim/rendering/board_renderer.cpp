@@ -13,8 +13,8 @@
 namespace surefoot::sim {
 namespace {
 
-/// Samples in each direction that detect a pixel of one colour. Shapes smaller than a third of a
-/// pixel may be missed.
+/// Samples in each direction that decide whether a pixel has one colour only. They may miss shapes
+/// smaller than a third of a pixel.
 constexpr int kProbeSamples = 4;
 
 bool inside(const PrintedSheet::Rectangle& box, const Eigen::Vector2d& p_m) {
@@ -85,8 +85,8 @@ class Sheet {
     std::vector<Bin> bins_;
 };
 
-/// Point where the ray of a pixel meets the sheet's plane, in the frame of the sheet; NaN if it
-/// does not.
+/// Point where the ray of a pixel meets the plane of the sheet, in the frame of the sheet. NaN if
+/// the ray does not meet the plane.
 Eigen::Vector2d place_on_sheet(const camera::Camera& camera,
                                const Pose& T_sheet_camera,
                                const Eigen::Vector2d& pixel) {
@@ -101,8 +101,8 @@ Eigen::Vector2d place_on_sheet(const camera::Camera& camera,
 }
 
 /// Mean colour of a pixel with these sheet points at its corners: top left, top right, bottom left,
-/// bottom right. Points between them are bilinear: over one pixel this is exact to 1e-3 px for
-/// every lens that can be calibrated.
+/// bottom right. Points between the corners are interpolated bilinearly. Over one pixel the
+/// interpolation is exact to 1e-3 px for every lens that can be calibrated.
 double mean_colour(const Sheet& sheet, const std::array<Eigen::Vector2d, 4>& corners_m) {
     double first = 0.0;
     bool uniform = true;

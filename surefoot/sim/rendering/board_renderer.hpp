@@ -16,8 +16,8 @@ struct ImagingConditions {
     double paper_dn = 210.0;
     double ink_dn = 30.0;
     double background_dn = 100.0;
-    double blur_sigma_px = 0.0;  ///< Gaussian spot of the lens; 0 = ideal
-    double noise_dn = 0.0;       ///< one sigma, independent in every pixel
+    double blur_sigma_px = 0.0;  ///< sigma of the Gaussian spot of the lens; 0 = ideal lens
+    double noise_dn = 0.0;       ///< one sigma of the noise, independent in every pixel
 };
 
 /// Renders the image of a sheet in front of a camera analytically, without mesh or texture. Every

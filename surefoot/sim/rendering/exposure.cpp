@@ -19,7 +19,7 @@ void ExposureConfig::describe(ConfigVisitor& visitor) {
                    exposure_s,
                    1e-5,
                    0.1,
-                   "exposure time; with automatic exposure, the value at the start");
+                   "exposure time; if automatic is true, the exposure time at the start");
     visitor.boolean("automatic",
                     automatic,
                     "true: the exposure control keeps the mean grey value at target_dn");
@@ -40,7 +40,11 @@ void ExposureConfig::describe(ConfigVisitor& visitor) {
         0.1,
         "longest exposure time of the exposure control; if it is not enough, the gain rises");
     visitor.number("max_gain", max_gain, 1.0, 64.0, "largest gain of the exposure control");
-    visitor.number("lag_s", lag_s, 0.0, 10.0, "time constant of the exposure control; 0 = at once");
+    visitor.number("lag_s",
+                   lag_s,
+                   0.0,
+                   10.0,
+                   "time constant of the exposure control; 0 = the control reacts at once");
     visitor.boolean("sun_warm_up",
                     sun_warm_up,
                     "true: the images are over-exposed in the first 10-30 s, as in the sun");
@@ -48,7 +52,7 @@ void ExposureConfig::describe(ConfigVisitor& visitor) {
                    warm_up_factor,
                    1.0,
                    100.0,
-                   "factor of too much light at the first frame; used if sun_warm_up is true");
+                   "factor by which the first frame is too bright; used if sun_warm_up is true");
     visitor.number(
         "right_gain", right_gain, 0.5, 2.0, "gain of the right camera relative to the left camera");
 }
@@ -95,7 +99,8 @@ Shot ExposureControl::shot(double since_start_s) const {
 
 void ExposureControl::settle(const Image<float>& signal_dn) {
     if (!config_.automatic) return;
-    // The mean grows with the product: bisect its logarithm.
+    // The mean grows with the product of exposure time and gain, so bisect the logarithm of the
+    // product.
     double low = least();
     double high = most();
     for (int i = 0; i < 40; ++i) {
@@ -107,7 +112,7 @@ void ExposureControl::settle(const Image<float>& signal_dn) {
 
 void ExposureControl::update(const Image<float>& signal_dn, double step_s) {
     if (!config_.automatic) return;
-    // An image below a tenth of a grey value is black: the control opens to its limit.
+    // A mean below a tenth of a grey value is black; the control then opens to its limit.
     const double mean_dn = std::max(metered_mean_dn(signal_dn, product_), 0.1);
     const double share = config_.lag_s > 0.0 ? 1.0 - std::exp(-step_s / config_.lag_s) : 1.0;
     product_ *= std::pow(config_.target_dn / mean_dn, share);

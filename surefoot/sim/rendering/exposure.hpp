@@ -12,20 +12,20 @@ namespace surefoot::sim {
 /// ASSUMPTION: the control parameters are typical of small cameras; nobody measured them on a ZED.
 struct ExposureConfig {
     double exposure_s = 0.008;  ///< fixed value, or the start value of the automatic control
-    bool automatic = false;     ///< keep the mean grey value at `target_dn`
-    double target_dn = 110.0;   ///< mean of the left image
+    bool automatic = false;     ///< true: keep the mean grey value at `target_dn`
+    double target_dn = 110.0;   ///< wanted mean grey value of the left image
     double min_exposure_s = 0.0001;
-    double max_exposure_s = 0.016;  ///< longer exposures blur the image; beyond it the gain rises
+    double max_exposure_s = 0.016;  ///< limits the motion blur; at this limit the gain rises
     double max_gain = 8.0;
-    double lag_s = 0.3;           ///< time constant; 0 = at once
-    bool sun_warm_up = false;     ///< over-exposed for the first 10-30 s, drawn by the seed
-    double warm_up_factor = 8.0;  ///< factor of too much light at the first frame
+    double lag_s = 0.3;           ///< time constant of the control; 0 = at once
+    bool sun_warm_up = false;     ///< true: over-exposed at first, for 10-30 s drawn by the seed
+    double warm_up_factor = 8.0;  ///< factor by which the first frame is too bright
     double right_gain = 1.0;      ///< gain of the right camera relative to the left one
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// How one frame is exposed.
+/// Exposure settings of one frame.
 struct Shot {
     double exposure_s = 0.008;
     double gain = 1.0;   ///< amplifies signal and noise

@@ -12,14 +12,15 @@ namespace {
 
 constexpr int kMaxFreezeFrames = 100'000;
 
-/// Faults by frame, before they are listed.
+/// Faults indexed by frame; no value for a frame without a fault.
 using Schedule = std::vector<std::optional<InjectedFault>>;
 
 void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedule) {
     const int frames = static_cast<int>(schedule.size());
     int thaw_frame = 0;
     for (int frame = 1; frame < frames; ++frame) {
-        // Always draw two numbers per frame, so that one setting does not shift the other faults.
+        // Always draw two numbers per frame, so that a change of one setting does not shift other
+        // faults.
         double chance = rng.uniform();
         const int tear_row = 1 + static_cast<int>(rng.uniform() * std::max(height - 1, 1));
         const auto happens = [&](double probability) {

@@ -15,9 +15,9 @@ namespace surefoot::sim {
 /// Faults between a camera and its reader.
 enum class ImageFault : std::uint8_t {
     dropped,   ///< the frame never arrives
-    repeated,  ///< the previously delivered images, under a new stamp
+    repeated,  ///< the previously delivered images arrive again, under a new stamp
     torn,      ///< top rows are from this frame, the other rows from the previous exposure
-    frozen,    ///< the previously delivered images, for many frames
+    frozen,    ///< the previously delivered images arrive again, for many frames
 };
 inline constexpr const char* kImageFaultNames[] = {"dropped", "repeated", "torn", "frozen"};
 
@@ -31,7 +31,7 @@ struct InjectedFault {
     friend bool operator==(const InjectedFault&, const InjectedFault&) = default;
 };
 
-/// Fault probabilities per frame; a frame has at most one. Frames in `planned` get only that fault.
+/// Fault probabilities per frame. No frame has two faults; frames in `planned` get only that fault.
 struct ImageFaultConfig {
     double drop_probability = 0.0;
     double repeat_probability = 0.0;

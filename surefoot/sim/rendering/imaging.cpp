@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kQuantiles = 1U << 14U;
 
-/// A hash of 64 bits serves four neighbouring pixels, 14 bits each.
+/// One hash of 64 bits gives numbers to four neighbouring pixels, 14 bits to each.
 constexpr std::uint32_t kPixelsPerHash = 4;
 
 std::size_t quantile(std::uint64_t hash, std::uint32_t lane) noexcept {
@@ -33,7 +33,7 @@ double normal_quantile(double p) {
     return x;
 }
 
-/// Value that truncates to the nearest grey value; max() gives 0 for NaN.
+/// Returns a value whose integer part is the nearest grey value; max() gives 0 for NaN.
 float as_grey(float value_dn) {
     return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
 }
@@ -45,7 +45,7 @@ void ImagingConfig::describe(ConfigVisitor& visitor) {
                    exposure,
                    0.01,
                    10.0,
-                   "grey value of a white surface that faces the lamp, in units of 255");
+                   "grey value of a white surface that faces the lamp, as a share of 255");
     visitor.number("vignetting", vignetting, 0.0, 0.9, "share of light lost in the image corner");
     visitor.number(
         "read_noise_dn", read_noise_dn, 0.0, 50.0, "one sigma of the image noise without light");
@@ -101,7 +101,7 @@ std::uint8_t exposed_pixel(const ImagingConfig& config,
     const auto read = static_cast<float>(gain * config.read_noise_dn);
     const auto shot = static_cast<float>(gain * config.shot_noise_dn);
     const float value = signal_dn + std::sqrt(read * read + shot * signal_dn) * normal;
-    return static_cast<std::uint8_t>(as_grey(value));  // in range, NaN too
+    return static_cast<std::uint8_t>(as_grey(value));  // in range: 0 to 255, also for NaN
 }
 
 void expose_row(const ImagingConfig& config,
@@ -116,7 +116,7 @@ void expose_row(const ImagingConfig& config,
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float signal = factor * signal_dn[i];
         const float value = signal + std::sqrt(read * read + shot * signal) * normals[i];
-        out[i] = static_cast<std::uint8_t>(static_cast<int>(as_grey(value)));  // in range, NaN too
+        out[i] = static_cast<std::uint8_t>(static_cast<int>(as_grey(value)));  // in range: NaN too
     }
 }
 

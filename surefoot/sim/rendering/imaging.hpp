@@ -11,12 +11,12 @@ namespace surefoot::sim {
 
 /// The sensor model from light to grey value. Grey values ("dn") are linear in light, 0..255.
 struct ImagingConfig {
-    double exposure = 1.4;       ///< grey value of a white surface facing the lamp, in units of 255
-    double vignetting = 0.25;    ///< share of light lost in the image corner
-    double read_noise_dn = 1.0;  ///< one sigma, independent of the light
-    double shot_noise_dn = 0.02;  ///< variance per grey value (inverse gain): sigma 1.6 at 128
-    double noise_size_px = 0.0;   ///< neighbours share the noise: one sigma of the Gaussian that it
-                                  ///< is smoothed with, as denoising and compression leave it
+    double exposure = 1.4;        ///< grey value of a white surface facing the lamp, share of 255
+    double vignetting = 0.25;     ///< share of light lost in the image corner
+    double read_noise_dn = 1.0;   ///< one sigma of the noise that does not depend on the light
+    double shot_noise_dn = 0.02;  ///< variance of the shot noise per grey value: sigma 1.6 at 128
+    double noise_size_px = 0.0;   ///< one sigma of the Gaussian that smooths the noise, as
+                                  ///< denoising and compression do; 0 = independent pixels
 
     void describe(ConfigVisitor& visitor);
 };

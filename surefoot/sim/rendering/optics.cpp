@@ -10,7 +10,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Largest sigma that a configuration may ask for.
+/// Largest sigma that a configuration may set.
 constexpr double kMaxSigma_px = 30.0;
 
 std::vector<double> sampled_gaussian(double width_px, int radius) {
@@ -34,7 +34,8 @@ double second_moment(const std::vector<double>& weights) {
     return moment;
 }
 
-/// Outputs that are summed side by side; a fixed number, so that compilers use wide registers.
+/// Number of outputs that are summed side by side. It is fixed so that compilers use wide
+/// registers.
 constexpr int kLanes = 8;
 
 /// out[u] = sum over k of kernel[k] * rows[k][u], for a whole number of lanes.
@@ -57,7 +58,7 @@ int whole_lanes(int width) {
     return (width + kLanes - 1) / kLanes * kLanes;
 }
 
-/// 1 inside two thirds of the radius, 0 beyond it, smooth between.
+/// 1 inside two thirds of the radius, 0 beyond the radius, a smooth transition between.
 float smudge_share(double distance, double radius) {
     const double t = std::clamp(3.0 * (1.0 - distance / radius), 0.0, 1.0);
     return static_cast<float>(t * t * (3.0 - 2.0 * t));
@@ -98,7 +99,8 @@ void OpticsConfig::describe(ConfigVisitor& visitor) {
 std::vector<float> smear_kernel(double sigma_px) {
     if (!(sigma_px > 0.0)) return {1.0F};
     const int radius = saturated_integer<int>(std::ceil(4.0 * sigma_px) + 1.0);
-    // Sampling narrows a small spot: bisect for the width whose samples have the requested moment.
+    // Sampling narrows a small spot. So bisect for the width whose samples have the requested
+    // moment.
     double low_px = 0.05;
     double high_px = 2.0 * sigma_px + 1.0;
     for (int i = 0; i < 60; ++i) {

@@ -17,10 +17,10 @@ inline constexpr const char* kCameraSideNames[] = {"left", "right", "both"};
 /// mark with a larger point spread.
 struct OpticsConfig {
     double smear_sigma_px = 0.0;   ///< sigma of the spot, in each direction; 0 = ideal lens
-    double smudge_sigma_px = 0.0;  ///< under the finger mark; 0 = clean
-    double smudge_x = 0.5;         ///< centre of the mark, share of the image width
-    double smudge_y = 0.6;         ///< share of the image height
-    double smudge_radius = 0.25;   ///< share of the image height; fades out over the outer third
+    double smudge_sigma_px = 0.0;  ///< sigma of the spot under the finger mark; 0 = clean lens
+    double smudge_x = 0.5;         ///< x of the centre of the mark, as a share of the image width
+    double smudge_y = 0.6;         ///< y of the centre of the mark, as a share of the image height
+    double smudge_radius = 0.25;   ///< radius as a share of the image height; the outer third fades
     EyePoint smudge_camera = EyePoint::left;
 
     void describe(ConfigVisitor& visitor);

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-/// A plain loop over arrays, as in texture_batch.cpp. Dot products are summed as Eigen does it.
+/// Plain loops over arrays, as in texture_batch.cpp. Dot products are summed in the order of Eigen.
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::sim::HWY_NAMESPACE {
 namespace {

@@ -54,7 +54,7 @@ struct PlaneTexels {
     double texels_per_m = 0.0;
 };
 
-/// Smallest cosine of incidence (1.1 deg from grazing) that stretches the footprint of a pixel.
+/// Limit of the cosine of incidence (1.1 deg from grazing) that stretches a pixel's footprint.
 inline constexpr double kLeastCosine = 0.02;
 
 /// Texture coordinates and footprint of a ray that hits a plane, see `look_at`.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Products and their sums are formed in the order in which Eigen forms them for three doubles: a
-// dot product is (x + y) + z, as are the first two rows of matrix times vector; the third row is
-// x + (y + z). No fused multiply-add, and divisions are exact: all targets round alike.
+// Products are summed in the order that Eigen uses for three doubles. A dot product, and each of
+// the first two rows of matrix times vector, is (x + y) + z. The third row is x + (y + z). No
+// multiply-add is fused, and divisions are exact, so all instruction sets round alike.
 #include "surefoot/sim/rendering/ray_batch.hpp"
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/sim/rendering/ray_batch.cpp"
 #include <hwy/foreach_target.h>
-// Must come after foreach_target.h.
+// This include must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -17,7 +17,7 @@ namespace surefoot::sim::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls `work(d, i)` for whole vectors of rays, then for single ones.
+/// Calls `work(d, i)` for whole vectors of rays, then for the remaining single rays.
 template <class Work>
 HWY_INLINE void for_each_ray(BatchRange range, const Work& work) {
     const hn::ScalableTag<double> wide;
@@ -27,7 +27,8 @@ HWY_INLINE void for_each_ray(BatchRange range, const Work& work) {
     for (; i < range.end; ++i) work(hn::CappedTag<double, 1>(), i);
 }
 
-/// Three numbers in all lanes.
+/// Three coordinates for each SIMD lane: the same values in all lanes, or those of one ray per
+/// lane.
 template <class D>
 struct Three {
     hn::Vec<D> x;

@@ -14,8 +14,8 @@ struct RayHit {
     int face = -1;
 };
 
-/// As many rays as a block of pixels has, stored coordinate by coordinate for SIMD. Only the
-/// entries that are read are filled.
+/// Number of rays of a block of pixels. A batch stores them coordinate by coordinate for SIMD. Only
+/// the entries that are read are filled.
 inline constexpr std::size_t kBatchRays = 256;
 template <typename T>
 using BatchArray = std::array<T, kBatchRays>;
@@ -63,7 +63,7 @@ struct FacingSide {
 // at once and under every instruction set.
 
 /// Directions from an optical frame into the world: R_world_camera * (x, y, z)[i] for the rays
-/// [range.first, range.end); `x` is that of ray 0, and so on.
+/// [range.first, range.end). Element 0 of `x`, `y` and `z` belongs to ray 0.
 void turn_rays(const Eigen::Matrix3d& R_world_camera,
                const double* x,
                const double* y,

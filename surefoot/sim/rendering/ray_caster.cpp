@@ -9,18 +9,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An object that touches a plane from behind does not count as hidden: rounding decides which
-/// surface is visible.
+/// An object that touches a plane from behind does not count as hidden, because rounding decides
+/// which surface is visible.
 constexpr double kBehind_m = 1e-6;
 
-/// Angle between two rotations, a little too large: |A - B| (Frobenius) = 2 sqrt(2) sin(angle / 2).
+/// Upper bound of the angle between two rotations: |A - B| (Frobenius) = 2 sqrt(2) sin(angle / 2).
 double angle_between_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     const double half_sine = std::min((a - b).norm() / (2.0 * std::sqrt(2.0)), 1.0);
     return 2.0 * std::asin(half_sine);
 }
 
-/// The cone of the block from its middle row, widened by the motion of the camera until its other
-/// rows.
+/// Cone of the block from its middle row, widened by the motion of the camera between this row and
+/// the other rows.
 Beam beam_of(const RayField& rays,
              const ImageViews& views,
              const CastBlock& block,
@@ -43,7 +43,7 @@ Beam beam_of(const RayField& rays,
             tip_radius_m};
 }
 
-/// Drops primitives that are hidden by the one face that fills the beam.
+/// Removes primitives that are hidden by the one face that fills the beam.
 void drop_hidden(const Scene& scene, const Beam& beam, CastBlock& out) {
     for (const int k : out.primitives) {
         const auto plane = scene.only_face(k, beam);
@@ -67,7 +67,7 @@ void place(const RayField& rays, int block_x, int block_y, CastBlock& out) {
     out.height = std::min(RayField::kBlock, rays.height() - out.v0);
 }
 
-/// Calls `work(row, rays)` for rows that share their view, at once.
+/// Calls `work(row, rays)` once for all neighbouring rows that share their view.
 template <typename Work>
 void for_each_view(const ImageViews& views, const CastBlock& block, const Work& work) {
     const auto width = static_cast<std::size_t>(block.width);

@@ -11,8 +11,8 @@
 
 namespace surefoot::sim {
 
-/// World-frame rays of one block and their nearest hits, row by row, `width` a row. Reused from
-/// block to block, so that filling it does not allocate.
+/// World-frame rays of one block and their nearest hits, row by row, `width` rays a row. Reused
+/// from block to block, so that filling it does not allocate.
 struct CastBlock {
     static constexpr std::size_t kPixels = kBatchRays;
     static_assert(kPixels == static_cast<std::size_t>(RayField::kBlock * RayField::kBlock));

@@ -25,7 +25,7 @@ RayField::RayField(const camera::Camera& camera) : width_(camera.width), height_
     for (int v = 0; v < height_; ++v) {
         for (int u = 0; u < width_; ++u) {
             const double angle_rad = std::sqrt(step_u(u, v).norm() * step_v(u, v).norm());
-            // Next to the rim of a fisheye image a neighbour is missing.
+            // Next to the rim of a fisheye image a neighbouring pixel has no ray.
             pixel_angle_rad_[index(u, v)] =
                 static_cast<float>(std::isfinite(angle_rad) ? angle_rad : 1.0 / width_);
         }
@@ -70,7 +70,7 @@ RayField::Cone RayField::enclosing(int block_x, int block_y) const {
                 smallest_cos = std::min(smallest_cos, cone.axis.dot(ray(u, v)));
         }
     }
-    constexpr double kMargin_rad = 1e-6;  // rounding of the cosine near 1
+    constexpr double kMargin_rad = 1e-6;  // margin for the rounding of the cosine near 1
     cone.half_angle_rad = std::acos(std::clamp(smallest_cos, -1.0, 1.0)) + kMargin_rad;
     cone.empty = false;
     return cone;

@@ -14,7 +14,7 @@ namespace surefoot::sim {
 /// cone of each pixel block, which lets the caster skip whole primitives.
 class RayField {
   public:
-    static constexpr int kBlock = 16;  ///< pixels, both directions
+    static constexpr int kBlock = 16;  ///< side of a square block [px]
 
     /// Cone in the optical frame that contains every ray of a block.
     struct Cone {
@@ -34,7 +34,7 @@ class RayField {
         const std::size_t i = index(u, v);
         return {x_[i], y_[i], z_[i]};
     }
-    /// Rays of all pixels of a block, row by row, block width per row.
+    /// Rays of all pixels of a block, row by row; a row has as many rays as the block is wide.
     struct BlockRays {
         const double* x;
         const double* y;

@@ -170,7 +170,7 @@ void Renderer::collect_camera(const RayField& rays,
     }
 }
 
-/// Depth at the middle of the exposure, mean signal of all its instants.
+/// Computes the depth at the middle of the exposure and the mean signal of all instants.
 void Renderer::blur(const RayField& rays,
                     const ImageViews& middle,
                     std::span<const ImageViews> moving,
@@ -221,11 +221,11 @@ void Renderer::render_instant(const RayField& rays,
     });
 }
 
-/// Shades face by face, because look-ups of many points on one surface run together.
+/// Shades face by face, because look-ups of many points on one surface are faster together.
 void Renderer::shade_by_face(const HitBatch& hits,
                              const SightBatch& sights,
                              std::span<Seen> out) const {
-    // Filled as far as they are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
+    // Only filled entries are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
     BatchArray<std::size_t> waiting;
     BatchArray<std::size_t> chosen;
     SightBatch chosen_sights;
@@ -259,7 +259,7 @@ void Renderer::shade_block(const RayField& rays,
                            const CastBlock& block,
                            CleanImage& out) const {
     SightBatch
-        sights;  // Filled as far as it is read. NOLINT(cppcoreguidelines-pro-type-member-init)
+        sights;  // Only filled entries are read. NOLINT(cppcoreguidelines-pro-type-member-init)
     BatchArray<Seen> seen;
     find_sights(rays, views, block_x, block_y, block, sights);
     if (block.plane) {
@@ -277,7 +277,7 @@ void Renderer::shade_block(const RayField& rays,
     }
 }
 
-/// Pixels next to another surface average several sub-pixel positions, as real pixels do.
+/// Averages several sub-pixel positions in pixels next to another surface, as real pixels do.
 void Renderer::soften_block(const RayField& rays,
                             const ImageViews& views,
                             Places places,
@@ -290,7 +290,7 @@ void Renderer::soften_block(const RayField& rays,
     if (edge.empty()) return;
     find_primitives(*scene_, rays, views, block_x, block_y, block);
     SightBatch
-        sights;  // Filled as far as it is read. NOLINT(cppcoreguidelines-pro-type-member-init)
+        sights;  // Only filled entries are read. NOLINT(cppcoreguidelines-pro-type-member-init)
     BatchArray<Seen> seen;
     BatchArray<float> sum{};
     for (const auto& place : places) {
@@ -362,8 +362,8 @@ Image<float> Renderer::noise_image(int width,
     if (config_.imaging.noise_size_px <= 0.0) return normals;
     const std::vector<float> kernel = smear_kernel(config_.imaging.noise_size_px);
     smear(kernel, executor, normals);
-    // A weighted sum of independent numbers has the sum of the squared weights as its variance,
-    // once for each direction.
+    // The variance of a weighted sum of independent numbers is the sum of the squared weights, once
+    // for each direction.
     float squares = 0.0F;
     for (const float weight : kernel) squares += weight * weight;
     executor.parallel_for(height, [&](int v) {

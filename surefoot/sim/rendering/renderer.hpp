@@ -77,9 +77,9 @@ class Renderer {
                 int frame,
                 Executor& executor,
                 RenderedPair& out) const;
-    /// Both images of a body at rest, with the configured exposure.
+    /// Renders both images of a body at rest, with the configured exposure.
     void render(const Pose& T_world_body, int frame, Executor& executor, RenderedPair& out) const;
-    /// One camera at rest behind an ideal lens.
+    /// Renders the image of one camera at rest behind an ideal lens.
     void render_clean(const RayField& rays,
                       const Pose& T_world_camera,
                       Executor& executor,

@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Background radiance: grey 30 at the default exposure, a dim, uniform surrounding.
+/// Radiance of the background: grey 30 at the default exposure, like a dim, uniform surrounding.
 constexpr float kBackground = 30.0F / (255.0F * 1.4F);
-/// A ray that continues from a surface starts this far from it, so that it does not hit the surface
+/// Distance from a surface at which a continued ray starts, so that it does not hit the surface
 /// again.
 constexpr double kClear_m = 1e-6;
 constexpr int kMaxBounces = 2;
@@ -35,7 +35,7 @@ Footprint footprint_of(const Sight& sight, const SurfacePoint& at) {
     return footprint;
 }
 
-/// Length of the bright parts between 0 and x of a grating.
+/// Length of the bright parts of a grating between 0 and x.
 double bright_length(double x, double bright, double period) {
     const double whole = std::floor(x / period);
     return whole * bright + std::min(x - whole * period, bright);
@@ -49,15 +49,15 @@ Sight onward(const Sight& sight, const Vector3d& direction) {
     return {sight.point_m + kClear_m * direction, direction, sight.way_m, sight.pixel_angle_rad};
 }
 
-/// Share of light that a pane reflects (Schlick, "An Inexpensive BRDF Model", 1994); 1 at grazing
-/// incidence.
+/// Share of light that a pane reflects (Schlick, "An Inexpensive BRDF Model", 1994). The share is 1
+/// at grazing incidence.
 float reflected_share(float straight_on, double cosine) {
     const auto missing = static_cast<float>(1.0 - std::clamp(cosine, 0.0, 1.0));
     const float squared = missing * missing;
     return straight_on + (1.0F - straight_on) * squared * squared * missing;
 }
 
-/// Direction across the stripes, perpendicular to the rays of the lamp; at yaw 0 horizontal.
+/// Direction across the stripes, perpendicular to the rays of the lamp. Horizontal at yaw 0.
 Vector3d stripe_axis(const Vector3d& towards_lamp, double yaw_deg) {
     const Vector3d sideways = Vector3d::UnitZ().cross(towards_lamp);
     const Vector3d level = sideways.norm() > 1e-9 ? sideways.normalized() : Vector3d::UnitY();
@@ -87,7 +87,7 @@ Shader::Shader(const Scene& scene, std::uint64_t seed)
 
 void Shader::add_face(const Surface& surface, const Material& material) {
     const FaceFrame& frame = surface.frame;
-    // The face number shifts the pattern: the number in the scene, or in its own solid.
+    // The face number shifts the pattern. It counts the faces of the scene, or those of one solid.
     int number = static_cast<int>(faces_.size());
     if (material.same_look) number -= scene_->first_surface(surface.primitive);
     Face face;
@@ -139,11 +139,11 @@ void Shader::plane(int surface, const SightBatch& sights, std::span<Seen> out) c
     const Face& face = faces_[static_cast<std::size_t>(surface)];
     TextureBatch batch;
     look_at(face.texels, sights, batch);
-    // Filled as far as it is read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
+    // Only filled entries are read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<float, TextureBatch::kMost> albedo;
     textures_.reflectances(face.placement, batch, albedo.data());
     const std::vector<Blocker> blockers = blockers_of(face, sights);
-    // Without shadows and stripes the light is the same all over a plane.
+    // Without shadows and stripes the light is the same on the whole plane.
     const bool even = blockers.empty() && !(lighting_.stripe_width_m > 0.0);
     const Seen white = lit_surface(surface, sights[0], face.facing_lamp, 1.0F, blockers);
     for (std::size_t i = 0; i < sights.count; ++i) {
@@ -155,7 +155,7 @@ void Shader::plane(int surface, const SightBatch& sights, std::span<Seen> out) c
 void Shader::curved(int surface, const SightBatch& sights, std::span<Seen> out) const {
     const Face& face = faces_[static_cast<std::size_t>(surface)];
     TextureBatch batch;
-    // Filled as far as they are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
+    // Only filled entries are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
     BatchArray<double> facing;
     std::array<float, TextureBatch::kMost> albedo;
     // NOLINTEND(cppcoreguidelines-pro-type-member-init)
@@ -235,7 +235,8 @@ Seen Shader::lit_surface(int surface,
     return {static_cast<float>(light) * albedo, key};
 }
 
-/// Bright share of the pixel's footprint, exact for a footprint that is a line across the stripes.
+/// Returns the bright share of the footprint of a pixel. It is exact for a footprint that is a line
+/// across the stripes.
 double Shader::stripes(const Sight& sight, const SurfacePoint& at) const {
     const Footprint footprint = footprint_of(sight, at);
     const Vector3d major = footprint.axis_u * at.tangent_u + footprint.axis_v * at.tangent_v;
@@ -254,8 +255,8 @@ bool Shader::lit(const Vector3d& point_m) const {
     return lit(point_m, blockers_);
 }
 
-/// Casts a ray from the lamp: surfaces are visible from outside only, so a pit is shaded by its own
-/// rim.
+/// Casts a ray from the lamp, because surfaces are visible from outside only. So the rim of a pit
+/// shades the pit.
 bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) const {
     if (!lighting_.shadows) return true;
     const double far_m = lamp_plane_m_ - towards_lamp_.dot(point_m) + 1.0;
@@ -270,7 +271,8 @@ bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) con
     return true;
 }
 
-/// Whether the sphere meets the path of the lamp's light to a point of the other sphere.
+/// Whether the first sphere meets the path of the light from the lamp to a point of the second
+/// sphere.
 bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
     const Vector3d to_center = blocker.center_m - points.center_m;
     const double along_m = towards_lamp_.dot(to_center);

@@ -78,7 +78,7 @@ class Shader {
     Eigen::Vector3d towards_lamp_;
     Eigen::Vector3d across_stripes_;
     std::vector<Blocker> blockers_;
-    double lamp_plane_m_ = 0.0;  ///< along `towards_lamp_`: the whole scene is behind it
+    double lamp_plane_m_ = 0.0;  ///< plane across `towards_lamp_`; the whole scene is behind it
 };
 
 }  // namespace surefoot::sim

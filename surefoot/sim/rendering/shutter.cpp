@@ -13,14 +13,16 @@ CameraView view_from(const Pose& T_world_camera) {
 }  // namespace
 
 void ShutterConfig::describe(ConfigVisitor& visitor) {
-    visitor.integer("blur_samples",
-                    blur_samples,
-                    0,
-                    64,
-                    "number of instants averaged over one exposure; 0 or 1 = a sharp image");
-    visitor.boolean("rolling",
-                    rolling,
-                    "true: rows are exposed one after another, if the rig has a read-out time");
+    visitor.integer(
+        "blur_samples",
+        blur_samples,
+        0,
+        64,
+        "number of images, taken during one exposure, that are averaged; 0 or 1 = a sharp image");
+    visitor.boolean(
+        "rolling",
+        rolling,
+        "true: the rows of an image are exposed one after another if the rig has a read-out time");
 }
 
 double row_offset_s(int row, int height, double readout_s) noexcept {

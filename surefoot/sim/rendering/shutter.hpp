@@ -12,8 +12,8 @@ namespace surefoot::sim {
 
 /// When and how long pixels collect light. ExposureConfig holds the exposure time.
 struct ShutterConfig {
-    int blur_samples = 0;  ///< instants averaged over an exposure; 0 or 1 = a sharp image
-    bool rolling = true;   ///< rows are exposed one after another if the rig has a read-out time
+    int blur_samples = 0;  ///< number of images averaged over an exposure; 0 or 1 = a sharp image
+    bool rolling = true;   ///< true: rows are exposed in turn if the rig has a read-out time
 
     void describe(ConfigVisitor& visitor);
 };
@@ -26,7 +26,7 @@ struct ShutterConfig {
 /// Pose of a camera at one instant.
 struct CameraView {
     Eigen::Matrix3d R_world_camera = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< centre of projection, world
+    Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< centre of projection in the world
 
     friend bool operator==(const CameraView&, const CameraView&) = default;
 };

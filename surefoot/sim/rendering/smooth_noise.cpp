@@ -10,12 +10,12 @@
 namespace surefoot::sim {
 namespace {
 
-/// Distance in lattice steps at which the mean correlation of the normalised spline noise is 1/e
-/// (from its weights, by bisection).
+/// Distance in lattice steps at which the mean correlation of the normalised spline noise is 1/e.
+/// Computed from the weights by bisection.
 constexpr double kLengthInSteps = 1.1857971;
 enum Stream : std::uint64_t { shift, values };
 
-/// Numbers addressed by their position on the lattice, independent of its size.
+/// Random numbers of a lattice. Each number depends on its position only, not on the lattice size.
 std::vector<float> lattice(const PixelNoise& noise, std::uint64_t seed, int width, int height) {
     std::vector<float> nodes;
     nodes.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -47,7 +47,7 @@ SmoothNoise::SmoothNoise(const PixelNoise& noise,
     nodes_ = lattice(noise, seed, nodes_x_, nodes_y);
 }
 
-/// Weights of the cubic B-spline at a place in lattice steps, their squares adding up to 1.
+/// Weights of the cubic B-spline at a position in lattice steps. The sum of their squares is 1.
 SmoothNoise::Tap SmoothNoise::tap(double place) {
     const double first = std::floor(place);
     const double f = place - first;
@@ -94,7 +94,7 @@ float SurfaceNoise::at(const PixelNoise& noise, int surface, double u_m, double 
 void SurfaceNoise::look_up(
     const PixelNoise& noise, int surface, double u0, double v0, Square& square) const {
     const std::uint64_t key = PixelNoise::key(seed_, static_cast<std::uint64_t>(surface));
-    // Lattices of more than 2^16 steps repeat; with 0.1 m between nodes that is 6.5 km.
+    // Lattices repeat after 2^16 steps; with 0.1 m between nodes that is 6.5 km.
     const auto first_x = static_cast<std::uint32_t>(saturated_integer<std::int64_t>(u0));
     const auto first_y = static_cast<std::uint32_t>(saturated_integer<std::int64_t>(v0));
     const auto node = [&](std::uint32_t du, std::uint32_t dv) {

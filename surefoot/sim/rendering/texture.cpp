@@ -13,7 +13,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Appends the cells of one level, which wrap at its end.
+/// Appends the cells of one level; the level repeats beyond its border.
 void append_cells(const Image<float>& field, std::vector<std::uint32_t>& cells) {
     const int mask = field.width() - 1;
     const auto stored = [&](int x, int y) {
@@ -61,11 +61,12 @@ void Material::describe(ConfigVisitor& visitor) {
     visitor.number("yaw_rad", yaw_rad, -10.0, 10.0, "rotation of the pattern on the surface");
     visitor.enumeration(
         "finish", finish, kFinishNames, "how the surface reflects or transmits light");
-    visitor.number("gloss",
-                   gloss,
-                   0.0,
-                   1.0,
-                   "mirror: share of light reflected; glass: share of light transmitted");
+    visitor.number(
+        "gloss",
+        gloss,
+        0.0,
+        1.0,
+        "share of light that a mirror reflects or glass transmits; not used if finish is matte");
     visitor.boolean("same_look",
                     same_look,
                     "true: all solids of this material and of one shape have the same pattern");

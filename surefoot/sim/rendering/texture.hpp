@@ -55,8 +55,8 @@ inline constexpr const char* kFinishNames[] = {"matte", "mirror", "glass"};
 struct Material {
     Pattern pattern = Pattern::carpet;
     double albedo = 0.45;    ///< mean reflectance, 0..1
-    double contrast = 0.6;   ///< 0 = uniform
-    double texel_m = 0.002;  ///< size of the finest detail
+    double contrast = 0.6;   ///< contrast of the pattern; 0 = uniform
+    double texel_m = 0.002;  ///< size of the finest detail of the pattern
     double yaw_rad = 0.0;    ///< rotation of the pattern on the surface
     std::uint64_t seed = 0;  ///< shifts the pattern; combined with the seed of the scene
     Finish finish = Finish::matte;
@@ -119,7 +119,7 @@ struct Placement {
     float contrast = 0.0F;  ///< contrast of the material times the strength of its pattern
     double texels_per_m = 0.0;
     double along = 0.0;   ///< texels per metre times the cosine of the rotation
-    double across = 0.0;  ///< texels per metre times its sine
+    double across = 0.0;  ///< texels per metre times the sine of the rotation
     double u_texel = 0.0;
     double v_texel = 0.0;
 };
@@ -128,7 +128,7 @@ struct Placement {
 inline constexpr double kBlotchScale = 1.0 / 13.7;
 
 /// Footprint of a pixel on a pattern, in texels: an ellipse `minor_texel` across, stretched by 1 /
-/// `cosine` along a direction of any length.
+/// `cosine` along a direction. The length of the direction does not matter.
 struct TexelLook {
     Eigen::Vector2d at_texel;
     Eigen::Vector2f along_texel;
@@ -186,8 +186,8 @@ class Textures {
                                         double u_m,
                                         double v_m,
                                         const Footprint& footprint) noexcept;
-    /// As above for a batch of positions, bit-identical on every processor; `out` must have room
-    /// for all of them.
+    /// Computes `reflectance` for a batch of positions, bit-identical on every processor; `out`
+    /// must have room for all of them.
     void reflectances(const Placement& placement,
                       const TextureBatch& batch,
                       float* out) const noexcept;

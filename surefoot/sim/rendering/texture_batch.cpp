@@ -12,7 +12,7 @@
 #include <cstdint>
 
 /// Plain loops over arrays that the compiler turns into vector code (this file is compiled with
-/// -O3), once for every instruction set, chosen at run time.
+/// -O3). There is one version for every instruction set; the program selects one at run time.
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::sim::HWY_NAMESPACE {
 namespace {
@@ -21,7 +21,7 @@ using Place = TextureTable::Place;
 template <typename T>
 using Array = TextureBatch::Array<T>;
 
-/// Look-ups that each point of a batch needs.
+/// The look-ups that each point of a batch needs.
 struct Plan {
     Array<int> taps;
     Array<Place> u;  ///< position of the next tap
@@ -56,7 +56,7 @@ HWY_INLINE int make_plan(const TextureBatch& in, Plan& plan) {
 HWY_INLINE void add_tap(const std::uint32_t* cells, int tap, std::size_t count, Plan& plan) {
     for (std::size_t i = 0; i < count; ++i) {
         const lookup::Levels levels = lookup::levels_of(plan.level[i]);
-        // Points that need no further tap do the look-up and discard the result.
+        // Points that need no further tap also do the look-up, but discard the result.
         const std::uint32_t wanted = tap < plan.taps[i] ? ~0U : 0U;
         plan.fine_sum[i] += wanted & lookup::bilinear(cells, levels.fine, plan.u[i], plan.v[i]);
         plan.coarse_sum[i] += wanted & lookup::bilinear(cells, levels.coarse, plan.u[i], plan.v[i]);

@@ -113,7 +113,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
     // in range: both are at most `length`, so at most a tile, 2^26
     cover.du = static_cast<TextureTable::Place>(static_cast<std::int32_t>(along_u * step));
     cover.dv = static_cast<TextureTable::Place>(
-        static_cast<std::int32_t>(along_v * step));  // in range: as du
+        static_cast<std::int32_t>(along_v * step));  // in range: same limit as du
     return cover;
 }
 
@@ -121,7 +121,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
 inline TextureTable::Place first_tap(TextureTable::Place middle,
                                      TextureTable::Place step,
                                      int taps) noexcept {
-    // in range: an integer becomes one
+    // in range: a conversion from unsigned to signed keeps all bits
     const std::int32_t way = (taps - 1) * static_cast<std::int32_t>(step);
     return middle - static_cast<TextureTable::Place>(way >> 1);
 }

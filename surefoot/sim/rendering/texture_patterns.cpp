@@ -15,7 +15,7 @@ float uniform(Rng& rng, float low, float high) {
     return static_cast<float>(rng.uniform(static_cast<double>(low), static_cast<double>(high)));
 }
 
-/// Index in a tile whose size is a power of two.
+/// Wraps an index into a tile whose size is a power of two.
 int wrap(int i, int size) {
     return i & (size - 1);
 }
@@ -24,8 +24,8 @@ float length(float x, float y) {
     return std::sqrt(x * x + y * y);
 }
 
-/// Adds one octave of value noise (random lattice, smoothstep between): cells of cell_u x cell_v
-/// texels, which must divide the size.
+/// Adds one octave of value noise (random lattice, smoothstep between). Its cells have cell_u x
+/// cell_v texels, which must divide the size.
 void add_noise(Image<float>& field, int cell_u, int cell_v, float amplitude, Rng& rng) {
     const int nu = field.width() / cell_u;
     const int nv = field.height() / cell_v;
@@ -53,7 +53,7 @@ void add_noise(Image<float>& field, int cell_u, int cell_v, float amplitude, Rng
     }
 }
 
-/// Paints a turned rectangle with corners (or, with `round`, an ellipse); its rim is one texel
+/// Paints a turned rectangle with corners or, if `round` is true, an ellipse. Its rim is one texel
 /// soft.
 struct Patch {
     float x = 0.0F;
@@ -94,7 +94,7 @@ void scatter(Image<float>& field, int count, float smallest, float largest, bool
         Patch patch;
         patch.x = uniform(rng, 0.0F, static_cast<float>(field.width()));
         patch.y = uniform(rng, 0.0F, static_cast<float>(field.height()));
-        // Many small ones, few large ones: log-uniform sizes look alike at every distance.
+        // Many patches are small and few are large: log-uniform sizes look alike at every distance.
         const float ratio = largest / smallest;
         patch.half_u = smallest * std::pow(ratio, uniform(rng, 0.0F, 1.0F));
         patch.half_v = patch.half_u * uniform(rng, 0.4F, 1.0F);
@@ -110,7 +110,7 @@ void draw_carpet(Image<float>& field, Rng& rng) {
     scatter(field, 6000, 1.5F, 6.0F, true, rng);
 }
 
-/// Square tiles of 128 texels, each with its own shade, dark joints, worn spots.
+/// Draws square tiles of 128 texels, each with its own shade, dark joints and worn spots.
 void draw_tiles(Image<float>& field, Rng& rng) {
     constexpr int kTile = 128;
     add_noise(field, 4, 4, 0.25F, rng);
@@ -129,7 +129,7 @@ void draw_tiles(Image<float>& field, Rng& rng) {
     }
 }
 
-/// Grain along u, boards of 128 texels, knots.
+/// Draws grain along u, boards of 128 texels, and knots.
 void draw_wood(Image<float>& field, Rng& rng) {
     constexpr int kBoard = 128;
     add_noise(field, 64, 2, 0.5F, rng);
@@ -163,27 +163,29 @@ void draw_plaster(Image<float>& field, Rng& rng) {
     scatter(field, 400, 2.0F, 30.0F, false, rng);
 }
 
-/// Marks of a paint roller: dimples some texels wide, and patches that were painted twice.
+/// Draws the marks of a paint roller: dimples some texels wide, and patches that were painted
+/// twice.
 void draw_white_wall(Image<float>& field, Rng& rng) {
     for (const int cell : {4, 8, 256}) add_noise(field, cell, cell, 0.5F, rng);
     scatter(field, 3000, 2.0F, 5.0F, true, rng);
 }
 
-/// Chips of stone in a ground paste: sharp corners, sizes within a factor of six, nothing larger.
+/// Draws chips of stone in a ground paste. They have sharp corners and sizes within a factor of
+/// six.
 void draw_terrazzo(Image<float>& field, Rng& rng) {
     add_noise(field, 4, 4, 0.15F, rng);
     scatter(field, 5000, 2.0F, 12.0F, false, rng);
     add_noise(field, 256, 256, 0.1F, rng);
 }
 
-/// Dark binder with bright grit a texel or two wide, worn lanes.
+/// Draws a dark binder with bright grit a texel or two wide, and worn lanes.
 void draw_asphalt(Image<float>& field, Rng& rng) {
     for (const int cell : {2, 2, 4}) add_noise(field, cell, cell, 0.5F, rng);
     scatter(field, 9000, 1.0F, 3.5F, true, rng);
     add_noise(field, 128, 128, 0.25F, rng);
 }
 
-/// Stones that lie on each other, each lit on one side and dark at its rim.
+/// Draws stones that lie on each other, each lit on one side and dark at its rim.
 void draw_gravel(Image<float>& field, Rng& rng) {
     field.fill(-1.0F);
     for (int i = 0; i < 7000; ++i) {
@@ -211,7 +213,8 @@ void draw_gravel(Image<float>& field, Rng& rng) {
     add_noise(field, 2, 2, 0.15F, rng);
 }
 
-/// Blades in all directions, longer than they are wide, thin and thick places of the lawn.
+/// Draws blades in all directions, longer than they are wide, and thin and thick places of the
+/// lawn.
 void draw_grass(Image<float>& field, Rng& rng) {
     add_noise(field, 8, 8, 0.3F, rng);
     for (int i = 0; i < 14000; ++i) {

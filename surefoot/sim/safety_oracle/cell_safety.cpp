@@ -20,13 +20,13 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kRounding = 1e-7;
-/// Cells are judged in blocks of this many along x and y that share their samples.
+/// Number of cells along x and along y of a block. The cells of a block share their ground samples.
 constexpr int kBlock = 32;
 /// Cells of a block share samples if their levels fall into the same bin of this size.
 constexpr double kLevelBin_m = 0.05;
 
 /// Walks from the start over the surfaces of the cells; each surface of a cell is a separate node.
-/// A cell keeps its highest reached surface, NaN for none.
+/// A cell keeps its highest reached surface, or NaN if no surface is reached.
 class Walk {
   public:
     Walk(const Scene& scene, const Lattice& lattice, double joined_m)
@@ -93,7 +93,7 @@ class Walk {
     std::vector<Place> open_;
 };
 
-/// The figures that do not depend on a movement; only the size of the box matters.
+/// Returns the figures that do not depend on a movement. Of the box only the size matters.
 rules::Figures foot_figures(const Machine& machine) {
     rules::Figures figures = rules::figures_of(machine, Movement{});
     Rect& foot = figures.feet[0];
@@ -125,7 +125,7 @@ bool edge_near(const GroundField& field,
     return false;
 }
 
-/// Underside of the lowest solid over the foot.
+/// Height of the underside of the lowest solid over the foot.
 double ceiling_over(const GroundField& field, const FootGround& under) {
     double ceiling_m = std::numeric_limits<double>::infinity();
     for (const SolePoint& p : under.points)

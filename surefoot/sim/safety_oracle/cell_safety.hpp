@@ -19,8 +19,8 @@ struct CellQuestion {
     double yaw_rad = 0.0;  ///< heading of the foot in the world
     /// A point on the ground where the machine walks; separates floors from table tops and storeys.
     Eigen::Vector3d start_m = Eigen::Vector3d::Zero();
-    /// Neighbouring cells whose heights differ by more are not joined. The value lies above the
-    /// highest riser of NZ D1/AS1 (220 mm, service stairs) and far below a table.
+    /// Neighbouring cells whose heights differ by more than this are not joined. The value lies
+    /// above the highest riser of NZ D1/AS1 (220 mm, service stairs) and far below a table.
     double joined_m = 0.25;
 };
 

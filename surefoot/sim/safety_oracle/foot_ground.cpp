@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Least-squares plane over points on a lattice; level for fewer than three points or collinear
-/// points.
+/// Fits a least-squares plane to points on a lattice. The plane is level for fewer than three
+/// points or for collinear points.
 LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
     Vector2d middle = Vector2d::Zero();
     for (const SolePoint& p : points) middle += p.p_foot_m;
@@ -32,7 +32,8 @@ LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
         yz += d.y() * dz;
     }
     const double determinant = xx * yy - xy * xy;
-    constexpr double kDegenerate = 1e-9;  // relative determinant of a line of points
+    // Limit of the relative determinant; points on a line stay below it.
+    constexpr double kDegenerate = 1e-9;
     if (!(determinant > kDegenerate * xx * yy)) return {mean_z_m, Vector2d::Zero()};
     const Vector2d slope((yy * xz - xy * yz) / determinant, (xx * yz - xy * xz) / determinant);
     return {mean_z_m - slope.dot(middle), slope};

@@ -22,7 +22,7 @@ struct FootGround {
     std::vector<SolePoint> points;             ///< sole points that have ground
     std::optional<Eigen::Vector2d> void_at_m;  ///< one point without ground, in the field's frame
     double mean_z_m = 0.0;
-    LevelPlane plane;  ///< least squares, over `p_foot_m`
+    LevelPlane plane;  ///< least-squares plane over `p_foot_m`
 
     [[nodiscard]] double tilt_rad() const;
     /// Patch of the sole with the largest mean residual to the plane, and its position. The sole is

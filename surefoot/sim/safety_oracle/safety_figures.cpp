@@ -39,7 +39,7 @@ Figures figures_of(const Machine& machine, const Movement& movement) {
     f.tilt_rad = std::acos(limits.min_normal_z);
     f.patch_side_m = metres(limits.patch_side_tenth_mm);
     f.residual_m = metres(limits.patch_residual_tenth_mm);
-    // A foot that may land higher is lifted to that height.
+    // If the movement class allows a higher landing, the foot is lifted to that height.
     f.clearance_m = std::max(metres(limits.swing_clearance_tenth_mm), f.up_m);
     f.foot_margin_m = metres(limits.foot_margin_tenth_mm);
     f.drop_m = metres(limits.drop_tenth_mm);

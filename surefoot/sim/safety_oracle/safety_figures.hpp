@@ -12,7 +12,7 @@ namespace surefoot::sim::rules {
 
 /// The machine's dimensions and limits for one movement, in metres and radians.
 struct Figures {
-    std::array<Rect, 2> feet;  ///< in base_link
+    std::array<Rect, 2> feet;  ///< rectangles of the feet, in base_link
     /// A part of the body: its box in base_link, without sway; heights over the soles.
     struct Part {
         Rect box;
@@ -23,7 +23,7 @@ struct Figures {
     double sway_m = 0.0;
     double lower_edge_m = 0.0;  ///< lower edge of the whole body, above the soles
     double height_m = 0.0;      ///< height of the whole body, above the soles
-    double hips_m = 0.0;        ///< base_link above the soles
+    double hips_m = 0.0;        ///< height of base_link above the soles
     double up_m = 0.0;
     double down_m = 0.0;
     double tilt_rad = 0.0;

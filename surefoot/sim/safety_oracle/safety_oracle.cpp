@@ -50,7 +50,8 @@ const Movement* movement_of(const Machine& machine, int command) {
     return movement.configured && enabled ? &movement : nullptr;
 }
 
-/// Stance on the ground under the present feet, if this ground is near the height of the pose.
+/// Stance on the ground under the feet before the movement, if this ground is near the pose's
+/// height.
 rules::Stance stance_here(const Scene& scene,
                           const Figures& figures,
                           const PlanarPose& T_world_field,
@@ -105,9 +106,10 @@ std::string describe(const Finding& f) {
         case Danger::not_level_here:
             return fmt::format(
                 "the ground here tilts by {:.1f} deg, limit {:.1f} deg", f.value, f.limit);
-        case Danger::no_ground: return "no ground under a landing foot " + at;
+        case Danger::no_ground: return "there is no ground under a landing foot " + at;
         case Danger::drop_off: return against("a landing foot hangs over a drop of");
-        case Danger::edge_too_near: return against("a drop beside a landing foot at a distance of");
+        case Danger::edge_too_near:
+            return against("a drop lies beside a landing foot at a distance of");
         case Danger::step_up: return against("a landing foot meets a step up of");
         case Danger::step_down: return against("a landing foot meets a step down of");
         case Danger::tilt:
@@ -115,12 +117,15 @@ std::string describe(const Finding& f) {
                                f.value,
                                at,
                                f.limit);
-        case Danger::roughness: return against("uneven ground under a landing foot by");
+        case Danger::roughness: return against("the ground under a landing foot is uneven by");
         case Danger::obstacle_in_way:
             return against("an obstacle in the path of a foot has a height of");
         case Danger::body_hits: return against("the body hits an object that begins at");
         case Danger::overhang_too_low: return against("an object above the machine begins at");
-        case Danger::disconnected: return "the ground of landing is cut off " + at;
+        case Danger::disconnected:
+            return "the ground under a landing foot is not connected to the ground under the "
+                   "standing feet " +
+                   at;
     }
     return "unknown danger";
 }
@@ -163,7 +168,8 @@ SafetyAnswer judge(const Scene& scene,
     if (!stance.known) return refused(Danger::no_stance, {here_m.x(), here_m.y(), sole_z_m});
 
     const Figures wide = rules::stricter(figures, margin.limit_share, margin.position_m);
-    constexpr double kReach_m = 1.0;  // no corner of the region moves farther by a turn
+    // A turn by an angle a moves every corner of the region by at most kReach_m * a.
+    constexpr double kReach_m = 1.0;
     const double slack_m =
         margin.position_m + kReach_m * margin.yaw_rad + 2.0 * GroundField::kSpacing_m;
     const GroundField field(

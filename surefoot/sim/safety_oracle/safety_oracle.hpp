@@ -14,23 +14,23 @@
 
 namespace surefoot::sim {
 
-/// Why a movement is truly dangerous, most important first. Values in metres unless noted.
+/// Reasons why a movement is dangerous, most important first. Values are in metres unless noted.
 enum class Danger : std::uint8_t {
     unknown_command,   ///< the machine has no such movement, or its class is disabled
     unknown_pose,      ///< a number of the pose is not finite
     no_stance,         ///< a foot is not supported now, or the feet stand at two heights
-    not_level_here,    ///< the ground under the present feet is too steep [deg]
+    not_level_here,    ///< the ground under the standing feet is too steep [deg]
     no_ground,         ///< some part of a landing foot has no ground
     drop_off,          ///< a part of a landing foot lies over a drop
-    edge_too_near,     ///< a drop beside a landing foot, inside the band (value: distance)
-    step_up,           ///< ground under a landing foot higher than this class of movement allows
-    step_down,         ///< lower
-    tilt,              ///< the foot would stand too steep [deg]
-    roughness,         ///< a patch of the sole too far from the plane of the foot
+    edge_too_near,     ///< a drop is inside the drop band of a landing foot (value: distance)
+    step_up,           ///< ground under a landing foot is higher than this movement class allows
+    step_down,         ///< ground under a landing foot is lower than this movement class allows
+    tilt,              ///< a landing foot would tilt too steeply [deg]
+    roughness,         ///< a patch of the sole is too far from the plane of the foot
     obstacle_in_way,   ///< an object in the path of a swinging foot (value: its height)
     body_hits,         ///< a solid in the space of the body (value: height of its underside)
     overhang_too_low,  ///< like body_hits, but the underside is above the hips
-    disconnected,      ///< the ground of landing is cut off from the ground of standing
+    disconnected,      ///< the landing ground is not connected to the ground under the feet
 };
 inline constexpr int kDangerCount = 15;
 [[nodiscard]] const char* to_string(Danger danger) noexcept;
@@ -43,10 +43,10 @@ struct Finding {
     Eigen::Vector3d where_m = Eigen::Vector3d::Zero();  ///< world
 };
 
-/// How far pose and limits may move before an answer counts as borderline. ASSUMPTION: errors of a
-/// good map and pose; within this margin the gate may be more careful than the truth.
+/// Changes of pose and limits that a clear-cut answer must survive. ASSUMPTION: errors of a good
+/// map and pose; within this margin the gate may be more careful than the truth.
 struct SafetyMargin {
-    double position_m = 0.010;  ///< along, across, and for the height of the user
+    double position_m = 0.010;  ///< shift along and across, and change of the height of the user
     double yaw_rad = 0.009;     ///< about 0.5 deg
     double limit_share = 0.10;  ///< every other limit is made stricter and looser by this share
 };
@@ -56,10 +56,10 @@ struct SafetyAnswer {
     bool safe = false;  ///< false unless every rule was checked and holds
     /// The answer stays the same within the margin.
     bool clear_cut = false;
-    std::vector<Finding> dangers;  ///< one for each danger, the one that matters most first
+    std::vector<Finding> dangers;  ///< one for each danger, most important first
 
     [[nodiscard]] bool has(Danger danger) const noexcept;
-    /// One sentence for people.
+    /// Describes the answer in one sentence.
     [[nodiscard]] std::string sentence() const;
 };
 
@@ -90,7 +90,7 @@ struct SafetyAnswer {
                                  int command,
                                  const SafetyMargin& margin = {});
 
-/// Answers are at [pose * commands.size() + command]; the same for every executor.
+/// Puts each answer at [pose * commands.size() + command]. Any executor gives the same answers.
 [[nodiscard]] std::vector<SafetyAnswer> judge_all(const Scene& scene,
                                                   const Machine& machine,
                                                   std::span<const Pose> T_world_body,

@@ -27,7 +27,7 @@ class Collector {
         Vector2d p_field_m = Vector2d::Zero();
         double z_m = 0.0;
     };
-    /// The larger `badness`, the worse.
+    /// A larger `badness` is worse.
     void add(Danger danger, double badness, double value, double limit, const Place& place) {
         Slot& slot = slots_[static_cast<std::size_t>(danger)];
         if (slot.used && badness <= slot.badness) return;
@@ -61,7 +61,8 @@ double median(std::vector<double>& values) {
     return upper_median_in_place(values);
 }
 
-/// Slopes over 20 mm along both axes of the field, inside one foot, at every second sample.
+/// Collects slopes over 20 mm along both axes of the field, inside one foot, at every second
+/// sample.
 void collect_slopes(const GroundField& field,
                     const FootGround& foot,
                     const Vector2d& half_m,
@@ -88,7 +89,7 @@ double mean_above(const FootGround& foot, const Vector2d& slope) {
     return sum_m / static_cast<double>(foot.points.size());
 }
 
-/// Checks one pose and one movement: the rules in the order of `Danger`.
+/// Checks one pose and one movement with the rules in the order of `Danger`.
 class Inspector {
   public:
     Inspector(const GroundField& field,
@@ -192,7 +193,7 @@ class Inspector {
     /// Checks the drop band, which is round at the corners of the foot. Heights are relative to the
     /// landed foot.
     void check_band(const Rect& foot, const PlanarPose& T_field_target, double landed_m) {
-        const double lowest_m = landed_m - figures_.drop_m - kRounding;  // over the stance plane
+        const double lowest_m = landed_m - figures_.drop_m - kRounding;  // above the stance plane
         const auto matters = [&](const GroundField::Tile& tile, double, double high_m) {
             return tile.lowest_ground_m - high_m < lowest_m;
         };
@@ -293,8 +294,8 @@ class Inspector {
 
 }  // namespace
 
-/// Finds the stance. Its slope is a median: a sill under the toes does not tilt the ground plane
-/// ahead.
+/// Finds the stance. The slope is a median, so that a sill under the toes does not tilt the ground
+/// plane ahead.
 Stance stand(const GroundField& field, const Figures& figures, const PlanarPose& T_field_body) {
     Stance stance;
     std::array<FootGround, 2> under;

@@ -14,10 +14,10 @@ namespace surefoot::sim::rules {
 /// The plane that both feet stand on, in the frame of the field.
 struct Stance {
     LevelPlane plane;
-    double height_difference_m = 0.0;  ///< between the mean heights of the feet, from the plane
+    double height_difference_m = 0.0;  ///< difference of the feet's mean heights over the plane
     double tilt_rad = 0.0;             ///< tilt of the plane or of one foot, whichever is steeper
-    std::optional<Eigen::Vector2d> void_at_m;  ///< point of a foot without ground, field's frame
-    bool known = false;                        ///< some part of both feet has ground
+    std::optional<Eigen::Vector2d> void_at_m;  ///< a point of a foot without ground [field frame]
+    bool known = false;                        ///< true: some part of both feet has ground
 };
 [[nodiscard]] Stance stand(const GroundField& field,
                            const Figures& figures,

@@ -57,7 +57,7 @@ SweptBox::SweptBox(const Rect& box, const PlanarPose& T_a_start, const PlanarPos
         const Vector2d p_m = parts * step_m;
         return T_a_start * PlanarPose::of(p_m.x(), p_m.y(), turned_parts * turn_rad / count);
     };
-    // Both ends are exact; a piece has the yaw of its middle.
+    // The box poses at both ends are exact; a piece between them has the yaw of its middle.
     pieces_.push_back({pose_after(0, 0), Vector2d::Zero()});
     for (int k = 0; k < count; ++k) {
         const PlanarPose from = pose_after(k, k + 0.5);

@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Limit of the nesting; deeper nesting would exhaust the stack and no scene needs it.
+/// Limit of the nesting. Deeper nesting could exhaust the stack, and no scene needs it.
 constexpr int kMaxDepth = 64;
 
 bool is_letter(char c) noexcept {
@@ -31,7 +31,7 @@ bool is_space(char c) noexcept {
 ///   sum     = product { (+|-) product }
 ///   product = factor { (*|/) factor }
 ///   factor  = (+|-) factor | number | name | ( sum )
-/// After the first error every function returns at once; its value no longer counts.
+/// After the first error every function returns at once; the value then does not count.
 class Parser {
   public:
     Parser(std::string_view text, const NamedNumbers& names) : text_(text), names_(names) {}
@@ -45,7 +45,7 @@ class Parser {
     }
 
   private:
-    /// The next character that is not a space; '\0' at the end.
+    /// Returns the next character that is not a space; '\0' at the end.
     char next() {
         while (at_ < text_.size() && is_space(text_[at_])) ++at_;
         return at_ < text_.size() ? text_[at_] : '\0';
@@ -78,7 +78,9 @@ class Parser {
     }
 
     double factor(int depth) {
-        if (depth >= kMaxDepth) fail(fmt::format("nested deeper than {} levels", kMaxDepth));
+        if (depth >= kMaxDepth)
+            fail(fmt::format("nested deeper than {} levels; use fewer parentheses and signs",
+                             kMaxDepth));
         if (error_) return 0.0;
         const char c = next();
         if (c == '-' || c == '+') {
@@ -106,7 +108,7 @@ class Parser {
         double value = 0.0;
         const char* begin = text_.data() + at_;
         const auto [end, problem] = std::from_chars(begin, text_.data() + text_.size(), value);
-        if (problem != std::errc{}) fail("not a number");
+        if (problem != std::errc{}) fail("not a number in the range of a double");
         at_ += static_cast<std::size_t>(end - begin);
         return value;
     }
@@ -117,7 +119,7 @@ class Parser {
         const std::string_view name = text_.substr(at_, end - at_);
         const auto found = names_.find(name);
         if (found == names_.end()) {
-            fail(fmt::format("no number is named '{}'", name));
+            fail(fmt::format("no number is named '{}'; define a parameter of this name", name));
             return 0.0;
         }
         at_ = end;

@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A surface is buried when another solid begins at it or below and ends above it.
+/// A surface is buried if another solid begins at the surface or below and ends above the surface.
 constexpr double kTouch_m = 1e-9;
-/// Queries of tiles are slightly wider than the tiles, so that no rim on their border is lost.
+/// Queries of tiles are slightly wider than the tiles, so that no rim on a tile border is lost.
 constexpr double kTileMargin_m = 1e-5;
 constexpr int kTileSamples = 16;
-/// Sample indices that lie on a border belong to the area.
+/// Tolerance of sample indices. Samples on the border of an area belong to the area.
 constexpr double kIndexRounding = 1e-6;
 
 std::optional<Column> column_of(const Scene& scene, int primitive, const Vector2d& p_m) {
@@ -99,7 +99,7 @@ std::vector<int> all_primitives(const Scene& scene) {
     return all;
 }
 
-/// Index of a sample; limited to a million kilometres.
+/// Index of a sample, limited to 2^28 (1342 km from the origin).
 int index_of(double samples) {
     constexpr int kFarthest = 1 << 28;
     return clamped_integer<int>(samples, -kFarthest, kFarthest);
@@ -184,7 +184,7 @@ std::vector<char> GroundField::reached_from(const std::vector<Range>& seeds, dou
         lowest_m = std::min(lowest_m, tile.lowest_ground_m);
         highest_m = std::max(highest_m, tile.highest_ground_m);
     }
-    // Without any jump all samples are joined (a void, with height -inf, counts as a jump).
+    // Without any jump all samples are joined. A void has height -inf, so it counts as a jump.
     if (highest_m - lowest_m <= jump_m) return std::vector<char>(samples_.size(), 1);
 
     std::vector<char> reached(samples_.size(), 0);

@@ -11,12 +11,12 @@ namespace surefoot::sim {
 
 /// Ground and obstacles on one vertical line, for a machine on some level (world-frame heights).
 struct GroundSample {
-    /// The highest surface within a foot's reach above the level. If every surface is higher, the
-    /// lowest of them. NaN without any ground.
+    /// The highest surface within a foot's reach above the level, or the lowest surface if every
+    /// surface is higher. NaN without any ground.
     double ground_m = std::numeric_limits<double>::quiet_NaN();
     /// Underside of the lowest solid that ends above the reach; infinity if the space is free.
     double underside_m = std::numeric_limits<double>::infinity();
-    /// Top of the highest of those solids; minus infinity if the space is free.
+    /// Top of the highest solid that ends above the reach; minus infinity if the space is free.
     double top_m = -std::numeric_limits<double>::infinity();
 };
 
@@ -38,7 +38,7 @@ class GroundField {
     /// 16 x 16 samples with bounds of their values, so that flat areas can be skipped.
     struct Tile {
         Range range;
-        double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf: has a void
+        double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf = has a void
         double highest_ground_m = -std::numeric_limits<double>::infinity();
         double lowest_underside_m = std::numeric_limits<double>::infinity();
         double highest_top_m = -std::numeric_limits<double>::infinity();

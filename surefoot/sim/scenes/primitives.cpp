@@ -15,10 +15,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Rims belong to the solid: a point this close outside still stands on it.
+/// Rims belong to the solid: a point outside by at most this distance still stands on the solid.
 constexpr double kRim_m = 1e-9;
-/// A cell that overlaps a primitive by less is not covered by it. This keeps the cell before a
-/// riser at the height of the floor if riser and cell border coincide.
+/// A primitive does not cover a cell that overlaps it by less than this width. This keeps the cell
+/// before a riser at the height of the floor if riser and cell border coincide.
 constexpr double kTouch_m = 1e-6;
 
 bool inside(const Rect& rect, double x_m, double y_m, double margin_m) {
@@ -35,7 +35,7 @@ void shorten(RayHit& hit, double distance_m, int face) {
     if (distance_m > 0.0 && distance_m < hit.distance_m) hit = {distance_m, face};
 }
 
-/// The part of a polygon with normal . p <= offset (Sutherland and Hodgman 1974, one edge).
+/// Returns the part of a polygon with normal . p <= offset (Sutherland and Hodgman 1974, one edge).
 std::vector<Vector2d> clip(const std::vector<Vector2d>& polygon,
                            const Vector2d& normal,
                            double offset) {
@@ -60,7 +60,7 @@ FaceFrame side_frame(const Vector3d& normal) {
     return frame;
 }
 
-/// Corners counter-clockwise from above.
+/// Returns the corners, counter-clockwise as seen from above.
 std::vector<Vector3d> corners_of(const Rect& rect, double z_m) {
     return {{rect.min_m.x(), rect.min_m.y(), z_m},
             {rect.max_m.x(), rect.min_m.y(), z_m},
@@ -72,7 +72,7 @@ Vector2d direction(double yaw_rad) {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
 
-/// Intersects ray by ray.
+/// Intersects the rays one by one.
 template <typename Shape>
 void intersect_each(const Shape& shape,
                     const Vector3d& origin,
@@ -126,7 +126,8 @@ void Floor::intersect(const Vector3d& origin,
     intersect_each(*this, origin, rays, range, first_face, hits);
 }
 
-/// The ray is inside the open box of the pit: where it leaves that box is a wall or the bottom.
+/// Finds the hit of a ray inside the open box of a pit. The ray leaves the box through a wall or
+/// the bottom.
 void Floor::enter_pit(
     int pit, const Vector3d& origin, const Vector3d& direction, int first_face, RayHit& hit) const {
     const Pit& p = pits_[static_cast<std::size_t>(pit)];
@@ -237,8 +238,8 @@ Prism::Prism(std::vector<Vector2d> footprint_m, double bottom_m, const Top& top)
 }
 
 /// Clips each ray by the half spaces (Cyrus and Beck 1978). A ray can enter only through a face
-/// that the origin is outside of, and it must pass all of those before it leaves through one of the
-/// others; from inside the solid nothing is met.
+/// that is turned to the origin. It must pass the planes of all such faces before it leaves through
+/// another face. A ray that begins inside the solid meets nothing.
 void Prism::intersect(const Vector3d& origin,
                       std::span<const Vector3d> directions,
                       int first_face,
@@ -304,7 +305,7 @@ std::optional<Column> Prism::column(double x_m, double y_m) const {
     return Column{bottom_m_, top_m, 0};
 }
 
-/// The top is a plane, so over the clipped cell its maximum lies at a corner.
+/// The top is a plane, so its maximum over the clipped cell lies at a corner.
 std::optional<double> Prism::highest_over(const Rect& cell) const {
     const Vector2d low = cell.min_m.array() + kTouch_m;
     const Vector2d high = cell.max_m.array() - kTouch_m;
@@ -367,7 +368,7 @@ std::vector<FaceFrame> Prism::faces() const {
 Cylinder::Cylinder(const Vector2d& center_m, double radius_m, double bottom_m, double top_m)
     : center_m_(center_m), radius_m_(radius_m), bottom_m_(bottom_m), top_m_(top_m) {}
 
-/// Overlap of two intervals along the ray: inside the infinite cylinder (roots of a quadratic), and
+/// Intersects two intervals along the ray: inside the infinite cylinder (roots of a quadratic), and
 /// between the planes of the caps.
 void Cylinder::intersect(const Vector3d& origin,
                          std::span<const Vector3d> directions,

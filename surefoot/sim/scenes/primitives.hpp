@@ -134,7 +134,7 @@ class Prism {
     double bottom_m_ = 0.0;
     Top top_;
     std::vector<HalfSpace> half_spaces_;                    ///< indexed like the faces
-    std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< of the faces, counter-clockwise
+    std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< face corners, counter-clockwise
 };
 
 /// Upright cylinder. Face 0 is the top, 1 the bottom, 2 the side.
@@ -166,13 +166,13 @@ class Cylinder {
 };
 
 /// Every primitive offers
-///   intersect       shortens `hits` where it is met at a distance > 0 (unit directions; NaN
-///                   misses); the same, bit by bit, for rays of a batch
-///   column          what stands on a point of the ground, rims included
+///   intersect       shortens `hits` of rays that meet it at a distance > 0 (unit directions; a
+///                   NaN ray misses). A batch gives the same bits as single rays.
+///   column          the part of a vertical line that is solid, rims included
 ///   highest_over    exact highest point over the inside of a cell
-///   hull            corners of a convex solid that holds it
-///   only_face       the plane face that every ray of a beam meets first, where that is easily
-///                   proved; `intersect` then gives the distance to its plane, to the last bit
+///   hull            corners of a convex solid that contains the primitive
+///   only_face       the plane face that every ray of a beam meets first, if the proof is easy;
+///                   `intersect` then gives the distance to its plane, to the last bit
 using Primitive = std::variant<Floor, Prism, Cylinder>;
 
 /// Box that stands at `center_m`, turned by `yaw_rad` about its upright axis.

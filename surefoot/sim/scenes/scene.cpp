@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A surface is buried when another solid begins at it or below and ends above it.
+/// A surface is buried if another solid begins at the surface or below and ends above the surface.
 constexpr double kTouch_m = 1e-9;
 
 }  // namespace

@@ -94,7 +94,7 @@ class Scene {
     [[nodiscard]] bool blocked(const Eigen::Vector3d& origin_m,
                                const Eigen::Vector3d& direction,
                                double distance_m) const;
-    /// Shortens `hits` by one primitive; the inner loop of the renderer.
+    /// Shortens `hits` where one primitive is nearer; the inner loop of the renderer.
     void intersect_primitive(int primitive,
                              const Eigen::Vector3d& origin_m,
                              std::span<const Eigen::Vector3d> directions,
@@ -120,7 +120,7 @@ class Scene {
     [[nodiscard]] const Primitive& primitive(int index) const;
     [[nodiscard]] const Sphere& bounds(int primitive) const;
     [[nodiscard]] const std::vector<Eigen::Vector3d>& hull(int primitive) const;
-    /// See Primitive; the face index is that of the scene.
+    /// Calls `only_face` of one primitive; the face index is that of the scene.
     [[nodiscard]] std::optional<FacePlane> only_face(int primitive, const Beam& beam) const;
     /// Index of the first surface of a primitive; its other surfaces follow.
     [[nodiscard]] int first_surface(int primitive) const {

@@ -30,7 +30,9 @@ void SceneBuilder::add_materials(const SceneNode& group) {
     for (const SceneNode& node : group.items) {
         if (!is_name(node.key)) {
             reader_.fail(node.line,
-                         fmt::format("'{}' is not a valid name for a material", node.key));
+                         fmt::format("'{}' is not a valid name for a material; use letters, digits "
+                                     "and _, with no digit at the start",
+                                     node.key));
         }
         Material material;
         material.seed = scene_.materials().size();
@@ -56,10 +58,12 @@ void SceneBuilder::place_one(const SceneNode& node, const Spec& spec, const Plac
     ++solids_;
     lines_.resize(static_cast<std::size_t>(scene_.primitives()), node.line);
     if (scene_.primitives() > kMaxPrimitives) {
-        reader_.fail(node,
-                     fmt::format("makes {} primitives; a scene may have at most {}",
-                                 scene_.primitives(),
-                                 kMaxPrimitives));
+        reader_.fail(
+            node,
+            fmt::format(
+                "brings the scene to {} primitives; a scene may have at most {}. Remove objects",
+                scene_.primitives(),
+                kMaxPrimitives));
     }
 }
 
@@ -81,7 +85,9 @@ void SceneBuilder::add_floor(const SceneNode& node, const Place& place) {
         if (pits == nullptr) return;
         if (pits->items.size() > kMaxPits) {
             reader_.fail(
-                *pits, fmt::format("are {}; at most {} are allowed", pits->items.size(), kMaxPits));
+                *pits,
+                fmt::format(
+                    "has {} entries; at most {} are allowed", pits->items.size(), kMaxPits));
         }
         for (const SceneNode& item : pits->items) {
             PitSpec pit;

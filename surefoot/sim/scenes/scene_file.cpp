@@ -20,17 +20,20 @@ namespace {
 
 constexpr std::uint64_t kParameterStream = 0x706172616d;
 
-/// A scene within its file.
+/// One scene of a file.
 struct Entry {
     SceneInfo info;
-    const SceneNode* figures = nullptr;  ///< the variant, or nullptr
+    /// Group of the variant; nullptr if the file has no variants.
+    const SceneNode* figures = nullptr;
     int line = 1;
 };
 
 void check_info(SceneReader& reader, const Entry& entry) {
     if (!is_name(entry.info.name)) {
         reader.fail(entry.line,
-                    fmt::format("'{}' is not a valid name for a scene", entry.info.name));
+                    fmt::format("'{}' is not a valid name for a scene; use letters, digits and _, "
+                                "with no digit at the start",
+                                entry.info.name));
     }
     const std::string& text = entry.info.description;
     if (text.empty() || text.find('\n') != std::string::npos) {
@@ -48,11 +51,12 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
         const std::string name = text_of(root, "name");
         entries.push_back({{name, text_of(root, "description")}, nullptr, root.line});
     } else if (const auto* variants = reader.required(root, "variants", SceneNode::Kind::group)) {
-        if (root.find("name") != nullptr) reader.fail(root, "has both 'name' and 'variants'");
+        if (root.find("name") != nullptr)
+            reader.fail(root, "the file has both 'name' and 'variants'; remove one of them");
         for (const SceneNode& node : variants->items) {
             entries.push_back({{node.key, text_of(node, "description")}, &node, node.line});
         }
-        if (entries.empty()) reader.fail(*variants, "names no scene");
+        if (entries.empty()) reader.fail(*variants, "names no scene; add at least one");
     }
     for (const Entry& entry : entries) {
         if (!reader.error()) check_info(reader, entry);
@@ -60,8 +64,8 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
     return entries;
 }
 
-/// Defines the parameters. The figures of a variant come first; each replaces the parameter of its
-/// name, which is the default of the other variants.
+/// Defines the parameters. The figures of a variant come first. A figure replaces the parameter of
+/// the same name, whose value is the default of the other variants.
 void define_parameters(SceneReader& reader,
                        const SceneNode& root,
                        const Entry& entry,
@@ -145,7 +149,7 @@ ScriptedScene build(SceneReader& reader,
     return out;
 }
 
-/// The entry of that name; the only one for an empty name.
+/// Returns the entry of that name. An empty name selects the only entry of a file.
 const Entry* choose(SceneReader& reader,
                     const std::vector<Entry>& entries,
                     const std::string& name) {
@@ -156,7 +160,8 @@ const Entry* choose(SceneReader& reader,
         names.push_back(entry.info.name);
     }
     reader.fail(1,
-                name.empty() ? fmt::format("holds {} scenes; add '#NAME' with one of: {}",
+                name.empty() ? fmt::format("the file holds {} scenes; add '#NAME' to the file "
+                                           "name, with one of these names: {}",
                                            names.size(),
                                            fmt::join(names, ", "))
                              : fmt::format("no scene is named '{}'{}; there are: {}",
@@ -191,7 +196,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     if (reader.error()) return *reader.error();
     const Entry* entry = choose(reader, entries, name);
     if (entry == nullptr) return *reader.error();
-    // The same seed must not draw the same light and distance in every scene.
+    // Without the name, the same seed would draw the same light and distance in every scene.
     const std::uint64_t scene_seed = mix_seed(seed, fnv1a(entry->info.name));
     ScriptedScene scene = build(reader, *root, *entry, scene_seed, motion_model);
     if (reader.error()) return *reader.error();

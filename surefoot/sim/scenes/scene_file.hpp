@@ -36,7 +36,7 @@ namespace surefoot::sim {
 ///       motion_model: trolley                              # or rex, hand
 ///       waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: end_m, y_m: 0}]
 ///
-/// Instead of waypoints a motion may name one of motion_scripts.hpp with its figures:
+/// Instead of waypoints a motion may name a script of motion_scripts.hpp with its figures:
 ///
 ///     motion: {motion_model: rex, script: back_to_table, table_x_m: distance_m, left_m: 0.95}
 ///     # approach: distance_m; turn_round: turn_deg; pivot_and_reverse: distance_m;
@@ -52,14 +52,14 @@ struct SceneFile {
     std::string_view text;
 };
 
-/// Largest number of primitives in a scene file. Images store the surface number in 15 bits.
+/// Limit of the primitives in a scene file, because images number their surfaces in 15 bits.
 inline constexpr int kMaxPrimitives = 2000;
 
 /// The scenes that a file holds.
 [[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
 
 /// Reads one scene; `name` may be empty if the file holds only one. The random stream depends on
-/// seed and scene name: seed 7 of two scenes or variants has nothing in common. `motion_model`
+/// seed and scene name: seed 7 draws unrelated numbers in two scenes or variants. `motion_model`
 /// replaces that of the scene (same path, default speed of that model).
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,

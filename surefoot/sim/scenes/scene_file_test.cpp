@@ -270,8 +270,9 @@ TEST(SceneFileTest, AScannerStandsOverTheGround) {
     };
     EXPECT_NE(error_of("scan: {stations: [{x_m: 7, y_m: 0}]}\n").find("there is no ground"),
               std::string::npos);
-    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0; 1 to 100 are allowed"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of("scan: {stations: []}\n").find("'stations' has 0 entries; 1 to 100 are allowed"),
+        std::string::npos);
     EXPECT_NE(error_of("scan: {from: 3}\n").find("unknown key 'from'"), std::string::npos);
 }
 
@@ -351,7 +352,7 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
                    "stone}\n"),
          "test.yaml:10: 'length_m' is 0; it must be 0.001 to 100"},
         {file_with("  - box: {" + box + ", bottom_m: 1.5}\n"),
-         "test.yaml:10: 'box' top_m 1 is not above bottom_m 1.5"},
+         "test.yaml:10: 'box' top_m 1 must be above bottom_m 1.5"},
         {file_with("  - box:\n      {material: stone, x_m: [1]}\n"),
          "test.yaml:11: 'x_m' needs a number, not a list"},
         {file_with("  - box: {material: stone, x_m: far}\n"),
@@ -367,7 +368,7 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {file_with("  - box\n"), "test.yaml:10: a solid is one group"},
         {file_with("  - floor: {min_x_m: 1, min_y_m: 0, max_x_m: 0, max_y_m: 1, material: "
                    "stone}\n"),
-         "test.yaml:10: 'floor' max_x_m 0 is not above min_x_m 1"},
+         "test.yaml:10: 'floor' max_x_m 0 must be at least 1 mm above min_x_m 1"},
         {file_with("  - group: {heading_deg: 5, solids: [{floor: {min_x_m: 0, min_y_m: 0, max_x_m: "
                    "1, max_y_m: 1, material: stone}}]}\n"),
          "'floor' cannot stand in a turned group"},
@@ -387,14 +388,14 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
                    "stone}\n"),
          "wall_height_m 2.4 leaves no lintel above opening_height_m 3"},
         {file_with("  - table: {x_m: 2, y_m: 0, length_m: 1, width_m: 0.1, material: stone}\n"),
-         "'table' leg_inset_m 0.06 is not below half"},
+         "'table' leg_inset_m 0.06 must be below half"},
         {file_with("  - repeat: {count: 3000, name: k, solids: []}\n"),
          "'count' is 3000; it must be 0 to 2000"},
         {file_with(
              "  - repeat: {count: 50, name: k, solids: [{repeat: {count: 50, name: j, solids: "
              "[{box: {" +
              box + "}}]}}]}\n"),
-         "test.yaml:10: 'box' makes 2001 primitives; a scene may have at most 2000"},
+         "test.yaml:10: 'box' brings the scene to 2001 primitives; a scene may have at most 2000"},
         {file_with("  - repeat: {count: 2, name: k, solids: [{repeat: {count: 2, name: k, solids: "
                    "[]}}]}\n"),
          "parameter 'k' is defined twice"},
@@ -456,7 +457,7 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
         {replaced("waypoints:", "motion_model: horse\n  waypoints:"),
          "test.yaml:8: 'motion_model' 'horse' is not one of trolley, rex, hand"},
         {replaced("[{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]", "[]"),
-         "test.yaml:8: 'waypoints' are 0; 1 to 1000 are allowed"},
+         "test.yaml:8: 'waypoints' has 0 entries; 1 to 1000 are allowed"},
         {replaced("pause_s: 1", "pause_s: -1"), "test.yaml:8: 'pause_s' is -1"},
     };
     for (const BadFile& file : files) {
@@ -490,7 +491,8 @@ TEST(SceneFileTest, VariantsShareAFileAndFixItsFigures) {
     EXPECT_NE(drawn("low", 5).translation_m, drawn("high", 5).translation_m)
         << "the name counts with the seed";
     EXPECT_EQ(read_scene({"test.yaml", text}, "", 1).error().message,
-              "test.yaml:1: holds 2 scenes; add '#NAME' with one of: low, high");
+              "test.yaml:1: the file holds 2 scenes; add '#NAME' to the file name, with one of "
+              "these names: low, high");
     EXPECT_EQ(read_scene({"test.yaml", text}, "flat", 1).error().message,
               "test.yaml:1: no scene is named 'flat'; there are: low, high");
 }

@@ -33,7 +33,7 @@ constexpr const char* kScriptNames[] = {"approach",
                                         "descend_backwards",
                                         "pivot_and_reverse"};
 
-/// Keys of every motion.
+/// Keys that every motion has.
 struct MotionModelSpec {
     MotionModel motion_model = MotionModel::trolley;
     double speed_m_s = 0.0;
@@ -46,12 +46,12 @@ struct MotionModelSpec {
                        0.0,
                        2.0,
                        "speed of the motion; 0 = default of the motion model");
-        visitor.number(
-            "height_m",
-            height_m,
-            0.0,
-            3.0,
-            "height of base_link if the camera is hand-held; 0 = default of the motion model");
+        visitor.number("height_m",
+                       height_m,
+                       0.0,
+                       3.0,
+                       "height of base_link above the ground if the camera is hand-held; 0 = "
+                       "default of the motion model");
     }
 };
 
@@ -205,8 +205,9 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     const SceneNode* stops = reader.required(group, "waypoints", SceneNode::Kind::list);
     if (stops == nullptr) return script;
     if (stops->items.empty() || stops->items.size() > kMaxWaypoints) {
-        reader.fail(*stops,
-                    fmt::format("are {}; 1 to {} are allowed", stops->items.size(), kMaxWaypoints));
+        reader.fail(
+            *stops,
+            fmt::format("has {} entries; 1 to {} are allowed", stops->items.size(), kMaxWaypoints));
     }
     for (const SceneNode& item : stops->items) {
         WaypointSpec stop;
@@ -221,7 +222,7 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     return script;
 }
 
-/// Checks that points are outside solids; the names are for messages.
+/// Checks that a point is outside all solids; `what` names the point in the message.
 void check_free(SceneReader& reader,
                 const SceneNode& group,
                 const SceneBuilder& builder,
@@ -257,8 +258,8 @@ MotionScript read_motion(SceneReader& reader, const SceneNode& node) {
 }
 
 GroundHeight ground_of(const Scene& scene) {
-    // Above the highest riser of the gait, 0.20 m: a slightly higher block is refused as a step
-    // instead of being walked through.
+    // The value lies above the highest riser of the gait, 0.20 m. So a slightly higher block is
+    // refused as a step; the machine does not walk through it.
     constexpr double kFootReach_m = 0.25;
     constexpr double kBottomless_m = -1000.0;
     return [&scene, last_m = 0.0](double x_m, double y_m) mutable {
@@ -269,7 +270,7 @@ GroundHeight ground_of(const Scene& scene) {
             last_m = surface.z_m;
             return last_m;
         }
-        return surfaces.back().z_m;  // inside a block: its top, which is too high
+        return surfaces.back().z_m;  // inside a block: height of a top that is too high for a step
     };
 }
 

@@ -16,7 +16,7 @@ constexpr int kMaxDepth = 32;
 constexpr int kMaxValues = 100'000;
 constexpr std::size_t kMaxKeys = 10'000;
 
-/// Turns yaml-cpp's nodes into ours; keeps the first problem.
+/// Converts yaml-cpp's nodes to SceneNode and keeps the first problem.
 class Copier {
   public:
     explicit Copier(const std::string& file) : file_(file) {}
@@ -59,7 +59,8 @@ class Copier {
             return fail(line, fmt::format("more than {} keys in a group", kMaxKeys));
         }
         if (out.find(key.Scalar()) != nullptr) {
-            return fail(line, fmt::format("key '{}' appears twice", key.Scalar()));
+            return fail(line,
+                        fmt::format("key '{}' appears twice; remove one of the two", key.Scalar()));
         }
         SceneNode item = copy(value, depth + 1);
         item.key = key.Scalar();

@@ -25,7 +25,7 @@ struct SceneNode {
     [[nodiscard]] const SceneNode* find(std::string_view name) const noexcept;
 };
 
-/// "a list", "a group of keys" ... for messages.
+/// Names the kind in a message, for example "a list" or "a group of keys".
 [[nodiscard]] const char* to_string(SceneNode::Kind kind) noexcept;
 
 /// `file` is the name in messages. Errors: more than 1 MB, 32 levels, 10 000 keys in a group or 100

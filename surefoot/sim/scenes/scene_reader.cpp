@@ -78,7 +78,7 @@ class GroupReader final : public ConfigVisitor {
         value = static_cast<int>(found - names.begin());
     }
 
-    /// Refuses keys of the current group that nobody has read.
+    /// Refuses keys of the current group that neither the config nor the caller reads.
     void refuse_unknown_keys(const std::vector<std::string_view>& other_keys) {
         if (levels_.back().group == nullptr) return;
         std::vector<std::string_view> known = levels_.back().asked;
@@ -88,7 +88,7 @@ class GroupReader final : public ConfigVisitor {
 
   private:
     struct Level {
-        const SceneNode* group = nullptr;  ///< nullptr where the file leaves the group out
+        const SceneNode* group = nullptr;  ///< nullptr if the file leaves the group out
         std::vector<std::string_view> asked;
     };
 
@@ -189,10 +189,14 @@ void SceneReader::read_keys(const SceneNode& group,
 
 void SceneReader::define(const SceneNode& origin, const std::string& name, double value) {
     if (!is_name(name)) {
-        return fail(origin.line, fmt::format("'{}' is not a valid name for a parameter", name));
+        return fail(origin.line,
+                    fmt::format("'{}' is not a valid name for a parameter; use letters, digits and "
+                                "_, with no digit at the start",
+                                name));
     }
     if (numbers_.contains(name) || words_.contains(name)) {
-        return fail(origin.line, fmt::format("parameter '{}' is defined twice", name));
+        return fail(origin.line,
+                    fmt::format("parameter '{}' is defined twice; remove one definition", name));
     }
     numbers_[name] = value;
 }
@@ -200,7 +204,7 @@ void SceneReader::define(const SceneNode& origin, const std::string& name, doubl
 void SceneReader::define_value(const SceneNode& name, const SceneNode& value) {
     if (value.kind == SceneNode::Kind::text && looks_like_a_word(value.text, numbers_)) {
         const std::string meant = word(value);
-        define(name, name.key, 0.0);  // the name must be free
+        define(name, name.key, 0.0);  // fails if the name is already used
         forget(name.key);
         words_[name.key] = meant;
         return;
@@ -232,7 +236,10 @@ void SceneReader::define_drawn(const SceneNode& parameter, Rng& rng) {
     const double low = number(how.items[0]);
     const double high = number(how.items[1]);
     if (!error_ && low > high) {
-        fail(parameter, fmt::format("has its low end {} above its high end {}", low, high));
+        fail(parameter,
+             fmt::format("has its low end {} above its high end {}; give the smaller number first",
+                         low,
+                         high));
     }
     const double drawn = rng.uniform(low, high);
     if (!error_) define(parameter, parameter.key, drawn);

@@ -21,7 +21,7 @@ namespace surefoot::sim {
 
 /// Marks a required number: a value that is still NaN after reading is missing.
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
-/// Marks a required choice.
+/// Marks a required choice: a value that is still -1 after reading is missing.
 inline constexpr int kRequiredChoice = -1;
 
 /// Reads values of a scene file. Numbers are expressions of the parameters above them; a parameter

@@ -41,8 +41,9 @@ std::vector<Eigen::Vector3d> read_stations(SceneReader& reader,
     const SceneNode* list = reader.required(group, "stations", SceneNode::Kind::list);
     if (reader.error()) return {};
     if (list->items.empty() || list->items.size() > kMaxStations) {
-        reader.fail(*list,
-                    fmt::format("are {}; 1 to {} are allowed", list->items.size(), kMaxStations));
+        reader.fail(
+            *list,
+            fmt::format("has {} entries; 1 to {} are allowed", list->items.size(), kMaxStations));
     }
     std::vector<Eigen::Vector3d> stations_m;
     for (const SceneNode& item : list->items) {
@@ -51,7 +52,10 @@ std::vector<Eigen::Vector3d> read_stations(SceneReader& reader,
         if (reader.error()) return {};
         const auto ground = scene.height_at(spec.x_m, spec.y_m);
         if (!ground) {
-            reader.fail(item, fmt::format("({}, {}) m: there is no ground", spec.x_m, spec.y_m));
+            reader.fail(
+                item,
+                fmt::format(
+                    "at x {} m, y {} m there is no ground; move the scanner", spec.x_m, spec.y_m));
             return {};
         }
         stations_m.emplace_back(spec.x_m, spec.y_m, ground->z_m + spec.above_m);

@@ -22,13 +22,13 @@ struct Entry {
     const SceneFile* file = nullptr;
 };
 
-/// The scenes inside the program; read once.
+/// The scenes that are compiled into the program; read once.
 const std::vector<Entry>& index() {
     static const std::vector<Entry> all = [] {
         std::vector<Entry> entries;
         for (const SceneFile& file : embedded_scenes()) {
             const auto infos = read_scene_infos(file);
-            SUREFOOT_ASSERT(infos.ok());  // tests read all embedded scenes
+            SUREFOOT_ASSERT(infos.ok());  // cannot fail: tests read all embedded scenes
             for (const SceneInfo& info : *infos) entries.push_back({info, &file});
         }
         return entries;
@@ -67,7 +67,7 @@ Result<ScriptedScene> make_scene(const std::string& name,
         if (entry.info.name == name) return read_scene(*entry.file, name, seed, motion_model);
         names.push_back(entry.info.name);
     }
-    // A list of a hundred names would hide the likely one.
+    // The message names only the likely scene, because a list of a hundred names would hide it.
     const std::string likely = did_you_mean(name, names);
     return usage_error(
         fmt::format("simulator: no scene is named '{}'{} 'surefoot sim --list' "
@@ -90,7 +90,7 @@ double drawn_number(const ScriptedScene& script, std::string_view name) {
                                     script.parameters.end(),
                                     [&](const SceneParameter& p) { return p.name == name; });
     SUREFOOT_ASSERT(found != script.parameters.end());
-    return std::stod(found->value);  // drawn values are written exactly
+    return std::stod(found->value);  // exact, because the text of a drawn value is exact
 }
 
 }  // namespace surefoot::sim

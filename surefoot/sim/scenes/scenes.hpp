@@ -18,7 +18,7 @@ namespace surefoot::sim {
 
 struct SceneInfo {
     std::string name;
-    std::string description;  ///< one line
+    std::string description;  ///< one line of text
 };
 
 /// A parameter value that the seed has drawn.

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Limit of coordinates: scenes are places to walk through, not landscapes.
+/// Limit of coordinates: scenes are places to walk through, no landscapes.
 constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 
@@ -32,7 +32,8 @@ void describe_heading(ConfigVisitor& visitor, double& heading_deg) {
 }
 
 void describe_size(ConfigVisitor& visitor, const char* key, double& size_m) {
-    visitor.number(key, size_m, kMinSize_m, kReach_m, "dimension of the object that the key names");
+    visitor.number(
+        key, size_m, kMinSize_m, kReach_m, "dimension of the object; the key says which one");
 }
 
 void describe_height(ConfigVisitor& visitor, const char* key, double& z_m) {
@@ -40,20 +41,20 @@ void describe_height(ConfigVisitor& visitor, const char* key, double& z_m) {
                    z_m,
                    -kReach_m,
                    kReach_m,
-                   "height that the key names, above the origin of the group or scene");
+                   "height above the origin of the group or scene; the key says of which part");
 }
 
 std::optional<std::string> not_above(double bottom_m, double top_m) {
     if (top_m - bottom_m >= kMinSize_m) return std::nullopt;
     return fmt::format(
-        "top_m {} is not above bottom_m {} by at least {} m", top_m, bottom_m, kMinSize_m);
+        "top_m {} must be above bottom_m {} by at least {} m", top_m, bottom_m, kMinSize_m);
 }
 
 int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// Box in the frame of a place.
+/// Makes a box in the frame of a place.
 Prism placed_box(const Place& place,
                  const Vector2d& center_m,
                  const Vector2d& size_m,
@@ -157,10 +158,10 @@ void AreaSpec::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> AreaSpec::problem() const {
     if (max_x_m - min_x_m < kMinSize_m) {
-        return fmt::format("max_x_m {} is not above min_x_m {}", max_x_m, min_x_m);
+        return fmt::format("max_x_m {} must be at least 1 mm above min_x_m {}", max_x_m, min_x_m);
     }
     if (max_y_m - min_y_m < kMinSize_m) {
-        return fmt::format("max_y_m {} is not above min_y_m {}", max_y_m, min_y_m);
+        return fmt::format("max_y_m {} must be at least 1 mm above min_y_m {}", max_y_m, min_y_m);
     }
     return std::nullopt;
 }
@@ -251,13 +252,18 @@ void TableSpec::describe(ConfigVisitor& visitor) {
 std::optional<std::string> TableSpec::problem() const {
     if (auto wrong = not_above(0.0, top_m - thickness_m)) {
         return fmt::format(
-            "its board of {} m leaves no room for legs under its top at {} m", thickness_m, top_m);
+            "thickness_m {} leaves no room for legs below top_m {}; make the board thinner or the "
+            "table higher",
+            thickness_m,
+            top_m);
     }
     if (2.0 * leg_inset_m >= std::min(length_m, width_m)) {
-        return fmt::format("leg_inset_m {} is not below half of its size {} x {} m",
-                           leg_inset_m,
-                           length_m,
-                           width_m);
+        return fmt::format(
+            "leg_inset_m {} must be below half of the shorter side of the table, which is {} x {} "
+            "m",
+            leg_inset_m,
+            length_m,
+            width_m);
     }
     return std::nullopt;
 }
@@ -309,19 +315,21 @@ void DoorSpec::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> DoorSpec::problem() const {
     if (opening_height_m > 0.0 && opening_height_m <= sill_m) {
-        return fmt::format("opening_height_m {} is not above sill_m {}", opening_height_m, sill_m);
+        return fmt::format("opening_height_m {} must be above sill_m {}", opening_height_m, sill_m);
     }
     if (opening_height_m > 0.0 && wall_height_m - opening_height_m < kMinSize_m) {
-        return fmt::format("wall_height_m {} leaves no lintel above opening_height_m {}",
-                           wall_height_m,
-                           opening_height_m);
+        return fmt::format(
+            "wall_height_m {} leaves no lintel above opening_height_m {}; make the wall higher or "
+            "the opening lower",
+            wall_height_m,
+            opening_height_m);
     }
     return std::nullopt;
 }
 
 void DoorSpec::add(Site& site) const {
     const Place place = site.place.then(x_m, y_m, z_m, heading_deg);
-    // From y = `right_m` to y = `left_m` in the frame of the door.
+    // Adds a part of the wall from y = `right_m` to y = `left_m` in the frame of the door.
     const auto part =
         [&](double right_m, double left_m, double bottom_m, double top_m, int look, Label label) {
             if (left_m - right_m < kMinSize_m || top_m - bottom_m < kMinSize_m) return;

@@ -58,7 +58,7 @@ struct BoxSpec {
     double x_m = kRequired;  ///< x of the middle
     double y_m = kRequired;
     double heading_deg = 0.0;
-    double length_m = kRequired;  ///< along its heading
+    double length_m = kRequired;  ///< length along heading_deg
     double width_m = kRequired;
     double bottom_m = 0.0;
     double top_m = kRequired;
@@ -131,7 +131,7 @@ struct FloorSpec {
 /// Four walls around a rectangle, centred on its borders; never turned.
 struct WallsSpec {
     MaterialNames materials;
-    int material = kRequiredChoice;  ///< front (+x) and right (-y)
+    int material = kRequiredChoice;  ///< walls in front (+x) and on the right (-y)
     int other_material = kSameMaterial;
     AreaSpec area;
     double thickness_m = 0.2;
@@ -142,7 +142,7 @@ struct WallsSpec {
     void add(Site& site) const;
 };
 
-/// A board on four legs; a seat when it is low.
+/// A board on four legs: a table, or a seat if it is low.
 struct TableSpec {
     MaterialNames materials;
     int material = kRequiredChoice;
@@ -172,12 +172,12 @@ struct DoorSpec {
     int sill_material = kSameMaterial;
     double x_m = kRequired;  ///< middle of the opening
     double y_m = kRequired;
-    double heading_deg = 0.0;  ///< the way through
+    double heading_deg = 0.0;  ///< direction of the way through
     double z_m = 0.0;
-    double width_m = kRequired;  ///< clear, between the posts
+    double width_m = kRequired;  ///< clear width between the posts
     double thickness_m = 0.12;
     double post_width_m = 0.05;
-    double sill_m = 0.0;       ///< height; 0 = none
+    double sill_m = 0.0;       ///< height of the sill; 0 = none
     double wall_left_m = 2.0;  ///< length of the wall left of the post, 0 = none
     double wall_right_m = 2.0;
     double wall_height_m = 2.4;
@@ -203,23 +203,23 @@ struct FlightSpec {
     double z_m = 0.0;  ///< height of the floor where the flight begins
     double heading_deg = 0.0;
     StairDirection direction = StairDirection::up;
-    int steps = 0;  ///< rises
+    int steps = 0;  ///< number of rises
     double rise_m = kRequired;
     double going_m = kRequired;
     double width_m = kRequired;
-    double landing_m = 0.0;           ///< 0: going up the last tread is as deep as the others
-    double base_m = 0.0;              ///< solid down to this far below its lower end
+    double landing_m = 0.0;           ///< landing depth; 0 = the last tread up is a normal tread
+    double base_m = 0.0;              ///< depth of the solid below the lower end of the flight
     double nosing_m = 0.0;            ///< overhang of each tread over its riser
-    double tread_thickness_m = 0.04;  ///< used if the stairs have a nosing or no risers
-    bool open = false;                ///< treads only, no risers
-    double rise_variation_m = 0.0;    ///< each rise differs by up to this; the sum is exact
+    double tread_thickness_m = 0.04;  ///< tread thickness; used with a nosing or without risers
+    bool open = false;                ///< true: the flight has no risers
+    double rise_variation_m = 0.0;    ///< largest deviation of a rise; the sum of rises is exact
     void describe(ConfigVisitor& visitor);
     [[nodiscard]] std::optional<std::string> problem() const;
     void add(Site& site) const;
 };
 
-/// Flight around an upright axis; its steps are wedges. It begins at the radius in the direction
-/// `start_deg`.
+/// Flight around an upright axis; its steps are wedges. Its first edge lies in the direction
+/// `start_deg` from the axis.
 struct SpiralSpec {
     MaterialNames materials;
     int material = kRequiredChoice;

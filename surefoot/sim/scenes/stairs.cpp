@@ -23,7 +23,8 @@ int or_same(int material, int own) {
     return material == kSameMaterial ? own : material;
 }
 
-/// One tread and its support, in the frame of the flight: along x, above z = 0 at its beginning.
+/// One tread and its support, in the frame of the flight: x along the flight, z = 0 at its
+/// beginning.
 struct Tread {
     double begin_m = 0.0;
     double end_m = 0.0;
@@ -42,7 +43,7 @@ void add_block(
                    flight.label);
 }
 
-/// Adds a solid block, or a board with or without a block under it; the block is set back by the
+/// Adds a solid block, or a board with or without a block under it. The block is set back by the
 /// nosing.
 void add_tread(
     Site& site, const FlightSpec& flight, const Place& place, Tread tread, double bottom_m) {
@@ -64,14 +65,14 @@ void add_tread(
     if (under_m - bottom_m > 1e-6) add_block(site, flight, place, support, bottom_m);
 }
 
-/// A wedge of a spiral as a convex prism; the outer border is a chain of chords.
+/// Makes a wedge of a spiral as a convex prism. A chain of chords replaces its outer arc.
 Prism wedge(const Vector2d& axis_m,
             const SpiralSpec& spiral,
             double from_rad,
             double to_rad,
             double bottom_m,
             double top_m) {
-    constexpr int kChords = 6;  // 1 mm of sagitta at 1 m and 30 deg
+    constexpr int kChords = 6;  // at 1 m and 30 deg the chords are 1 mm off the arc
     const auto corner = [&](double radius_m, double angle_rad) -> Vector2d {
         return axis_m + radius_m * Vector2d(std::cos(angle_rad), std::sin(angle_rad));
     };
@@ -158,7 +159,7 @@ void FlightSpec::add(Site& site) const {
     const double bottom_m = (up ? 0.0 : -steps * rise_m) - base_m;
     for (int step = 1; step <= steps; ++step) {
         const bool last = step == steps;
-        if (last && !up && landing_m == 0.0) break;  // the floor below follows
+        if (last && !up && landing_m == 0.0) break;  // the floor below the flight follows
         Tread tread;
         tread.begin_m = (step - 1) * going_m;
         tread.end_m = tread.begin_m + (last && landing_m > 0.0 ? landing_m : going_m);
@@ -220,15 +221,20 @@ void SpiralSpec::describe(ConfigVisitor& visitor) {
 std::optional<std::string> SpiralSpec::problem() const {
     if (steps < 1) return "key 'steps' is missing";
     if (std::abs(turn_deg) < 1.0) {
-        return fmt::format("turn_deg {} is below 1 deg a step", turn_deg);
+        return fmt::format(
+            "turn_deg {} is too small; a step must turn by at least 1 deg to the left or right",
+            turn_deg);
     }
     if (outer_radius_m - inner_radius_m < 0.1) {
-        return fmt::format("outer_radius_m {} is not 0.1 m above inner_radius_m {}",
+        return fmt::format("outer_radius_m {} must be at least 0.1 m above inner_radius_m {}",
                            outer_radius_m,
                            inner_radius_m);
     }
     if (steps * std::abs(turn_deg) > 360.0) {
-        return fmt::format("{} steps of {} deg go round more than once", steps, turn_deg);
+        return fmt::format(
+            "{} steps of {} deg go round more than once; use fewer steps or a smaller turn_deg",
+            steps,
+            turn_deg);
     }
     return std::nullopt;
 }

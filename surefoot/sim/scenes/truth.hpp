@@ -63,8 +63,8 @@ enum class DemReduce : std::uint8_t {
 
 struct EdgeConfig {
     double jump_m =
-        0.03;  ///< between neighbouring cells; slopes below jump / cell size are no edge
-    int margin_cells = 2;  ///< also masks cells this near (larger of |dx| and |dy|)
+        0.03;  ///< smallest jump between neighbours; a slope below jump / cell size is no edge
+    int margin_cells = 2;  ///< cells at this distance are masked too (larger of |dx|, |dy|)
 };
 
 /// 1 if a cell is at or within the margin of a height discontinuity, or of the end of the

@@ -18,12 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Independent random streams per frame, and the stream of all frames.
+/// Number of independent random streams per frame, their names, and the stream that all frames
+/// share.
 constexpr std::uint64_t kStreams = 3;
 enum Stream : std::uint64_t { white, correlated, luck };
 constexpr std::uint64_t kSurfaceStream = ~std::uint64_t{0};
 
-/// The normal distribution in a table over [-4, 4]: luck needs no more than 1/500.
+/// Table of the normal distribution over [-4, 4]; `luck` needs an accuracy of 1/500 only.
 constexpr int kCdfEnd = 4;
 constexpr int kCdfPerUnit = 128;
 
@@ -41,7 +42,8 @@ float uniform_from(const std::vector<float>& cdf, float normal) {
     return cdf[std::min(saturated_integer<std::size_t>(place + 0.5F), cdf.size() - 1)];
 }
 
-/// The camera of every `stride`-th pixel, beginning in the middle of the first `stride`.
+/// Returns the camera of every `stride`-th pixel; the first pixel is in the middle of `stride`
+/// pixels.
 camera::RectifiedRig thinned(const camera::RectifiedRig& full, int stride) {
     const int first = stride / 2;
     camera::RectifiedRig rig = full;
@@ -70,7 +72,7 @@ struct Scales {
     float fixed_px = 0.0F;
     float locking_px = 0.0F;
     float reported_px = 0.0F;
-    float full_pixels = 1.0F;  ///< real pixels in one output pixel
+    float full_pixels = 1.0F;  ///< number of real pixels across one output pixel
 
     explicit Scales(const AnalyticStereoConfig& config) {
         const double sigma_px = config.sigma_px / config.stride;
@@ -80,7 +82,7 @@ struct Scales {
         correlated_px = static_cast<float>(smooth_px * std::sqrt(1.0 - config.fixed_share));
         fixed_px = static_cast<float>(smooth_px * std::sqrt(config.fixed_share));
         locking_px = static_cast<float>(amplitude_px);
-        // A sine over many periods has half its squared amplitude as variance.
+        // The variance of a sine over many periods is half of its squared amplitude.
         reported_px =
             static_cast<float>(config.sigma_factor *
                                std::sqrt(sigma_px * sigma_px + 0.5 * amplitude_px * amplitude_px));
@@ -96,7 +98,7 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
         stride,
         1,
         16,
-        "distance between the rows and columns that are used; 1 = every row and column");
+        "distance in pixels between the rows and columns that are used; 1 = every row and column");
     visitor.number("sigma_px",
                    sigma_px,
                    0.0,
@@ -118,27 +120,38 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    1.0,
                    "share of the correlated variance that is attached to the surface and repeats "
                    "in every frame");
-    visitor.number("fixed_size_m",
-                   fixed_size_m,
-                   0.001,
-                   10.0,
-                   "size of the pattern on a surface of the noise that is attached to the surface");
     visitor.number(
-        "locking_px", locking_px, 0.0, 0.5, "amplitude of the pull towards whole disparities");
-    visitor.number(
-        "sigma_factor", sigma_factor, 0.01, 100.0, "reported sigma divided by true sigma");
+        "fixed_size_m",
+        fixed_size_m,
+        0.001,
+        10.0,
+        "correlation length, on the surface, of the noise that is attached to the surface");
+    visitor.number("locking_px",
+                   locking_px,
+                   0.0,
+                   0.5,
+                   "amplitude of the error that pulls disparities towards whole pixels");
+    visitor.number("sigma_factor",
+                   sigma_factor,
+                   0.01,
+                   100.0,
+                   "reported sigma of a disparity divided by its true sigma");
     visitor.number("jump_px",
                    shadow.jump_px,
                    0.0,
                    100.0,
                    "smallest disparity jump between neighbouring pixels that counts as an edge");
-    visitor.number("fattening_px",
-                   shadow.fattening_px,
-                   0.0,
-                   100.0,
-                   "width of the seam by which the nearer surface grows at an edge");
     visitor.number(
-        "ramp_px", shadow.ramp_px, 0.0, 250.0, "largest width of the ramps that bridge an edge");
+        "fattening_px",
+        shadow.fattening_px,
+        0.0,
+        100.0,
+        "width of the seam beside an edge that gets the disparity of the nearer surface");
+    visitor.number("ramp_px",
+                   shadow.ramp_px,
+                   0.0,
+                   250.0,
+                   "largest width of the ramps of disparities that bridge an edge");
     visitor.number("invented_share",
                    invented_share,
                    0.0,
@@ -148,20 +161,19 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    edge_suspicion,
                    0.0,
                    1.0,
-                   "outlier probability reported in seams and ramps");
+                   "outlier probability reported in the seams and ramps beside edges");
     visitor.number("plain_suspicion",
                    plain_suspicion,
                    0.0,
                    1.0,
-                   "outlier probability reported outside seams and ramps");
+                   "outlier probability reported outside the seams and ramps beside edges");
     visitor.number(
         "max_disparity_px", max_disparity_px, 1.0, 4096.0, "largest disparity of the search range");
-    visitor.number(
-        "missing_share",
-        missing_share,
-        0.0,
-        1.0,
-        "share of all other pixels that are lost in patches, without a cause in the scene");
+    visitor.number("missing_share",
+                   missing_share,
+                   0.0,
+                   1.0,
+                   "share of the pixels that are lost in patches without a cause in the scene");
     visitor.number("patch_px",
                    patch_px,
                    1.0,
@@ -181,7 +193,8 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    least_contrast,
                    0.0,
                    1.0,
-                   "contrast of a texture below which pixels are lost, in proportion");
+                   "contrast of a texture below which pixels are lost; at half of this contrast, "
+                   "half of them");
 }
 
 Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,
@@ -189,16 +202,17 @@ Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,
                                             const AnalyticStereoConfig& config,
                                             std::uint64_t seed) {
     if (config.stride < 1 || config.stride > std::min(rig.width, rig.height)) {
-        return usage_error(fmt::format(
-            "simulator: analytic stereo: stride = {} must be between 1 and the {} px of the image",
-            config.stride,
-            std::min(rig.width, rig.height)));
+        return usage_error(
+            fmt::format("simulator: analytic stereo: stride = {} must be between 1 and the {} px "
+                        "of the shorter image side",
+                        config.stride,
+                        std::min(rig.width, rig.height)));
     }
     const auto is_share = [](double value) { return value >= 0.0 && value <= 1.0; };
     if (!is_share(config.correlated_share) || !is_share(config.fixed_share)) {
         return usage_error(
             fmt::format("simulator: analytic stereo: correlated_share = {} and fixed_share = {} "
-                        "are shares of a variance, between 0 and 1",
+                        "must both be between 0 and 1",
                         config.correlated_share,
                         config.fixed_share));
     }
@@ -236,7 +250,7 @@ void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& ou
                           [&](int block_y) { cast_rows(T_world_camera, block_y, out); });
 }
 
-/// One row of blocks.
+/// Casts one row of blocks.
 void AnalyticStereo::cast_rows(const Pose& T_world_camera, int block_y, View& out) const {
     const ImageViews views(T_world_camera);
     const double depth_to_disparity_px_m = rig_.depth_to_disparity_px_m();
@@ -256,7 +270,7 @@ void AnalyticStereo::cast_rows(const Pose& T_world_camera, int block_y, View& ou
                 disparity_px[u] = kNanF;
                 missing_chance[u] = 1.0F;
                 if (hit.face < 0) continue;
-                // Rounded to float like the depth images of the renderer.
+                // The depth is rounded to float, as in the depth images of the renderer.
                 const auto depth_m = static_cast<float>(hit.distance_m * ray_z[i]);
                 disparity_px[u] =
                     static_cast<float>(depth_to_disparity_px_m / static_cast<double>(depth_m));
@@ -346,7 +360,7 @@ void AnalyticStereo::measure(
     });
 }
 
-/// The matcher's disparity of a pixel, before noise.
+/// Returns the disparity that the matcher finds in a pixel, before noise.
 AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, float luck) const {
     const Shadow shadow = view.shadows.shadow.row(v)[u];
     const bool hidden = shadow == Shadow::occluded;
@@ -357,7 +371,7 @@ AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, floa
     const float found_px =
         match.invented ? view.shadows.bridge_px.row(v)[u] : view.disparity_px.row(v)[u];
     const auto search_px = static_cast<float>(config_.max_disparity_px / config_.stride);
-    // The upper end of `luck` decides here, independent of the bridges.
+    // This test uses the upper end of `luck`, so that it is independent of the bridges.
     const bool missing = 1.0F - luck < view.missing_chance.row(v)[u];
     const bool nothing = shadow == Shadow::outside || (hidden && !bridged) || missing;
     match.disparity_px = nothing || !(found_px <= search_px) ? kNanF : found_px;
@@ -382,7 +396,7 @@ void AnalyticStereo::measure_row(const View& view,
             measured_px +=
                 scale.locking_px * std::sin(kTurn * scale.full_pixels * found.disparity_px);
         }
-        // Also drops pixels that errors have pushed beyond infinity.
+        // This test also drops pixels that errors have pushed beyond infinity.
         const bool known = measured_px > 0.0F;
         const double suspicion = found.invented ? config_.edge_suspicion : config_.plain_suspicion;
         out.disparity_px.row(v)[u] = known ? measured_px : kNanF;

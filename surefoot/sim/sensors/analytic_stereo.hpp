@@ -33,26 +33,26 @@ namespace surefoot::sim {
 /// rendered kerbs and stairs.
 struct AnalyticStereoConfig {
     int stride = 1;                 ///< use every n-th row and column
-    double sigma_px = 0.25;         ///< white and correlated noise together
-    double correlated_share = 0.5;  ///< correlated share of the variance
+    double sigma_px = 0.25;         ///< one sigma of the white and correlated noise together
+    double correlated_share = 0.5;  ///< share of the noise variance that is correlated
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
     double fixed_share = 0.3;       ///< share of the correlated variance that sticks to the surface
     double fixed_size_m = 0.09;     ///< correlation length on the surface: 30 px at 1 m
-    double locking_px = 0.05;       ///< amplitude
+    double locking_px = 0.05;       ///< amplitude of the pull towards whole disparities
     double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic
 
     ShadowConfig shadow;
     double invented_share = 0.5;    ///< share of shadowed and occluded pixels that a ramp bridges
-    double edge_suspicion = 0.3;    ///< outlier probability reported in seams and bridges
-    double plain_suspicion = 0.02;  ///< outlier probability elsewhere
+    double edge_suspicion = 0.3;    ///< outlier probability reported in seams and ramps
+    double plain_suspicion = 0.02;  ///< outlier probability reported elsewhere
 
-    double max_disparity_px = 128.0;  ///< search range
-    double missing_share = 0.02;      ///< lost share of all other pixels, in patches of `patch_px`
+    double max_disparity_px = 128.0;  ///< largest disparity of the search range
+    double missing_share = 0.02;      ///< share of the pixels lost without a cause, in patches
     double patch_px = 8.0;
-    double fade_incidence_deg = 75.0;  ///< losses grow from this incidence ...
-    double max_incidence_deg = 85.0;   ///< ... to here
+    double fade_incidence_deg = 75.0;  ///< incidence from which pixels begin to be lost
+    double max_incidence_deg = 85.0;   ///< incidence from which all pixels are lost
     double least_contrast =
-        0.1;  ///< contrast of the texture below which pixels get lost, in proportion
+        0.1;  ///< contrast of the texture below which pixels are lost; at half of it, half of them
 
     void describe(ConfigVisitor& visitor);
 };

@@ -418,7 +418,7 @@ TEST(AnalyticStereoTest, WhatCannotBeIsRefusedInWords) {
     ASSERT_FALSE(stride);
     EXPECT_EQ(stride.error().message,
               "simulator: analytic stereo: stride = 0 must be between 1 and the 376 px of the "
-              "image");
+              "shorter image side");
     config = AnalyticStereoConfig{};
     config.fixed_share = 1.5;
     const auto share = AnalyticStereo::make(scene, level_rig(), config, 1);

@@ -16,7 +16,7 @@ namespace surefoot::sim {
 /// with a wall 1.5 m behind it.
 struct BoardView {
     double distance_m = 1.0;  ///< distance from the centre of the left camera
-    double side_m = 0.6;      ///< square, its middle on the axis
+    double side_m = 0.6;      ///< side of the square board, whose middle is on the axis
     CameraProfile profile = CameraProfile::ideal;
     double noise = 1.0;     ///< factor on the noise of the images
     double contrast = 1.0;  ///< factor on the contrast of the materials
@@ -31,7 +31,7 @@ struct SeenBoard {
     Image<float> disparity_px;
 };
 
-/// `rectified`: the rectified model of the rig. Fails with the problem of the rig in words.
+/// Returns an error if the rig is unusable. `rectified` is the rectified model of the rig.
 [[nodiscard]] Result<SeenBoard> see_board(const BoardView& view,
                                           const camera::StereoRig& rig,
                                           const camera::RectifiedRig& rectified,

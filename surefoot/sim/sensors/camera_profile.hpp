@@ -12,16 +12,16 @@ namespace surefoot::sim {
 enum class CameraProfile : std::uint8_t { ideal, zed, euroc, zed_alone };
 inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "zed_alone"};
 
-/// Errors of a real camera beyond the ideal one. The figures are frozen: fitted to `zed_office` and
-/// `euroc_still` by `tools/experiments camera_fit`, see docs/lab/reality_gap.md. The rotation of
-/// the ZED's right camera was measured on corners of the same recording. `zed_alone` is that camera
-/// alone: in a clutter scene like its recording it scatters as the recording does on the fit's
-/// seeds, a quarter more on others. `zed` is for plain scenes and has the rest as noise, fitted to
-/// OpenCV's matcher (our matcher agrees with the recording at twice that noise). `zed` is the
-/// harsher profile; use it for claims.
+/// Errors of a real camera beyond those of the ideal one. The figures are frozen: fitted to
+/// `zed_office` and `euroc_still` by `tools/experiments camera_fit` (docs/lab/reality_gap.md). The
+/// rotation of the ZED's right camera was measured on corners of the same recording. `zed_alone`
+/// has the errors of the ZED only. In a clutter scene like the recording it scatters as the
+/// recording does for the seeds of the fit, and a quarter more for other seeds. `zed` is for plain
+/// scenes: it adds the remaining scatter as noise, fitted to OpenCV's matcher (our matcher agrees
+/// with the recording at twice that noise). `zed` is the harsher profile; use it for claims.
 struct ProfileFigures {
     double noise_dn = 0.0;       ///< noise in addition to the noise of the camera
-    double noise_size_px = 0.0;  ///< replaces the camera's own size if that is 0
+    double noise_size_px = 0.0;  ///< replaces the noise size of the camera if that size is 0
     double smear_sigma_px = 0.0;
     double contrast = 1.0;
     CalibrationError calibration;

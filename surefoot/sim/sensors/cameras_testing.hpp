@@ -29,7 +29,7 @@ inline CameraConfig noiseless() {
     return config;
 }
 
-/// Constant velocity and turning rate from the origin at time 0, also before it.
+/// Moves from the origin at time 0 with constant velocity and turning rate, also before time 0.
 class Steady final : public Motion {
   public:
     Steady(const Pose& start,

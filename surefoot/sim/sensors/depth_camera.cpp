@@ -23,9 +23,9 @@ using Eigen::Vector3d;
 /// Independent random streams per frame.
 constexpr std::uint64_t kStreams = 4;
 enum Stream : std::uint64_t { axial, lateral_u, lateral_v, loss };
-/// Pixels round an edge that lateral noise can reach: three sigma of 0.8 px.
+/// Distance from an edge [px] up to which lateral noise acts: three sigma of 0.8 px.
 constexpr int kEdgeReach_px = 3;
-/// A light ray starts this far from its surface, so that it does not hit it again.
+/// A light ray starts this far from its surface, so that it does not hit the surface again.
 constexpr double kSelf_m = 1e-6;
 
 double smaller_angle_rad(double cosine) {
@@ -62,18 +62,20 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "smallest sigma of the axial noise, at depth axial_center_m");
-    visitor.number("axial_slope_1_m",
-                   axial_slope_1_m,
-                   0.0,
-                   1.0,
-                   "growth of the axial noise with the squared distance from axial_center_m");
+    visitor.number(
+        "axial_slope_1_m",
+        axial_slope_1_m,
+        0.0,
+        1.0,
+        "growth of the axial sigma per squared distance of the depth from axial_center_m");
     visitor.number(
         "axial_center_m", axial_center_m, 0.0, 10.0, "depth at which the axial noise is smallest");
-    visitor.number("axial_angle",
-                   axial_angle,
-                   0.0,
-                   1.0,
-                   "growth of the axial noise towards grazing incidence");
+    visitor.number(
+        "axial_angle",
+        axial_angle,
+        0.0,
+        1.0,
+        "factor of the part of the axial sigma that grows with the angle of incidence, in m^1.5");
     visitor.number("lateral_share",
                    lateral_share,
                    0.0,
@@ -96,12 +98,13 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
                    max_incidence_deg,
                    0.0,
                    90.0,
-                   "largest angle of incidence that is measured");
-    visitor.number("least_return",
-                   least_return,
-                   0.0,
-                   1.0,
-                   "share of returned light below which pixels are lost, in proportion");
+                   "largest angle of incidence at which a depth is measured");
+    visitor.number(
+        "least_return",
+        least_return,
+        0.0,
+        1.0,
+        "share of returned light below which pixels are lost; at half of this share, half of them");
     visitor.boolean("mixes_edges",
                     mixes_edges,
                     "true: pixels on an edge lie between the two surfaces, as with time of flight");
@@ -122,7 +125,7 @@ DepthCameraPreset depth_camera_preset(DepthCameraKind kind) {
             preset.camera = pinhole(640, 480, 585.0);  // 57 deg from side to side
             break;
         case DepthCameraKind::kinect_v2:
-            preset.camera = pinhole(512, 424, 365.0);  // 70 deg
+            preset.camera = pinhole(512, 424, 365.0);  // 70 deg from side to side
             preset.config.projector_x_m = 0.0;
             preset.config.disparity_step_px = 0.0;
             preset.config.mixes_edges = true;
@@ -167,7 +170,7 @@ double DepthCamera::normal(std::uint64_t stream, std::uint32_t pixel) const {
     return static_cast<double>(noise_.normal(PixelNoise::key(seed_, stream), pixel));
 }
 
-/// Depth between two neighbouring disparities, f b / d, at some depth.
+/// Difference of depth between two neighbouring disparities, from f b / d, at depth_m.
 double DepthCamera::depth_step_m(double depth_m) const {
     const double factor_px_m = focal_px_ * std::abs(config_.projector_x_m);
     if (factor_px_m == 0.0) return 0.0;
@@ -223,7 +226,8 @@ void DepthCamera::measure_row(
         if (!returns(T_world_camera, at, cosine, uniform_at(seed_, stream + loss, pixel))) continue;
         if (edge && config_.mixes_edges) at.depth_m = mixed_depth_m(T_world_camera, u, v, at);
         const double sigma = sigma_m(at.depth_m, smaller_angle_rad(cosine));
-        // Nguyen's measured noise already includes the rounding to steps, uniform over one step.
+        // Nguyen's measured noise already includes rounding to steps, an error that is uniform in
+        // one step.
         const double step_m = depth_step_m(at.depth_m);
         const double before_m = std::sqrt(std::max(0.0, sigma * sigma - step_m * step_m / 12.0));
         double depth_m = at.depth_m + before_m * normal(stream + axial, pixel);
@@ -247,8 +251,8 @@ DepthCamera::Seen DepthCamera::look(
     return {hit->distance_m * ray.z(), hit->surface, direction, hit->distance_m};
 }
 
-/// Lateral noise: the camera measures a neighbouring point; its depth counts if it lies on another
-/// surface.
+/// Applies lateral noise: the camera measures a neighbouring point. The depth of this point counts
+/// if it lies on another surface.
 DepthCamera::Seen DepthCamera::beside_edge(
     const Pose& T_world_camera, int u, int v, const Seen& center, std::uint64_t stream) const {
     const double sigma_px = config_.lateral_share / rays_.pixel_angle_rad(u, v);
@@ -296,7 +300,7 @@ bool DepthCamera::returns(const Pose& T_world_camera,
     const Vector3d point_m = T_world_camera.translation_m + seen.distance_m * seen.direction;
     const Vector3d light = point_m - projector_m;
     const double distance_m = light.norm();
-    // A face that points away from the projector is dark; other faces may be in a shadow.
+    // A face that points away from the projector is dark. Other faces may be in a shadow.
     if (scene_->surface_point(seen.surface, point_m).normal.dot(light) >= 0.0) return false;
     return !scene_->blocked(projector_m, light / distance_m, distance_m - kSelf_m);
 }

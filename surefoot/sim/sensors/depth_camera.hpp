@@ -21,9 +21,9 @@ namespace surefoot::sim {
 /// an edge which surface is measured; on a surface it is part of the axial noise.
 struct DepthCameraConfig {
     double axial_offset_m = 0.0012;
-    double axial_slope_1_m = 0.0019;  ///< 1/m
+    double axial_slope_1_m = 0.0019;  ///< factor of the squared distance from the centre [1/m]
     double axial_center_m = 0.4;
-    double axial_angle = 0.0001;         ///< m^1.5
+    double axial_angle = 0.0001;         ///< factor of the term with the angle theta [m^1.5]
     double lateral_share = 0.001376915;  ///< share of z, in the image plane: 0.8 px of a Kinect
     double min_range_m = 0.35;           ///< smallest z for which the model is valid
     double max_range_m = 3.0;
@@ -33,11 +33,11 @@ struct DepthCameraConfig {
     /// Structured light: disparities are quantised to 1/8 px (same paper). The axial noise already
     /// includes this part. 0 = none.
     double disparity_step_px = 0.125;
-    double max_incidence_deg = 80.0;  ///< ASSUMPTION: nothing is measured at grazing incidence
-    /// ASSUMPTION: share of returned light (reflectance times cosine) below which pixels get lost,
-    /// in proportion.
+    double max_incidence_deg = 80.0;  ///< ASSUMPTION: nothing is measured at a larger incidence
+    /// ASSUMPTION: share of returned light (reflectance times cosine) below which pixels are lost;
+    /// at half of this share, half of them are lost.
     double least_return = 0.06;
-    bool mixes_edges = false;  ///< time of flight: pixels on an edge lie between the two surfaces
+    bool mixes_edges = false;  ///< true: edge pixels lie between both surfaces (time of flight)
 
     /// Returns the same camera with every axial error multiplied by `factor`.
     [[nodiscard]] DepthCameraConfig with_noise(double factor) const;
@@ -51,7 +51,7 @@ struct DepthCameraPreset {
 };
 enum class DepthCameraKind : std::uint8_t {
     kinect_v1,  ///< structured light, 640x480
-    kinect_v2,  ///< time of flight, 512x424; ASSUMPTION: the same axial noise, as the mapping
+    kinect_v2,  ///< time of flight, 512x424; ASSUMPTION: axial noise of kinect_v1, as the mapping
                 ///< literature uses it
 };
 inline constexpr const char* kDepthCameraNames[] = {"kinect_v1", "kinect_v2"};
@@ -67,7 +67,7 @@ struct DepthFrame {
 /// depend on it. Immutable after construction.
 class DepthCamera {
   public:
-    /// Fails with the problem of the camera in words. The scene must outlive the object.
+    /// Returns an error with the problem of an unusable camera. The scene must outlive the object.
     [[nodiscard]] static Result<DepthCamera> make(const Scene& scene,
                                                   const camera::Camera& camera,
                                                   const DepthCameraConfig& config,
@@ -81,7 +81,7 @@ class DepthCamera {
     struct Seen {
         double depth_m = 0.0;
         int surface = -1;
-        Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< world, unit
+        Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit vector in the world
         double distance_m = 0.0;
     };
     DepthCamera(const Scene& scene,

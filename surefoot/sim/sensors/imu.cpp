@@ -26,15 +26,16 @@ constexpr std::uint64_t kBiasStream = ~std::uint64_t{0};
 constexpr std::uint64_t kGyroWalkStream = kBiasStream - 1;
 constexpr std::uint64_t kAccelWalkStream = kBiasStream - 2;
 
-/// Value after range limit and quantisation of the converter.
+/// Returns a value after the range limit and the quantisation of the converter.
 Vector3d converted(Vector3d value, double range, double step) {
     if (range > 0.0) value = value.cwiseMax(-range).cwiseMin(range);
     if (step > 0.0) value = step * (value / step).array().round().matrix();
     return value;
 }
 
-/// EuRoC's calibration (imu0/sensor.yaml); range and counts of the ADIS16448 data sheet: 1000
-/// deg/s at 0.04 deg/s, 18 g at 0.833 mg. ASSUMPTION: bias at the start, after its own calibration.
+/// EuRoC's calibration (imu0/sensor.yaml); range and counts of the ADIS16448 data sheet: 1000 deg/s
+/// at 0.04 deg/s, 18 g at 0.833 mg. ASSUMPTION: the bias that remains at the start after the
+/// sensor's own calibration.
 ImuNoiseConfig adis16448() {
     return {.gyro_density_rad_s_sqrt_hz = 1.6968e-4,
             .accel_density_m_s2_sqrt_hz = 2.0e-3,
@@ -50,8 +51,9 @@ ImuNoiseConfig adis16448() {
 
 /// InvenSense PS-MPU-6000A-00, revision 3.4, sections 6.1 and 6.2: 0.005 deg/s/sqrt(Hz), 400
 /// ug/sqrt(Hz), zero offsets up to 20 deg/s and 50 mg (taken as 3 sigma), ranges 250 deg/s and 2 g
-/// with 131 and 16384 counts per unit. ASSUMPTION: the data sheet gives no random walks; gyroscope
-/// five times and accelerometer once those of the ADIS16448.
+/// with 131 and 16384 counts per unit. ASSUMPTION: the data sheet gives no random walks. The walk
+/// of the gyroscope is five times that of the ADIS16448; the walk of the accelerometer equals that
+/// of the ADIS16448.
 ImuNoiseConfig mpu6050() {
     return {.gyro_density_rad_s_sqrt_hz = 0.005 * kRadPerDeg,
             .accel_density_m_s2_sqrt_hz = 400e-6 * kGravity_m_s2,
@@ -98,12 +100,13 @@ double random_walk(std::uint64_t seed, std::int64_t index) {
     if (index == 0) return 0.0;
     const std::uint64_t side = index > 0 ? 1U : 2U;
     const auto n = static_cast<std::uint64_t>(index > 0 ? index : -index);
-    // A number for each dyadic interval, by its level and its place at that level.
+    // Draws a number for each dyadic interval, which is given by its level and its position at that
+    // level.
     const auto draw = [&](std::uint64_t level, std::uint64_t place) {
         Rng rng(mix_seed(mix_seed(mix_seed(seed, side), level), place));
         return rng.normal();
     };
-    // From power to power of two up to n < 2^(top + 1).
+    // Walks from one power of two to the next, up to n < 2^(top + 1).
     const auto top = static_cast<std::uint64_t>(std::bit_width(n)) - 1U;
     double low = draw(0, 0);  // W(1)
     for (std::uint64_t level = 0; level < top; ++level) {
@@ -113,7 +116,7 @@ double random_walk(std::uint64_t seed, std::int64_t index) {
     if (at == n) return low;
     double high = low + std::sqrt(std::ldexp(1.0, static_cast<int>(top))) * draw(top, 1);
     for (std::uint64_t level = top; at != n; --level) {
-        // Middle of a bridge over `width`: mean of its ends, variance width / 4.
+        // The middle of a bridge over `width` has the mean of its ends and the variance width / 4.
         const std::uint64_t width = std::uint64_t{1} << level;
         const std::uint64_t middle = at + width / 2U;
         const double value =
@@ -133,12 +136,12 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_density_rad_s_sqrt_hz,
                    0.0,
                    1.0,
-                   "white noise of the gyroscope");
+                   "density of the white noise of the gyroscope");
     visitor.number("accel_density_m_s2_sqrt_hz",
                    accel_density_m_s2_sqrt_hz,
                    0.0,
                    10.0,
-                   "white noise of the accelerometer");
+                   "density of the white noise of the accelerometer");
     visitor.number("gyro_bias_sigma_rad_s",
                    gyro_bias_sigma_rad_s,
                    0.0,
@@ -153,22 +156,22 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
                    gyro_walk_rad_s2_sqrt_hz,
                    0.0,
                    1.0,
-                   "random walk of the gyroscope's bias");
+                   "density of the random walk of the gyroscope's bias");
     visitor.number("accel_walk_m_s3_sqrt_hz",
                    accel_walk_m_s3_sqrt_hz,
                    0.0,
                    10.0,
-                   "random walk of the accelerometer's bias");
+                   "density of the random walk of the accelerometer's bias");
     visitor.number("gyro_range_rad_s",
                    gyro_range_rad_s,
                    0.0,
                    1e3,
-                   "range limit at which the gyroscope saturates; 0 = no limit");
+                   "turn rate at which the gyroscope saturates; 0 = no limit");
     visitor.number("accel_range_m_s2",
                    accel_range_m_s2,
                    0.0,
                    1e4,
-                   "range limit at which the accelerometer saturates; 0 = no limit");
+                   "acceleration at which the accelerometer saturates; 0 = no limit");
     visitor.number("gyro_step_rad_s",
                    gyro_step_rad_s,
                    0.0,

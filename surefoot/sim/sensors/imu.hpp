@@ -25,8 +25,8 @@ struct ImuNoiseConfig {
     double accel_bias_sigma_m_s2 = 2.0e-2;
     double gyro_walk_rad_s2_sqrt_hz = 0.0;  ///< the bias gains walk * sqrt(t) in t seconds
     double accel_walk_m_s3_sqrt_hz = 0.0;
-    double gyro_range_rad_s = 0.0;  ///< 0 = unlimited
-    double accel_range_m_s2 = 0.0;  ///< 0 = unlimited
+    double gyro_range_rad_s = 0.0;  ///< range limit; 0 = unlimited
+    double accel_range_m_s2 = 0.0;  ///< range limit; 0 = unlimited
     double gyro_step_rad_s = 0.0;   ///< size of one count of the converter; 0 = no quantisation
     double accel_step_m_s2 = 0.0;
 
@@ -36,7 +36,7 @@ struct ImuNoiseConfig {
 /// Model of the inertial sensor.
 enum class ImuKind : std::uint8_t {
     none,
-    consumer,   ///< the defaults above
+    consumer,   ///< the defaults of ImuNoiseConfig
     adis16448,  ///< the IMU of the EuRoC recordings (their calibration)
     mpu6050,    ///< also the inertial part of the MPU-9150; same class as the IMU of the DUO
     bmi055,     ///< phone class, 12-bit accelerometer

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, and its derivatives by s.
+/// Rises from 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, with derivatives by s.
 struct Blend {
     double value;
     double first;
@@ -32,13 +32,14 @@ Blend blend(double s) {
 void KnockConfig::describe(ConfigVisitor& visitor) {
     visitor.number("at_s", at_s, 0.0, 1e5, "time of the knock after the first frame");
     visitor.number(
-        "roll_deg", roll_deg, -45.0, 45.0, "roll of the camera on its mount by the knock");
+        "roll_deg", roll_deg, -45.0, 45.0, "roll of the camera on its mount that the knock causes");
     visitor.number("pitch_deg",
                    pitch_deg,
                    -45.0,
                    45.0,
-                   "pitch of the camera on its mount by the knock; positive = down");
-    visitor.number("yaw_deg", yaw_deg, -45.0, 45.0, "yaw of the camera on its mount by the knock");
+                   "pitch of the camera on its mount that the knock causes; positive = down");
+    visitor.number(
+        "yaw_deg", yaw_deg, -45.0, 45.0, "yaw of the camera on its mount that the knock causes");
 }
 
 KnockedMotion::KnockedMotion(std::shared_ptr<const Motion> machine,

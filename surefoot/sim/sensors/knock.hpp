@@ -40,8 +40,8 @@ class KnockedMotion final : public Motion {
     std::shared_ptr<const Motion> machine_;
     double at_s_;
     double angle_rad_;
-    Eigen::Vector3d axis_;     ///< unit, in base_link
-    Eigen::Vector3d pivot_m_;  ///< in base_link
+    Eigen::Vector3d axis_;     ///< unit vector of the rotation axis, in base_link
+    Eigen::Vector3d pivot_m_;  ///< point on the rotation axis, in base_link
 };
 
 }  // namespace surefoot::sim

@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Columns in memory at a time: enough for the threads of a desktop computer, 15 MB at full
-/// resolution.
+/// Number of columns in memory: enough for the threads of a desktop computer. At full resolution
+/// they need 15 MB.
 constexpr int kBatch = 16;
-/// Mean over a disc by its centre and four points at sqrt(2/3) of the radius (exact for polynomials
-/// of third degree: Abramowitz and Stegun 25.4.61).
+/// Weights of a mean over a disc, from its centre and four points at sqrt(2/3) of the radius. The
+/// mean is exact for polynomials of third degree (Abramowitz and Stegun 25.4.61).
 constexpr double kCenterWeight = 0.25;
 constexpr double kRingWeight = 0.1875;
 constexpr double kRingRadius = 0.816496580927726;
@@ -157,8 +157,8 @@ void LaserScanner::aim(const Pose& T_world_scanner, int column, Beams& beams) co
     }
 }
 
-/// Casts four rays from the station through the disc that the beam lights at the range of its
-/// middle ray.
+/// Casts four rays from the station through the disc that the beam lights. The disc lies at the
+/// range of the middle ray.
 void LaserScanner::widen(Beams& beams) const {
     beams.ring.clear();
     for (std::size_t row = 0; row < beams.directions.size(); ++row) {
@@ -213,7 +213,8 @@ double LaserScanner::return_share(int surface,
     return material.albedo * std::max(cosine, 0.0);
 }
 
-/// Range that the beam measures without noise. Within one surface it is that of the middle ray.
+/// Range that the beam measures without noise. On one surface only, it is the range of the middle
+/// ray.
 double LaserScanner::range_m(const Pose& T_world_scanner,
                              const Beams& beams,
                              std::size_t row,

@@ -26,17 +26,17 @@ namespace surefoot::sim {
 /// Both numbers are fitted (least largest error, 9 %) to the data sheet: 0.6 mm at 90 % reflectance
 /// and 1.2 mm at 10 % in 10 m; 0.95 mm at 90 % and 2.2 mm at 10 % in 25 m.
 struct LaserScannerConfig {
-    double azimuth_min_deg = -180.0;  ///< first column
-    double azimuth_max_deg = 180.0;   ///< excluded
+    double azimuth_min_deg = -180.0;  ///< azimuth of the first column
+    double azimuth_max_deg = 180.0;   ///< azimuth at which the scan ends, itself excluded
     double elevation_min_deg =
-        -62.5;  ///< first row; 305 deg of view lie on both sides of the zenith
+        -62.5;  ///< elevation of the first row; the field of view is 305 deg, through the zenith
     double elevation_max_deg = 90.0;
-    double step_deg = 0.036;     ///< 4 steps of 0.009 deg: 10 000 columns of 4237 points
-    double min_range_m = 0.6;    ///< along the beam
-    double max_range_m = 120.0;  ///< on 90 % reflectance; darker or slanted: shorter
+    double step_deg = 0.036;     ///< beam spacing, 4 x 0.009 deg: 10 000 columns of 4237 points
+    double min_range_m = 0.6;    ///< smallest range, along the beam
+    double max_range_m = 120.0;  ///< largest range for 90 % reflectance; shorter if dark or slanted
     double noise_floor_m = 0.575e-3;
     double noise_growth = 2.94e-5;         ///< share of the range, on a white surface seen head-on
-    double beam_exit_m = 0.003;            ///< diameter
+    double beam_exit_m = 0.003;            ///< diameter of the beam at the scanner
     double beam_divergence_rad = 0.19e-3;  ///< growth of the diameter with range
 
     void describe(ConfigVisitor& visitor);
@@ -83,7 +83,7 @@ class LaserScanner {
         std::vector<Eigen::Vector3d> directions_scanner;
         std::vector<Eigen::Vector3d> directions;  ///< world
         std::vector<RayHit> hits;
-        std::vector<Eigen::Vector3d> ring;  ///< four per beam, one after another
+        std::vector<Eigen::Vector3d> ring;  ///< four rays per beam, one beam after another
         std::vector<RayHit> ring_hits;
     };
     void scan_column(const Pose& T_world_scanner,

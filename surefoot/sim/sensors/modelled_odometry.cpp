@@ -14,12 +14,12 @@ void DriftConfig::describe(ConfigVisitor& visitor) {
                    position_m_sqrt_m,
                    0.0,
                    1.0,
-                   "one sigma of the position along each axis after 1 m of motion");
+                   "one sigma of the position error along each axis after 1 m of motion");
     visitor.number("turn_deg_sqrt_m",
                    turn_deg_sqrt_m,
                    0.0,
                    30.0,
-                   "one sigma of the rotation about each axis after 1 m of motion");
+                   "one sigma of the rotation error about each axis after 1 m of motion");
 }
 
 ModelledOdometry::ModelledOdometry(const DriftConfig& config,

@@ -20,7 +20,7 @@ Eigen::Vector3d armrest_m() {
     return {0.075, 0.25, 0.05};
 }
 
-/// A mode of a stereo camera with ideal, rectified images.
+/// One mode of a stereo camera with ideal, rectified images.
 struct Mode {
     const char* name;
     int width;
@@ -29,9 +29,10 @@ struct Mode {
     double rate_hz;
 };
 
-/// First-generation ZED. The calibrated 341.9 px of the small mode are 4 pixels of 2 um binned to
-/// one; HD720 bins 2, HD1080 and HD2K are crops of the full sensor, so that focal lengths stand 1 :
-/// 2 : 4 : 4. Rates are the highest of each mode. ASSUMPTION: nominal focal length 342 px.
+/// First-generation ZED. The small mode has a calibrated focal length of 341.9 px and bins 4 pixels
+/// of 2 um to one. HD720 bins 2 pixels. HD1080 and HD2K are crops of the full sensor. So the focal
+/// lengths have the ratio 1 : 2 : 4 : 4. Rates are the highest of each mode. ASSUMPTION: nominal
+/// focal length 342 px.
 constexpr std::array<Mode, 4> kModes{{{"zed_vga", 672, 376, 342.0, 100.0},
                                       {"zed_hd720", 1280, 720, 684.0, 60.0},
                                       {"zed_hd1080", 1920, 1080, 1368.0, 30.0},
@@ -39,7 +40,7 @@ constexpr std::array<Mode, 4> kModes{{{"zed_vga", 672, 376, 342.0, 100.0},
 constexpr double kZedBaseline_m = 0.12;
 constexpr const char* kRolling = "_rolling";
 
-/// The rig on the armrest with an IMU beside its cameras.
+/// Returns the rig on the armrest with an IMU beside its cameras.
 camera::StereoRig mounted(const char* name, const camera::Camera& camera, double baseline_m) {
     camera::StereoRig rig;
     rig.name = name;
@@ -70,9 +71,9 @@ camera::StereoRig zed(const Mode& mode, bool rolling) {
     return rig;
 }
 
-/// DUO MLX: 752x480, baseline 30 mm, 170 deg, global shutter, IMU of 6 axes at 100 Hz.
-/// ASSUMPTION: 170 deg from corner to corner with angles proportional to the distance from the
-/// centre (f = 446.06 px / 85 deg); the 2 mm lens on pixels of 6 um would be 333 px.
+/// DUO MLX: 752x480, baseline 30 mm, 170 deg, global shutter, IMU of 6 axes at 100 Hz. ASSUMPTION:
+/// 170 deg from corner to corner with angles proportional to the distance from the centre (f =
+/// 446.06 px / 85 deg); a lens of 2 mm on pixels of 6 um would have f = 333 px.
 camera::StereoRig duo_mlx() {
     constexpr int kWidth = 752;
     constexpr int kHeight = 480;
@@ -91,7 +92,7 @@ camera::StereoRig duo_mlx() {
 
 Pose looking_down(const Eigen::Vector3d& position_body_m, double pitch_down_rad) {
     Pose T_body_left = T_body_optical();
-    // A positive turn about y (left) lowers the x axis.
+    // A positive turn about y (left) lowers the direction of x.
     T_body_left.rotation =
         Eigen::Quaterniond(Eigen::AngleAxisd(pitch_down_rad, Eigen::Vector3d::UnitY())) *
         T_body_left.rotation;
@@ -117,8 +118,8 @@ Result<camera::StereoRig> rig_preset(const std::string& name) {
     const std::vector<std::string> names = rig_presets();
     const std::string likely = did_you_mean(name, names);
     return usage_error(
-        fmt::format("simulator: no file and no rig is named '{}'{} There are: {}; another "
-                    "rig can be given as a file",
+        fmt::format("simulator: no file and no rig is named '{}'{} The rigs are: {}; to use "
+                    "another rig, give its file",
                     name,
                     likely.empty() ? "." : likely,
                     fmt::join(names, ", ")));

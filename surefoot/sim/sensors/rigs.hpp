@@ -21,7 +21,7 @@ inline constexpr double kBodyHeight_m = 0.95;
 /// A rig on the left armrest of the machine, 1.0 m above the floor, 32 deg down, with an IMU beside
 /// the camera. An unknown name is a usage error that lists the names.
 ///   zed_vga, zed_hd720, zed_hd1080, zed_hd2k   the ZED's modes with ideal, rectified images
-///   the same with `_rolling` behind            read out row by row (`readout_s`), as they are
+///   the same names plus `_rolling`             the same modes, rows read out in turn (`readout_s`)
 ///   duo_mlx                                    fisheye pair with a baseline of 30 mm, raw images
 [[nodiscard]] Result<camera::StereoRig> rig_preset(const std::string& name);
 

@@ -59,7 +59,7 @@ inline Scene scene_with_box() {
     return scene;
 }
 
-/// Equal, where two NaN values also count as equal.
+/// Whether both images are equal; two NaN values count as equal.
 inline bool same_bytes(const Image<float>& a, const Image<float>& b) {
     return a.width() == b.width() && a.height() == b.height() &&
            std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;

@@ -11,10 +11,10 @@
 namespace surefoot::sim {
 namespace {
 
-/// Columns per piece of the vertical pass.
+/// Number of columns in one strip of the vertical pass.
 constexpr int kStrip = 64;
-/// ASSUMPTION: steepest disparity gradient of a surface without a jump, px per px. A floor seen
-/// from 1 m with a baseline of 0.12 m has 0.12.
+/// ASSUMPTION: steepest disparity gradient of a surface without a jump, in px per px. A floor seen
+/// from 1 m height with a baseline of 0.12 m has a gradient of 0.12.
 constexpr double kSlope = 0.2;
 
 /// The nearest jump to a nearer surface, for pixels behind it.
@@ -62,7 +62,8 @@ class LineWalk {
     int before_surface_ = -1;
 };
 
-/// Pixels of a line that are tested together: most show the same surface as the previous pixel.
+/// Number of pixels of a line that are tested together. Most show the same surface as the pixel
+/// before.
 constexpr int kTogether = 16;
 
 bool all_show(const std::int32_t* surface, int wanted) {
@@ -101,7 +102,7 @@ void walk_row(const float* disparity_px,
     }
 }
 
-/// Columns side by side, from row to row in one direction.
+/// Walks along columns side by side, from row to row in one direction.
 class StripWalk {
   public:
     StripWalk(const Image<float>& disparity_px,
@@ -140,7 +141,8 @@ class StripWalk {
     std::vector<LineWalk> lines_;
 };
 
-/// Bridges a run of occluded pixels [first, end) of a row, from surface to surface.
+/// Bridges a run of occluded pixels [first, end) of a row, from the surface before to the one
+/// after.
 void bridge_run(const float* disparity_px, int first, int end, int width, ShadowMap& out, int v) {
     if (first == 0 || end == width) return;
     const float from_px = disparity_px[first - 1];
@@ -151,7 +153,7 @@ void bridge_run(const float* disparity_px, int first, int end, int width, Shadow
     }
 }
 
-/// Marks pixels hidden from the right camera. Goes from right to left; `seen` is the leftmost
+/// Marks pixels hidden from the right camera. Goes from right to left. `seen` is the leftmost
 /// column of the right image that is already occupied.
 void occlude_row(const Image<float>& disparity_px, int v, ShadowMap& out) {
     const float* d = disparity_px.row(v);
@@ -183,7 +185,7 @@ void find_shadows(const Image<float>& disparity_px,
                   ShadowMap& out) {
     const int width = disparity_px.width();
     const int height = disparity_px.height();
-    // Disparities and pixels of this image are `stride` real pixels.
+    // One pixel of this image, and one unit of its disparities, is `stride` real pixels.
     const auto jump_px = static_cast<float>(config.jump_px / stride + kSlope);
     const double widest_px = std::max(config.ramp_px, config.fattening_px);
     const int reach = std::min(saturated_integer<int>(widest_px / stride), 255);

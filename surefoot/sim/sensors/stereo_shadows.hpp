@@ -13,7 +13,7 @@ enum class Shadow : std::uint8_t {
     none,      ///< both cameras see the same point
     fattened,  ///< near a closer surface: the window takes that surface's disparity
     ramp,      ///< both cameras see the point, but a smooth matcher may bridge to a nearer surface
-    occluded,  ///< hidden from the right camera: a bridge, or unknown
+    occluded,  ///< hidden from the right camera: bridged or unknown
     outside,   ///< outside the right image
 };
 
@@ -26,8 +26,8 @@ struct ShadowMap {
 
 struct ShadowConfig {
     double jump_px = 0.5;       ///< smallest jump between neighbours on two surfaces
-    double fattening_px = 2.0;  ///< width of the seam
-    double ramp_px = 8.0;       ///< width that bridges may cover, from the jump
+    double fattening_px = 2.0;  ///< width of the seam beside the nearer surface
+    double ramp_px = 8.0;       ///< largest width of a bridge, measured from the jump
 };
 
 /// Finds shadows from exact disparities and the surface of each pixel (-1 = none). Neighbouring
