@@ -39,19 +39,19 @@ void PatchConfig::describe(ConfigVisitor& visitor) {
                    tolerance_m,
                    0.001,
                    0.2,
-                   "largest distance of a cell from its plane, unless sigma_factor allows more");
+                   "largest distance of a cell with a small sigma from its plane");
     visitor.number("sigma_factor",
                    sigma_factor,
                    0.0,
                    10.0,
-                   "largest distance of a cell from its plane [sigma of the cell], if this is more "
-                   "than tolerance_m");
-    visitor.number("max_tolerance_m",
-                   max_tolerance_m,
-                   0.001,
-                   0.5,
-                   "upper limit of the distance of a cell from its plane that tolerance_m and "
-                   "sigma_factor allow");
+                   "largest distance of a cell with a large sigma from its plane, as a multiple of "
+                   "this sigma");
+    visitor.number(
+        "max_tolerance_m",
+        max_tolerance_m,
+        0.001,
+        0.5,
+        "largest distance of any cell from its plane, even if the sigma of the cell is very large");
     visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest area of a planar patch");
 }
 

@@ -544,12 +544,12 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
         rise_m,
         0.01,
         2.0,
-        "smallest height of a wall above the ground beside the wall; lower objects are not walls");
+        "smallest height above the neighbouring ground at which a cell may belong to a wall");
     visitor.number("wall_height_m",
                    wall_height_m,
                    0.01,
                    3.0,
-                   "smallest visible height of a wall above the ground");
+                   "smallest height above the ground of the highest visible part of a wall");
     visitor.number("wall_length_m",
                    wall_length_m,
                    0.01,
@@ -557,20 +557,29 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    "smallest length of the wall on either side of a door");
     visitor.number(
         "min_sill_m", min_sill_m, 0.0, 1.0, "smallest height of a sill that is reported");
-    visitor.number("sigma_factor",
-                   sigma_factor,
-                   0.0,
-                   100.0,
-                   "smallest height of a sill above the floor [sigma]");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
-    visitor.number("jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "one sigma of the position of a jamb");
+        "sigma_factor",
+        sigma_factor,
+        0.0,
+        100.0,
+        "smallest height of a sill above the floor, as a multiple of the sigma of this height");
+    visitor.number(
+        "correlation_m",
+        correlation_m,
+        0.001,
+        10.0,
+        "distance on the ground over which the errors of the stereo matcher are correlated");
+    visitor.number("jamb_sigma_m",
+                   jamb_sigma_m,
+                   0.0,
+                   1.0,
+                   "one sigma of the position of a jamb, without the error from the cell size");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "side length of a square; an overhead object smaller than this square may be a "
-                   "wrong match");
+                   "side length of a square; an overhead object of smaller area may be a wrong "
+                   "match and does not limit the clearance");
 }
 
 std::optional<std::string> DoorConfig::problem() const {
