@@ -18,8 +18,8 @@ class StillDetector {
     explicit StillDetector(double parallax_px) : parallax_px_(parallax_px) {}
 
     void clear() { anchor_.clear(); }
-    /// True when the frame with these tracks stands at the anchor; otherwise the frame becomes the
-    /// anchor. `residual_px`: rms of the tracks' reprojection errors, per axis.
+    /// Returns true if the frame with these tracks stands at the anchor; otherwise makes the frame
+    /// the anchor. `residual_px`: rms of the tracks' reprojection errors, per axis.
     [[nodiscard]] bool update(std::span<const Track> tracks,
                               const LandmarkMap& map,
                               const Pose& T_odom_camera,

@@ -18,9 +18,9 @@ struct SeenMotion {
 /// Result for the last of several frames in a row, estimated from vision and the IMU together.
 struct InertialStart {
     InertialState state;        ///< the accelerometer's bias stays zero
-    double residual_m = 0.0;    ///< rms of the positions
-    double residual_rad = 0.0;  ///< rms of the turns from frame to frame
-    double gravity_m_s2 = 0.0;  ///< estimated magnitude; its direction is in the state
+    double residual_m = 0.0;    ///< rms residual of the positions
+    double residual_rad = 0.0;  ///< rms residual of the turns between frames
+    double gravity_m_s2 = 0.0;  ///< estimated magnitude of gravity; `state` has its direction
 };
 
 /// Estimates the gyroscope bias by linear least squares over the rotations, then velocity and

@@ -15,18 +15,19 @@ constexpr double kTrackShift_px = 3.0;  ///< search radius around a tracked poin
 constexpr double kAgainShift_px = 5.0;  ///< search radius around a prediction
 /// Noise factor of a point that was tracked but no longer matches its patch.
 constexpr double kFollowedNoise = 2.5;
-constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is removed
-constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
+constexpr int kGiveUpAfter = 12;    ///< largest number of failures in a row of a kept landmark
+constexpr double kBorder_px = 8.0;  ///< smallest distance of a patch centre from the image border
 
 /// If fewer tracks than this share have a depth, the front end checks whether the cameras are
 /// swapped.
 constexpr double kHardlyAnyDepth = 0.2;
-/// Least number of corners that show their camera, and least share of them from the other camera,
-/// to call the cameras swapped. Correct images have 1 to 6 %, swapped ones 85 to 98 %.
+/// The cameras count as swapped if at least this number of corners shows its camera, and at least
+/// this share of these corners comes from the other camera. The share is 1 to 6 % in correct images
+/// and 85 to 98 % in swapped images.
 constexpr double kEnoughTell = 20.0;
 constexpr double kExchangedShare = 0.7;
 
-/// An image is usable from this share of the other image's structure on.
+/// An image is usable if it has at least this share of the other image's structure.
 constexpr double kOtherStructure = 0.3;
 
 /// Mean square difference of pixels two columns apart, in every eighth row.
