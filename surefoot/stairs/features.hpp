@@ -73,12 +73,12 @@ struct FeaturePose {
 /// A feature that consists of one line: a drop, a kerb or a door sill.
 struct LineFeature {
     FeaturePose pose;       ///< seen from the stance: yaw leads across it, z = ground before it
-    double height_m = 0.0;  ///< ground behind minus ground before; of a sill: its own
+    double height_m = 0.0;  ///< height behind minus height before; for a sill: its own height
     double length_m = 0.0;
     double sigma_m = 0.0;         ///< one sigma of the height
     double across_sigma_m = 0.0;  ///< one sigma of the position along the yaw
     bool bottom_seen = true;      ///< false: `height_m` is a bound, the ground may be deeper
-    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its edge
+    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< see Edge::log_step_ratio
     Tracked tracked;  ///< drops and kerbs: the state of their edge
 };
 
@@ -107,7 +107,7 @@ struct Flight {
     double riser_m = 0.0;         ///< mean
     double riser_sigma_m = 0.0;   ///< standard error of the mean
     double riser_spread_m = 0.0;  ///< scatter of single risers; 0 for one step
-    /// Mean distance from nosing to nosing; like the next two, NaN for a single step.
+    /// Mean distance from nosing to nosing. NaN for a single step, as are its sigma and its spread.
     double going_m = 0.0;
     double going_sigma_m = 0.0;
     double going_spread_m = 0.0;
@@ -117,7 +117,7 @@ struct Flight {
     std::vector<Edge> edges;
     double turn_rad = 0.0;  ///< change of direction from the first edge to the last (spiral)
     bool cut = false;       ///< the flight may continue beyond the known ground
-    bool open = false;      ///< boards without risers: at least half of the steps show it
+    bool open = false;      ///< boards without risers, found at half of the steps or more
     FlightSide left;        ///< left side, seen from the stance in the direction of travel
     FlightSide right;
     Tracked tracked;

@@ -16,7 +16,7 @@ enum class Side : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
 
 /// The last cell of upper ground in a row or column, before the ground falls.
 struct EdgePoint {
-    Eigen::Vector2f at_m;  ///< middle of the cell border on that side
+    Eigen::Vector2f at_m;  ///< middle of the cell's border towards the lower ground
     std::int16_t ix = 0;   ///< column of the upper cell
     std::int16_t iy = 0;
     Side side = Side::plus_x;
@@ -38,7 +38,7 @@ struct EdgePoint {
 class EdgePointFinder {
   public:
     explicit EdgePointFinder(const StairsConfig& config) : config_(config) {}
-    /// Sorted by iy, then ix, then side. Allocates only until the largest map was processed.
+    /// Sorts the points by iy, ix, side. Allocates only until the largest map was processed.
     void find(const Terrain& terrain, std::vector<EdgePoint>& out);
 
   private:
@@ -53,7 +53,7 @@ class EdgePointFinder {
     /// A row or a column, walked in one direction.
     struct Line {
         int cells = 0;
-        const float* height_m = nullptr;  ///< a copy without gaps
+        const float* height_m = nullptr;  ///< copied heights without gaps
         Strided var_m2;                   ///< read for few cells only
         Strided free_above_m;
     };

@@ -23,7 +23,7 @@ class SightFaces {
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< how far the old edge lies behind the face; 0 = open
+        double behind_m = 0.0;  ///< distance of the old edge behind the face; 0 = open riser
         double sigma_m = 0.0;
         bool open = false;
     };

@@ -49,7 +49,7 @@ class SightSteps {
     [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
                                              double height_m,
                                              std::size_t steps);
-    /// Log likelihood ratio: the first `steps` steps over ground that slopes.
+    /// Log likelihood ratio of the first `steps` steps to ground that slopes.
     [[nodiscard]] double log_ratio(std::span<const SightBin> bins,
                                    double height_m,
                                    std::size_t steps);

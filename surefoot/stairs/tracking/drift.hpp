@@ -20,7 +20,7 @@ struct Drift {
     /// False if the positions of remembered features are unknown.
     [[nodiscard]] bool is_bounded() const;
 
-    /// Position variance at a distance from the machine; the next function: height variance.
+    /// Position variance at a distance from the machine. `level_var_m2` gives the height variance.
     [[nodiscard]] double place_var_m2(double distance_m) const {
         return horizontal_var_m2 + distance_m * distance_m * yaw_var_rad2;
     }

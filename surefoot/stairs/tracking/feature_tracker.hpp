@@ -20,8 +20,8 @@ struct Moment {
     Drift drift;
 };
 
-/// Tracks features over time. Observations (FeatureFinder) of one place are joined under one id and
-/// reported as their mean. In odom.
+/// Tracks features over time, in odom. Joins the observations (FeatureFinder) of one feature under
+/// one id and reports their mean.
 ///
 /// - Two edges are the same if position across, direction, both heights and a shared length
 ///   agree within 3.4 sigma, or within half a step if the sigmas are smaller. Flights match by
@@ -32,17 +32,17 @@ struct Moment {
 /// - Drops are reported from the first observation on, never farther away than the current
 ///   observation plus its sigma, and at full length. A drop ends after `level_observations`
 ///   consecutive observations of level or smooth ground on both sides, or of another edge just
-///   beside it, or when it leaves the map. A drop of the current observation is always reported
-///   (of more than EdgeTracker::kMaxEdges the nearest).
+///   beside it, or when it leaves the map. Every drop of the current observation is reported
+///   (the nearest EdgeTracker::kMaxEdges, if there are more).
 /// - All other features need two observations, because a wrong match rarely repeats its
-///   position. (The very first observation needs none.) They end after `missed_observations`
-///   consecutive observations that see the place but not the feature.
-/// - The number of steps is the one most of the last observations report. A going depends on
-///   visible riser faces, whose errors change between frames, so RobustMean may lower its
-///   sigma.
+///   position. (The very first observation needs no second one.) They end after
+///   `missed_observations` consecutive observations that see their location without them.
+/// - The last observations vote on the number of steps. A going depends on visible riser
+///   faces. Their errors change between frames, so the sigma of RobustMean may be below that
+///   of its observations.
 ///
 /// Kerbs and drops have the ids of their edges. No id is used twice, not even after `forget`.
-/// Observations of one place and size stop allocating after the first few. Not thread-safe.
+/// With one map size and number of features, only the first few calls allocate. Not thread-safe.
 class FeatureTracker {
   public:
     explicit FeatureTracker(const TrackingConfig& config);

@@ -36,7 +36,7 @@ class LocatedFeatureTracker {
         ObservationWeight across;  ///< doors: width; sills: position across
         ObservationWeight height;  ///< height of the sill
         bool shown = false;
-        int place_seen = 0;  ///< consecutive observations that see the place but not the feature
+        int place_seen = 0;  ///< consecutive observations that see its location but not it
     };
 
     void take(const Place& seen, std::int64_t time_ns, Track& track) const;
