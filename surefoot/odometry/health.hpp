@@ -27,7 +27,7 @@ struct HealthEvidence {
     double translation_sigma_m = 0.0;  ///< one sigma in the weakest direction
     double rotation_sigma_rad = 0.0;   ///< one sigma in the weakest direction
     double scene_depth_m = 0.0;        ///< median depth of the inliers; 0 = unknown
-    bool imu_disagrees = false;        ///< the IMU disagrees for several frames in a row
+    bool imu_disagrees = false;        ///< the IMU contradicts vision in several frames in a row
     bool imu_gap = false;              ///< IMU samples are missing in at least two frames in a row
     bool machine_disagrees = false;    ///< machine contradicts vision in several frames in a row
     bool beyond_machine = false;       ///< the pose implies a motion above the machine's limit

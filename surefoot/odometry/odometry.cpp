@@ -131,8 +131,8 @@ struct Odometry::Impl {
     PoseSolverConfig solver;
 
     Pose T_odom_camera;                           ///< pose of the last estimate
-    Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera if landmarks are exact
-    Matrix6 lost_body = Matrix6::Zero();          ///< of the motion since the last good frame
+    Matrix6 covariance_camera = Matrix6::Zero();  ///< covariance if the landmarks are exact
+    Matrix6 lost_body = Matrix6::Zero();          ///< covariance since the last good frame
     Vector6 velocity = Vector6::Zero();           ///< velocity [m/s, rad/s] in the camera frame
     std::int64_t time_ns = 0;                     ///< stamp of the previous frame
     std::int64_t good_time_ns = 0;                ///< stamp of the last frame with a pose

@@ -19,7 +19,7 @@ struct StairsConfig {
     double sigma_factor = 3.4;   ///< smallest edge in sigma; noise alone exceeds it with p = 3e-4
     /// A matcher spreads a kerb over up to five cells of 25 mm, which is about 0.15 m.
     double smear_m = 0.15;
-    double min_length_m = 0.30;  ///< least length of an edge: 12 cells of 25 mm
+    double min_length_m = 0.30;  ///< smallest length of an edge: 12 cells of 25 mm
     double fit_tolerance_m = 0.03;
     double max_gap_m = 0.20;  ///< largest gap without edge points within one edge
     /// Largest depth of the occluded region behind an edge, as a multiple of the edge's height.
@@ -32,9 +32,9 @@ struct StairsConfig {
     double max_riser_m = 0.23;
     double min_going_m = 0.15;
     double max_going_m = 0.55;
-    double min_width_m = 0.45;     ///< least width of a flight
+    double min_width_m = 0.45;     ///< smallest width of a flight
     double max_turn_deg = 40.0;    ///< largest angle between neighbouring edges; spirals exceed 10
-    double max_facing_deg = 60.0;  ///< angle between the normal of a single step and the path
+    double max_facing_deg = 60.0;  ///< largest angle between a single step's normal and the path
     double walk_step_m = 0.03;     ///< largest height difference that needs no step
     double kerb_m = 0.20;          ///< highest kerb
     double drop_m = 0.05;          ///< a fall by more than this is a drop (the limit of the gate)
@@ -55,7 +55,7 @@ struct StairsConfig {
     TrackingConfig tracking;
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

@@ -33,11 +33,11 @@ struct ImuLimits {
     double accel_range_m_s2 = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
 };
 
-/// Why an interval has no preintegrated motion.
+/// Reason why an interval has no preintegrated motion.
 enum class ImuProblem : std::uint8_t {
     none,
     no_samples,  ///< the list is empty, or no sample is near the interval
-    gap,         ///< a time without a sample exceeds the limit, inside or at an end
+    gap,         ///< no sample for longer than the limit, inside or at an end
     stamps,      ///< stamps repeat or go back, or the interval is empty
     not_finite,
     saturated,  ///< a reading is at its range limit; if that is unknown: high and constant
@@ -64,7 +64,7 @@ struct ImuMotion {
     Eigen::Matrix3d d_position_d_gyro = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d d_position_d_accel = Eigen::Matrix3d::Zero();
 
-    /// The motion for another bias, to first order in the change of bias.
+    /// These functions return the motion for another bias, to first order in the change of bias.
     [[nodiscard]] Eigen::Quaterniond rotation_at(const ImuBias& other) const;
     [[nodiscard]] Eigen::Vector3d velocity_at(const ImuBias& other) const;
     [[nodiscard]] Eigen::Vector3d position_at(const ImuBias& other) const;

@@ -22,7 +22,8 @@ using inertial::PointsFactor;
 using inertial::PoseFactor;
 using inertial::VectorAll;
 
-/// Covariance of the present state and gravity after the previous state is marginalised.
+/// Returns the covariance of the present state and gravity after the previous state is
+/// marginalised.
 Matrix17 present_covariance(const MatrixAll& H) {
     const Eigen::Matrix<double, kFrame, kFrame> H_pp = H.topLeftCorner<kFrame, kFrame>();
     const Eigen::Matrix<double, kFrame, kInertialSize> H_pr =

@@ -34,7 +34,7 @@ struct InertialState {
     [[nodiscard]] Eigen::Vector3d up_odom() const;
 };
 [[nodiscard]] InertialState perturbed(const InertialState& state, const Vector17& delta);
-/// The delta for which `to == perturbed(from, delta)`. Both share the same R_odom_level.
+/// Returns the delta for which `to == perturbed(from, delta)`. Both must share R_odom_level.
 [[nodiscard]] Vector17 difference(const InertialState& from, const InertialState& to);
 
 /// A state and its covariance.
@@ -69,7 +69,7 @@ struct InertialSolution {
     InertialBelief belief;
     std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
-    double residual_px = 0.0;  ///< rms of the pixel components of the inliers
+    double residual_px = 0.0;  ///< rms residual of the inliers, per pixel component
 };
 
 /// Predicts the present state from the IMU alone: `before`, moved by `motion`.
@@ -98,11 +98,11 @@ struct InertialSolution {
                                     const PoseEvidence& known);
 
 /// Returns the belief for the next frame. `visual_covariance` is the covariance of the IMU's pose
-/// from vision alone. Neighbouring frames see the same landmarks with the same errors, so a pose
-/// that collects information from frame to frame would count these errors several times. The
-/// function assumes the worst case: landmarks cause all of the visual error. It raises the pose
-/// covariance to that of vision alone, as an independent shift of the map would. Information about
-/// velocity, biases and gravity stays, because it comes from differences of poses.
+/// from vision alone. Neighbouring frames see the same landmarks with the same errors. A pose that
+/// collects information from frame to frame would count these errors several times. The function
+/// assumes the worst case: landmarks cause all of the visual error. It raises the pose covariance
+/// to that of vision alone, as an independent shift of the map would. Information about velocity,
+/// biases and gravity stays, because it comes from differences of poses.
 [[nodiscard]] InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                                       const Matrix6& visual_covariance);
 

@@ -24,8 +24,8 @@ constexpr double kStartResidual_rad = 0.02;
 constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
 constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimated discord
-constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first velocity
-constexpr double kStartTilt_rad = 0.005;  ///< sigma of gravity's direction, without the bias
+constexpr double kStartSpeed_m_s = 0.05;  ///< one sigma of the first velocity
+constexpr double kStartTilt_rad = 0.005;  ///< one sigma of gravity's direction, without the bias
 /// Largest number of stored samples: two seconds of a fast IMU. A longer interval has a gap.
 constexpr int kMostSamples = 4000;
 /// Sigma [m, rad] of a pose that is exact by definition.

@@ -11,7 +11,7 @@ namespace {
 constexpr int kLevels = 4;  ///< full size and four halvings: about 50 px of unpredicted motion
 constexpr int kWindow_px = 15;
 constexpr int kSharpnessLevel = 2;
-constexpr int kBlock = 64;  ///< points per piece of work
+constexpr int kBlock = 64;  ///< points per task of the executor
 
 /// OpenCV's derivatives are 32 times the grey step per pixel (Scharr: 3 + 10 + 3, twice).
 constexpr double kDerivativeScale = 32.0;
@@ -75,7 +75,7 @@ double ImagePyramid::sharpness() const {
 
 namespace {
 
-/// Tracks one block one way. `points` holds the start positions and receives the results.
+/// Tracks one block in one direction. `points` holds the start positions and receives the results.
 void track_block(const ImagePyramid& from,
                  const ImagePyramid& to,
                  const std::vector<cv::Point2f>& origins,

@@ -15,7 +15,7 @@ namespace surefoot::odometry {
 /// A landmark with known position and its observation in the present frame.
 struct PointMatch {
     Eigen::Vector3d p_world_m;
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of p_world_m, in world
     StereoPixel pixel_px;
     double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
     double vote = 1.0;          ///< weight of the point in the vote for a pose
@@ -33,11 +33,10 @@ struct PoseSolverConfig {
 struct PoseSolution {
     bool found = false;  ///< if false, the other members are invalid
     Pose T_world_camera;
-    Matrix6 covariance =
-        Matrix6::Zero();               ///< of T_world_camera (pose.hpp), scaled by the residuals
-    std::vector<std::uint8_t> inlier;  ///< one flag per match
+    Matrix6 covariance = Matrix6::Zero();  ///< T_world_camera's covariance, scaled by the residuals
+    std::vector<std::uint8_t> inlier;      ///< one flag per match
     int inliers = 0;
-    double residual_px = 0.0;     ///< rms of the pixel components of the inliers
+    double residual_px = 0.0;     ///< rms residual of the inliers, per pixel component
     double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
 };
 

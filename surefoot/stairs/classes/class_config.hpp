@@ -20,7 +20,7 @@ struct ClassConfig {
     double reach_m = 1.0;       ///< ground farther away has no effect on a cell
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

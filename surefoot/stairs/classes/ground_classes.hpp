@@ -25,7 +25,7 @@ enum class GroundClass : std::uint8_t {
     tread,    ///< between two consecutive edges of a flight, at the level of the tread
     riser,    ///< a cell on the edge of a step, or beside it at a height between both levels
     ramp,     ///< a reachable plane that is steeper than level ground
-    kerb,     ///< like a riser, for a single edge that is no higher than a kerb
+    kerb,     ///< like a riser, but at a single edge that is no higher than a kerb
     sill,     ///< a raised cell between the jambs of a door
     drop,     ///< ground too low for any ramp or step down from reachable ground; also unknown
               ///< cells that rays prove to be so low
@@ -98,7 +98,7 @@ class GroundClassifier {
     StairsConfig config_;
     PatchWalk walk_;
     std::vector<GroundClass> class_;  ///< class of each patch
-    std::vector<double> above_m_;     ///< sums over blocks of a patch
+    std::vector<double> above_m_;     ///< sum of off_the_way_m over the blocks of a patch
     std::vector<int> above_count_;
     std::vector<float> heights_m_;
     std::vector<float> sorted_m_;

@@ -16,7 +16,7 @@ namespace surefoot::stairs {
 
 /// The reachable ground nearest to a block.
 struct NearGround {
-    float distance_m = 0.0F;  ///< infinite = none within stairs.classes.reach_m
+    float distance_m = 0.0F;  ///< distance; infinite = none within stairs.classes.reach_m
     float height_m = 0.0F;
 };
 

@@ -446,7 +446,7 @@ void PatchFinder::measure(const Terrain& terrain, PatchMap& out) const {
             plane.at_0_m + plane.gx * x + plane.gy * y;
         patch.gradient = {plane.gx, plane.gy};
         patch.rms_m = std::sqrt(square_m2_[i] / std::max(1, patch.cells));
-        // Smaller eigenvalue of the horizontal scatter.
+        // Returns the smaller eigenvalue of the horizontal scatter.
         const double a = s.xx / s.w - x * x, b = s.xy / s.w - x * y, c = s.yy / s.w - y * y;
         const double narrow_m2 =
             std::max(0.0, 0.5 * (a + c) - std::sqrt(0.25 * square(a - c) + b * b));

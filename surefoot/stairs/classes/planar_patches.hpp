@@ -21,10 +21,10 @@ struct PatchConfig {
     double tolerance_m = 0.015;
     double sigma_factor = 3.0;
     double max_tolerance_m = 0.04;
-    double min_area_m2 = 0.02;  ///< least area of a patch
+    double min_area_m2 = 0.02;  ///< smallest area of a patch
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

@@ -32,7 +32,7 @@ struct DoorConfig {
     double overhead_side_m = 0.05;
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
@@ -76,7 +76,7 @@ class DoorFinder {
     };
     /// The point where a row of cells meets the wall, in the frame of the opening.
     struct RowEnd {
-        double across_m = 0.0;  ///< offset from the middle
+        double across_m = 0.0;  ///< offset from the middle of the opening
         double along_m = 0.0;
     };
     /// Mean height of the ground over the width of an opening.

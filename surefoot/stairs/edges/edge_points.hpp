@@ -26,12 +26,12 @@ struct EdgePoint {
 };
 
 /// Finds points where the ground falls, along all rows and columns, in both directions. For a cell,
-/// `top` is the highest of the cells up to `smear_m` before it and `low` the lowest of the cells up
-/// to `smear_m` behind it. Behind known ground two more values count for `low`: the next known
-/// cell, if it lies within the occluded region of such an edge, and the free-space bound of the
-/// cells in between. The cell is an edge point if top - low reaches the least height and exceeds
-/// the noise, if the cell lies above the middle of both, and if the next cell lies below the middle
-/// or is unknown.
+/// `top` is the highest cell up to `smear_m` before it, and `low` is the lowest cell up to
+/// `smear_m` behind it. Behind known ground two more values count for `low`: the next known cell,
+/// if it lies within the occluded region of such an edge, and the free-space bound of the cells in
+/// between. The cell is an edge point under three conditions: top - low reaches the least height
+/// and exceeds the noise; the cell lies above the middle of both; the next cell lies below the
+/// middle or is unknown.
 ///
 /// If nothing is known behind the cell although the camera would see continuing ground there
 /// (Terrain::view), the ground ends. It may fall too steeply to be visible.
@@ -54,7 +54,7 @@ class EdgePointFinder {
     struct Line {
         int cells = 0;
         const float* height_m = nullptr;  ///< copied heights without gaps
-        Strided var_m2;                   ///< read for few cells only
+        Strided var_m2;                   ///< variances, read for few cells only
         Strided free_above_m;
     };
     struct Found {

@@ -60,7 +60,7 @@ class SightSteps {
     SightFlight even_;
     double bin_rad_ = 0.0;
     std::vector<float> cost_;
-    std::vector<float> cheapest_;  ///< least cost over this level and all higher levels
+    std::vector<float> cheapest_;  ///< lowest cost over this level and all higher levels
     std::vector<std::int16_t> from_;
     std::vector<std::int16_t> cheapest_level_;
     std::vector<Level> levels_;

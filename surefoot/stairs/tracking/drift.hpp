@@ -10,10 +10,10 @@ namespace surefoot::stairs {
 /// Uncertainty of the motion since a feature was last seen: how far its remembered position may be
 /// wrong relative to the machine. Variances in the axes of odom.
 struct Drift {
-    double horizontal_var_m2 = 0.0;  ///< variance in the direction of the largest variance
+    double horizontal_var_m2 = 0.0;  ///< largest variance of all horizontal directions
     double height_var_m2 = 0.0;
     double yaw_var_rad2 = 0.0;
-    double tilt_var_rad2 = 0.0;  ///< the larger one of the tilts about x and y
+    double tilt_var_rad2 = 0.0;  ///< the larger variance of the tilts about x and y
 
     /// Adds the motion of one frame. `relative_covariance`: see MotionEstimate.
     void add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);

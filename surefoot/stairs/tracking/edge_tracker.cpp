@@ -387,7 +387,7 @@ bool EdgeTracker::is_over(const Terrain& terrain, const EdgeTrack& track) const 
            (track.shown ? config_.missed_observations : config_.first_observations);
 }
 
-/// True if observations find another edge just beside this one instead of this one.
+/// True if observations find another edge just beside the tracked edge instead of it.
 bool EdgeTracker::is_now_another(const EdgeTrack& track) {
     if (track.missed < config_.level_observations) return false;
     for (EdgeTrack& other : tracks_) {

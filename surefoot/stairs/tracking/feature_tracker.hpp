@@ -23,16 +23,16 @@ struct Moment {
 /// Tracks features over time, in odom. Joins the observations (FeatureFinder) of one feature under
 /// one id and reports their mean.
 ///
-/// - Two edges are the same if position across, direction, both heights and a shared length
-///   agree within 3.4 sigma, or within half a step if the sigmas are smaller. Flights match by
-///   their edges, doors and sills by their position.
+/// - Two edges are the same if they agree within 3.4 sigma, or within half a step if the sigmas
+///   are smaller. Compared: position across, direction, both heights and a shared length.
+///   Flights match by their edges, doors and sills by their position.
 /// - A mean is steadier than its observations, but its sigma is not below the best one
 ///   (ObservationWeight), because all observations read one map. Without a match the sigmas
 ///   grow with the drift.
 /// - Drops are reported from the first observation on, never farther away than the current
-///   observation plus its sigma, and at full length. A drop ends after `level_observations`
-///   consecutive observations of level or smooth ground on both sides, or of another edge just
-///   beside it, or when it leaves the map. Every drop of the current observation is reported
+///   observation plus its sigma, and at full length. A drop ends when it leaves the map. It also
+///   ends after `level_observations` consecutive observations of level or smooth ground on both
+///   sides, or of another edge just beside it. Every drop of the current observation is reported
 ///   (the nearest EdgeTracker::kMaxEdges, if there are more).
 /// - All other features need two observations, because a wrong match rarely repeats its
 ///   position. (The very first observation needs no second one.) They end after
@@ -71,7 +71,7 @@ class FeatureTracker {
     IdCounter ids_;
     bool nothing_yet_ = true;
     std::vector<ObservedEdge> seen_;
-    std::vector<Flight> seen_flights_;  ///< with the ids of their edges; the memory is reused
+    std::vector<Flight> seen_flights_;  ///< flights with their edges' ids; the memory is reused
     std::size_t flight_count_ = 0;
 };
 

@@ -24,7 +24,7 @@ struct FlightTrack {
     ObservationWeight riser;
     RobustMean going;
     ObservationWeight width;
-    /// How often each number of steps was found; recent observations weigh most.
+    /// Votes for each number of steps; recent observations weigh most.
     std::array<float, kMaxSteps + 1> votes{};
     bool shown = false;
     int missed = 0;

@@ -33,8 +33,8 @@ class LocatedFeatureTracker {
   private:
     struct Track {
         Place place;
-        ObservationWeight across;  ///< doors: width; sills: position across
-        ObservationWeight height;  ///< height of the sill
+        ObservationWeight across;  ///< weight of a door's width or of a sill's position across
+        ObservationWeight height;  ///< weight of the height of the sill
         bool shown = false;
         int place_seen = 0;  ///< consecutive observations that see its location but not it
     };
