@@ -26,8 +26,8 @@ constexpr double kKeyframeShare = 0.7;  ///< new keyframe if a smaller share of 
 constexpr double kKeyframeParallax = 0.035;  ///< new keyframe if parallax / image width is larger
 constexpr int kKeyframePeriod = 12;          ///< new keyframe after this many frames of motion
 constexpr double kLeastNewErrors = 1e-3;  ///< smallest share of errors that two poses do not share
-/// After a torn image the next images are suspect. Of several torn images in a row, the check of
-/// rows detects only the first; the others lack data that never arrived.
+/// Time after a torn image in which the next images are suspect. The check of rows detects only the
+/// first of several torn images in a row; data of the others never arrived.
 constexpr double kTearing_s = 1.0;
 /// Too little depth may come from swapped cameras, for which enough wrong points agree by chance in
 /// some frames.

@@ -8,10 +8,10 @@
 
 namespace surefoot::odometry {
 
-/// Decides whether the camera still stands where it stopped (the anchor). It stands
-/// while the median parallax of the points, corrected for their noise, is small and the
-/// estimated motion is not significant (Mahalanobis distance). The comparison is with
-/// the anchor, not with the previous frame, so that slow motion adds up until it is
+/// Decides whether the camera still stands where it stopped (the anchor). The camera stands
+/// under two conditions. The median parallax of the points, corrected for their noise, is
+/// small, and the estimated motion is not significant (Mahalanobis distance). The comparison is
+/// with the anchor, not with the previous frame, so that slow motion adds up until it is
 /// detected.
 class StillDetector {
   public:

@@ -33,8 +33,9 @@ struct PoseSolverConfig {
 struct PoseSolution {
     bool found = false;  ///< if false, the other members are invalid
     Pose T_world_camera;
-    Matrix6 covariance = Matrix6::Zero();  ///< T_world_camera's covariance, scaled by the residuals
-    std::vector<std::uint8_t> inlier;      ///< one flag per match
+    Matrix6 covariance =
+        Matrix6::Zero();               ///< covariance of T_world_camera, scaled by the residuals
+    std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
     double residual_px = 0.0;     ///< rms residual of the inliers, per pixel component
     double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
@@ -44,7 +45,7 @@ struct PoseSolution {
 inline constexpr int kMinimalPoseMatches = 5;
 
 /// Finds the pose with the most votes of points within `ransac_threshold_px` of their (u_left, v).
-/// It tries `T_predicted` first, then three-point poses of random samples (P3P). The same seed
+/// Tries the predicted pose first, then three-point poses of random samples (P3P). The same seed
 /// gives the same pose.
 ///
 /// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.

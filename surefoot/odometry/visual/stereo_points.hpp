@@ -34,15 +34,15 @@ struct StereoPointConfig {
                                                            const Eigen::Vector2d& raw_px,
                                                            const StereoPointConfig& config);
 
-/// Rectified measurement from aligned raw pixels of both cameras, with v the mean row. Nothing when
-/// the rows differ by more than `epipolar_px` or the disparity is out of range.
+/// Rectified measurement from aligned raw pixels of both cameras, with v the mean row. Returns
+/// nothing if the rows differ by more than `epipolar_px` or the disparity is out of range.
 [[nodiscard]] std::optional<StereoPixel> stereo_pixel(const camera::Rectifier& rectifier,
                                                       const Eigen::Vector2d& raw_left_px,
                                                       const Eigen::Vector2d& raw_right_px,
                                                       const StereoPointConfig& config);
 
 /// RGB-D: the measurement of a left pixel from its depth along z; u_right belongs to the virtual
-/// second camera. Nothing without depth or at a depth edge, where the surface is ambiguous.
+/// second camera. Returns nothing without depth or at a depth edge (an ambiguous surface).
 [[nodiscard]] std::optional<StereoPixel> depth_pixel(const camera::Rectifier& rectifier,
                                                      const Image<float>& depth_m,
                                                      const Eigen::Vector2d& raw_left_px,

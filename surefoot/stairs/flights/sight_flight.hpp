@@ -38,7 +38,7 @@ class SightFlight {
                                                 double height_m,
                                                 double first_run_m);
 
-    /// The least cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
+    /// The lowest cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
     /// The slope begins near the first nosing.
     [[nodiscard]] double cost_of_slope(std::span<const SightBin> bins,
                                        double height_m,

@@ -18,9 +18,9 @@ namespace surefoot::stairs {
 class SightSteps {
   public:
     explicit SightSteps(const StairsConfig& config) : config_(config), even_(config) {}
-    /// Writes the edges of a flight down, from the top: the `known` edges (at least one), with the
-    /// visible ground below the last one, then further edges. Empty if fewer steps are visible than
-    /// known.
+    /// Writes the edges of a flight down, from the top: the `known` edges (at least one), then
+    /// further edges. The last known edge gets the visible ground below it. Writes nothing if fewer
+    /// steps are visible than known.
     void find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out);
 
   private:
