@@ -8,16 +8,16 @@
 namespace surefoot::odometry {
 namespace {
 
-constexpr double kBlurred = 0.3;       ///< sharpness ratio; blur reduces the mean square quickly
-constexpr double kMinAgreeing = 0.35;  ///< share of the tracks that must agree on one motion
-constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma relative to the scene's depth
+constexpr double kBlurred = 0.3;       ///< below this sharpness ratio an image is blurred
+constexpr double kMinAgreeing = 0.35;  ///< smallest share of the tracks that agree on one motion
+constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma / depth of the scene
 constexpr double kDegradedRotation_rad = 0.01;
 constexpr double kGapPeriods = 3.5;  ///< a gap is longer than this many usual periods
-/// A second motion counts from this many points on, and from this many per point of the first
-/// motion. Mismatches are fewer and do not agree with each other.
+/// Smallest number of points on a second motion, and its smallest ratio to the number of points on
+/// the first motion. Wrong matches are fewer and do not agree with each other.
 constexpr int kOtherMotion = 15;
 constexpr double kOtherMotionShare = 0.2;
-constexpr double kLostFactor = 10.0;  ///< beyond this factor times the limits above: no usable pose
+constexpr double kLostFactor = 10.0;  ///< a sigma above this factor times its limit: LOST
 
 }  // namespace
 

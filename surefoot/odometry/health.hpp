@@ -15,22 +15,22 @@ struct HealthEvidence {
     /// Inliers whose depth was measured in this frame, because both cameras see them.
     int depth_inliers = 0;
     bool right_shows_something = false;  ///< the right image is neither missing nor dark
-    bool cameras_swapped = false;        ///< the left image is the right camera's and vice versa
+    bool cameras_swapped = false;        ///< each image shows the view of the other camera
     /// Points that disagree with the pose but agree with each other on a second motion.
     int other_motion = 0;
-    double gap_s = 0.0;        ///< since the previous frame
-    double usual_gap_s = 0.0;  ///< the gap before that; 0 = unknown
+    double gap_s = 0.0;        ///< time since the previous frame
+    double usual_gap_s = 0.0;  ///< time between the two previous frames; 0 = unknown
     bool stamp_grows = true;
     bool was_unsure = false;       ///< no pose in the previous frame, or too little depth recently
     bool torn_lately = false;      ///< an image shortly before this one was torn
-    double sharpness_ratio = 1.0;  ///< to the last good frame, see ImagePyramid::sharpness
-    double translation_sigma_m = 0.0;  ///< weakest direction
-    double rotation_sigma_rad = 0.0;   ///< weakest direction
-    double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
-    bool imu_disagrees = false;        ///< the IMU disagrees for several frames in a row
-    bool imu_gap = false;              ///< samples are missing, for more than a frame
-    bool machine_disagrees = false;    ///< the machine disagrees for several frames in a row
-    bool beyond_machine = false;       ///< faster than the machine can move
+    double sharpness_ratio = 1.0;  ///< present / last good frame (ImagePyramid::sharpness)
+    double translation_sigma_m = 0.0;  ///< one sigma in the weakest direction
+    double rotation_sigma_rad = 0.0;   ///< one sigma in the weakest direction
+    double scene_depth_m = 0.0;        ///< median depth of the inliers; 0 = unknown
+    bool imu_disagrees = false;        ///< the IMU contradicts vision in several frames in a row
+    bool imu_gap = false;              ///< IMU samples are missing in at least two frames in a row
+    bool machine_disagrees = false;    ///< machine contradicts vision in several frames in a row
+    bool beyond_machine = false;       ///< the pose implies a motion above the machine's limit
 };
 
 struct HealthVerdict {
@@ -38,24 +38,24 @@ struct HealthVerdict {
     HealthReason reason = HealthReason::few_tracks;
 };
 
-/// Decides the health of a frame. LOST: no pose, fewer than `min_inliers`, points that agree
-/// in one direction only, a right image with content but no measured depth, or swapped
-/// cameras. DEGRADED: the first frame after that, and half a second after too few depths.
-/// Points found again then may lie elsewhere than the poses meanwhile said (by the baseline
-/// after swapped cameras). DEGRADED too: one second after a torn image, because more may
-/// follow. The reason names the cause if known: first a time gap, then blur, then the
-/// points. An IMU gap costs no accuracy while enough points are seen: health OK, reason
-/// imu_gap.
+/// Decides the health of a frame. LOST: the frame has no pose, too few points, points that leave a
+/// direction uncertain, or a pose beyond the machine's speed. Also LOST: the cameras are swapped,
+/// or the right image has content but no point has a measured depth. DEGRADED: the first frame
+/// after a LOST one, and the half second after a frame with too little depth. Points that are found
+/// again may contradict the poses in between (by the baseline after swapped cameras). Also
+/// DEGRADED: one second after a torn image, because more may follow. The reason names the cause if
+/// known: first a time gap, then blur, then the points. An IMU gap costs no accuracy while enough
+/// points are seen: health OK, reason imu_gap.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 
-/// Covariance of the unseen motion between `before_s` and `after_s` seconds after the tracking was
-/// lost. The speed is unknown but constant, so that parts of the time add up to (speed * time)^2.
+/// Covariance of the unseen motion from `before_s` to `after_s` seconds after tracking was lost.
+/// Assumes an unknown constant speed: consecutive intervals add up to (speed * time)^2.
 [[nodiscard]] Matrix6 lost_covariance(const OdometryConfig& config,
                                       double before_s,
                                       double after_s);
 
-/// Motion estimate for a frame at `time_ns` after `last` that is repeated or torn (`frame_status`).
-/// It has the pose of `last`, health LOST, and the covariance of the motion since then.
+/// Returns the estimate for a repeated or torn frame (`frame_status`) at `time_ns`, after `last`:
+/// the pose of `last`, health LOST, and the covariance of the motion since `last`.
 [[nodiscard]] MotionEstimate unseen_motion(const OdometryConfig& config,
                                            const MotionEstimate& last,
                                            std::int64_t time_ns,

@@ -8,15 +8,15 @@
 
 namespace surefoot::odometry {
 
-/// Combines the motion that the machine reports with visual odometry. It carries the pose while the
-/// cameras see nothing and improves the visual pose by its covariance. It is ignored in frames
-/// where it contradicts vision (a foot slips, a wheel spins). Order of calls in a frame: `advance`,
-/// then `improved` or `reckoned`, then `place` if the frame has a pose.
+/// Combines the motion that the machine reports with visual odometry. The reported motion carries
+/// the pose while the cameras see nothing and improves the visual pose by its covariance. It is
+/// ignored in frames where it contradicts vision (a foot slips, a wheel spins). Order of calls:
+/// `advance`, then `improved` or `reckoned`, then `place` if the frame has a pose.
 class MachineTracker {
   public:
     explicit MachineTracker(const Pose& T_body_camera) : T_body_camera_(T_body_camera) {}
 
-    /// Adds the motion up to the present frame. Without it no pose is known until the next `place`.
+    /// Adds the motion up to the present frame. Without a motion no pose is known until `place`.
     void advance(const std::optional<MachineMotion>& motion);
     /// Camera pose from the machine alone, with the covariance of the motion since `place`.
     [[nodiscard]] std::optional<CameraFix> reckoned() const;
@@ -25,7 +25,7 @@ class MachineTracker {
     [[nodiscard]] CameraFix improved(const CameraFix& seen);
     /// Sets the camera pose of the present frame, from which the next motion continues.
     void place(const Pose& T_odom_camera);
-    /// The machine contradicted vision in several frames in a row.
+    /// True if the machine contradicted vision in several frames in a row.
     [[nodiscard]] bool disagrees() const noexcept;
 
   private:

@@ -22,17 +22,17 @@ namespace {
 
 constexpr std::uint64_t kSeed = 0x5afef007;
 constexpr double kCoastTime_s = 0.15;   ///< decay time of the predicted velocity of a lost camera
-constexpr double kKeyframeShare = 0.7;  ///< keyframe if fewer of the last keyframe's points remain
-constexpr double kKeyframeParallax =
-    0.035;                                ///< or when they moved by this share of the image width
-constexpr int kKeyframePeriod = 12;       ///< or after this many frames of motion
-constexpr double kLeastNewErrors = 1e-3;  ///< least share of new errors between two poses
-/// After a torn image the next images are suspect. Of several torn images in a row, the check of
-/// rows detects only the first; the others lack data that never arrived.
+constexpr double kKeyframeShare = 0.7;  ///< new keyframe if a smaller share of points remains
+constexpr double kKeyframeParallax = 0.035;  ///< new keyframe if parallax / image width is larger
+constexpr int kKeyframePeriod = 12;          ///< new keyframe after this many frames of motion
+constexpr double kLeastNewErrors = 1e-3;  ///< smallest share of errors that two poses do not share
+/// Time after a torn image in which the next images are suspect. The check of rows detects only the
+/// first of several torn images in a row; data of the others never arrived.
 constexpr double kTearing_s = 1.0;
-/// Too little depth may come from swapped cameras, where enough wrong points agree now and then.
+/// Too little depth may come from swapped cameras, for which enough wrong points agree by chance in
+/// some frames.
 constexpr double kDepthAgain_s = 0.5;
-constexpr double kFewFollowed = 0.5;  ///< below this share, points are tracked a second time
+constexpr double kFewFollowed = 0.5;  ///< if a smaller share is tracked, track a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -122,7 +122,7 @@ struct Odometry::Impl {
     camera::FrameIntegrityCheck watch;
     FrontEnd images;
     PointFrontEnd points;
-    Tracks* front = nullptr;  ///< the one of these two that receives the frames
+    Tracks* front = nullptr;  ///< the source of this frame: `images` or `points`
     LandmarkMap map;
     StillDetector still;
     MeasuredNoise noise;
@@ -131,14 +131,14 @@ struct Odometry::Impl {
     PoseSolverConfig solver;
 
     Pose T_odom_camera;                           ///< pose of the last estimate
-    Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera, given the landmarks
-    Matrix6 lost_body = Matrix6::Zero();          ///< of the motion since the last good frame
-    Vector6 velocity = Vector6::Zero();           ///< per second, camera frame
+    Matrix6 covariance_camera = Matrix6::Zero();  ///< covariance if the landmarks are exact
+    Matrix6 lost_body = Matrix6::Zero();          ///< covariance since the last good frame
+    Vector6 velocity = Vector6::Zero();           ///< velocity [m/s, rad/s] in the camera frame
     std::int64_t time_ns = 0;                     ///< stamp of the previous frame
     std::int64_t good_time_ns = 0;                ///< stamp of the last frame with a pose
-    Pose T_odom_good;                             ///< camera pose at that time
-    double sharpness = 0.0;                       ///< sharpness of the image at that time
-    double usual_gap_s = 0.0;                     ///< between the two frames before the present one
+    Pose T_odom_good;                             ///< camera pose at `good_time_ns`
+    double sharpness = 0.0;                       ///< sharpness of the image at `good_time_ns`
+    double usual_gap_s = 0.0;                     ///< time between the two frames before this one
     bool was_unsure = false;                      ///< the previous frame gave no pose
     bool without_depth = false;                   ///< the present frame measured too little depth
     std::optional<std::int64_t> torn_ns;          ///< stamp of the last torn image
@@ -190,7 +190,7 @@ void Odometry::skip(const StereoFrame& frame, const FrameStatus& frame_status) {
     if (frame_status.torn) impl_->torn_ns = frame.time_ns;
 }
 
-/// Switches the source. The landmarks of one source are unknown to the other.
+/// Switches to another source of tracks. The landmarks of one source are unknown to the other.
 void Odometry::Impl::feed_by(Tracks& source) {
     if (front == &source) return;
     front = &source;
@@ -247,7 +247,7 @@ MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     return estimate;
 }
 
-/// Starts a new map at the present pose. False when the image does not give enough landmarks.
+/// Starts a new map at the present pose. Returns false if the image does not give enough landmarks.
 bool Odometry::Impl::seed_landmarks(Executor& executor) {
     map.clear();
     front->clear();
@@ -331,8 +331,8 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     return evidence;
 }
 
-/// Whether base_link is farther from the last good frame than the machine can have moved, beyond
-/// three sigma.
+/// True if base_link is farther from the last good frame than the machine can have moved, by more
+/// than three sigma.
 bool Odometry::Impl::is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const {
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     const Vector6 motion = difference(body_from(T_odom_good), body_from(pose.T_world_camera));
@@ -366,8 +366,8 @@ int Odometry::Impl::other_motion(const PoseSolution& pose) {
     return other.found ? other.inliers : 0;
 }
 
-/// Effect of a small calibration error on a motion: a share of the motion, and a rotation that
-/// looks like a translation of the scene.
+/// Covariance that a small calibration error adds to a motion. Its sigma is a share of the motion.
+/// A turn also adds to the translation, because a wrong turn looks like a translation of the scene.
 Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
                                               const Pose& T_after,
                                               double depth_m) const {
@@ -394,8 +394,8 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
                           still.update(front->tracks(), map, T, covariance, pose.residual_px);
     if (standing) {
         T = still.T_odom_camera();
-        // The error of a held pose is one error for all frames, not one per frame: the sum of 1/n^2
-        // is 1.64.
+        // All frames of a held pose share one error. Division by n^2 limits the sum over all frames
+        // to 1.64 times the variance of this error.
         covariance /= static_cast<double>(still.held()) * still.held();
         if (inertial) inertial->stand({T, pose.covariance});
     } else {
@@ -520,9 +520,9 @@ Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     return map.newest().T_odom_camera;
 }
 
-/// Returns the estimate of a frame at `T_camera`, which becomes the previous frame. `share`: part
-/// of the poses' errors that is an error of the motion between them. `extra`: added to the motion's
-/// covariance, in body axes.
+/// Returns the estimate of a frame at `T_camera`, which becomes the previous frame. `share` is the
+/// part of the poses' errors that counts as an error of the motion between them. `extra` is added
+/// to the motion's covariance, in body axes.
 MotionEstimate Odometry::Impl::publish(const Pose& T_camera,
                                        const Matrix6& covariance,
                                        const Matrix6& extra,

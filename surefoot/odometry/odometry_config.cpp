@@ -6,13 +6,17 @@ namespace surefoot::odometry {
 void OdometryConfig::describe(ConfigVisitor& visitor) {
     visitor.integer(
         "max_tracks", max_tracks, 40, 2000, "largest number of landmarks tracked at the same time");
-    visitor.integer("grid_columns",
-                    grid_columns,
+    visitor.integer(
+        "grid_columns",
+        grid_columns,
+        2,
+        100,
+        "number of columns of the image grid; every grid cell gets its share of corners");
+    visitor.integer("grid_rows",
+                    grid_rows,
                     2,
                     100,
-                    "number of columns of the grid over which corners are spread");
-    visitor.integer(
-        "grid_rows", grid_rows, 2, 100, "number of rows of the grid over which corners are spread");
+                    "number of rows of the image grid; every grid cell gets its share of corners");
     visitor.number("min_depth_m",
                    min_depth_m,
                    0.05,
@@ -22,19 +26,19 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    sigma_px,
                    0.05,
                    3.0,
-                   "one sigma of the position of an aligned point per camera and axis; a larger "
-                   "measured noise replaces it");
+                   "one sigma of the image position of an aligned point, per camera and axis; a "
+                   "larger measured noise replaces this value");
     visitor.integer("window_keyframes",
                     window_keyframes,
                     3,
                     30,
-                    "number of keyframes that are adjusted together");
+                    "number of newest keyframes that the bundle adjustment includes");
     visitor.number("still_parallax_px",
                    still_parallax_px,
                    0.0,
                    3.0,
-                   "median parallax, in addition to its noise, below which the camera may stand "
-                   "still; 0 = never");
+                   "largest median parallax of a camera that may stand still; the expected "
+                   "parallax from noise is added; 0 = never still");
     visitor.number("bridge_s",
                    bridge_s,
                    0.0,
@@ -46,28 +50,29 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    0.05,
                    60.0,
                    "longest time between two frames; a longer time counts as a time gap");
-    visitor.integer(
-        "ok_inliers",
-        ok_inliers,
-        10,
-        1000,
-        "smallest number of agreeing points with health OK; fewer points degrade the health");
+    visitor.integer("ok_inliers",
+                    ok_inliers,
+                    10,
+                    1000,
+                    "smallest number of points that agree with the pose; with fewer points the "
+                    "health is DEGRADED");
     visitor.integer("min_inliers",
                     min_inliers,
                     6,
                     1000,
-                    "smallest number of agreeing points; with fewer points the odometry is lost");
-    visitor.number(
-        "ok_residual_px",
-        ok_residual_px,
-        0.1,
-        10.0,
-        "largest rms reprojection error with health OK; a larger error degrades the health");
-    visitor.number("calibration_share",
-                   calibration_share,
-                   0.0,
+                    "smallest number of points that agree with the pose; with fewer points the "
+                    "odometry is lost");
+    visitor.number("ok_residual_px",
+                   ok_residual_px,
                    0.1,
-                   "relative error of a motion that the calibration may cause (one sigma)");
+                   10.0,
+                   "largest rms reprojection error; with a larger error the health is DEGRADED");
+    visitor.number(
+        "calibration_share",
+        calibration_share,
+        0.0,
+        0.1,
+        "one sigma of the motion error that the calibration may cause, divided by the motion");
     visitor.number("landmark_s",
                    landmark_s,
                    0.01,
@@ -102,22 +107,24 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    noise.gyro_density_rad_s_sqrt_hz,
                    1e-6,
                    1.0,
-                   "white noise of the gyroscope, including its other errors on a machine");
+                   "noise density of the gyroscope; includes its errors of scale, alignment, time "
+                   "stamps and vibration");
     visitor.number("accel_density_m_s2_sqrt_hz",
                    noise.accel_density_m_s2_sqrt_hz,
                    1e-5,
                    10.0,
-                   "white noise of the accelerometer, including its other errors on a machine");
+                   "noise density of the accelerometer; includes its errors of scale, alignment, "
+                   "time stamps and vibration");
     visitor.number("gyro_walk_rad_s2_sqrt_hz",
                    noise.gyro_walk_rad_s2_sqrt_hz,
                    1e-7,
                    1.0,
-                   "random walk of the gyroscope's bias");
+                   "noise density of the random walk of the gyroscope's bias");
     visitor.number("accel_walk_m_s3_sqrt_hz",
                    noise.accel_walk_m_s3_sqrt_hz,
                    1e-6,
                    10.0,
-                   "random walk of the accelerometer's bias");
+                   "noise density of the random walk of the accelerometer's bias");
     visitor.number(
         "gyro_range_rad_s",
         limits.gyro_range_rad_s,
@@ -130,7 +137,11 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    1e4,
                    "measuring range of the accelerometer; readings at the range limit are not "
                    "used; 0 = unknown");
-    visitor.number("max_gap_s", limits.max_gap_s, 1e-3, 1.0, "longest time without an IMU sample");
+    visitor.number("max_gap_s",
+                   limits.max_gap_s,
+                   1e-3,
+                   1.0,
+                   "longest time without an IMU sample; a longer time counts as an IMU gap");
     visitor.number(
         "gravity_m_s2", gravity_m_s2, 9.7, 9.9, "magnitude of gravity at the location of use");
     visitor.number("gyro_bias_sigma_rad_s",
@@ -143,11 +154,8 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    1e-4,
                    5.0,
                    "one sigma of the accelerometer's bias at the initialisation");
-    visitor.number("start_s",
-                   start_s,
-                   0.2,
-                   10.0,
-                   "duration of visual odometry from which the IMU is initialised");
+    visitor.number(
+        "start_s", start_s, 0.2, 10.0, "duration of the visual odometry that initialises the IMU");
     visitor.number("dead_reckoning_s",
                    dead_reckoning_s,
                    0.0,

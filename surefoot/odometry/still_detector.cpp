@@ -16,7 +16,7 @@ constexpr double kChi2Limit = 22.46;
 /// Median distance of two measurements of a resting point, relative to the noise of one axis: a
 /// factor sqrt(2) for the difference, and sqrt(2 ln 2) for the median of a Rayleigh variable.
 constexpr double kMedianOfNoise = 1.67;
-constexpr std::size_t kMinShared = 20;  ///< least number of points that both frames see
+constexpr std::size_t kMinShared = 20;  ///< smallest number of points that both frames see
 
 }  // namespace
 

@@ -8,18 +8,18 @@
 
 namespace surefoot::odometry {
 
-/// Decides whether the camera still stands where it stopped (the anchor). It stands
-/// while the median parallax of the points, corrected for their noise, is small and the
-/// estimated motion is not significant (Mahalanobis distance). The comparison is with
-/// the anchor, not with the previous frame, so that slow motion adds up until it is
+/// Decides whether the camera still stands where it stopped (the anchor). The camera stands
+/// under two conditions. The median parallax of the points, corrected for their noise, is
+/// small, and the estimated motion is not significant (Mahalanobis distance). The comparison is
+/// with the anchor, not with the previous frame, so that slow motion adds up until it is
 /// detected.
 class StillDetector {
   public:
     explicit StillDetector(double parallax_px) : parallax_px_(parallax_px) {}
 
     void clear() { anchor_.clear(); }
-    /// True when the frame with these tracks stands at the anchor; otherwise the frame becomes the
-    /// anchor. `residual_px`: rms of the tracks' reprojection errors, per axis.
+    /// Returns true if the frame with these tracks stands at the anchor; otherwise makes the frame
+    /// the anchor. `residual_px`: rms of the tracks' reprojection errors, per axis.
     [[nodiscard]] bool update(std::span<const Track> tracks,
                               const LandmarkMap& map,
                               const Pose& T_odom_camera,

@@ -80,9 +80,9 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
 
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
     constexpr double kLeastShare = 0.25;
-    constexpr int kDeep_cells = 6;  ///< beyond two cells, which may belong half to either side
-    // Behind an object that is narrower than the tested depth lies other ground: a bar is not
-    // walkable because the floor behind it is.
+    constexpr int kDeep_cells = 6;  ///< depth behind the first two cells, which may be mixed
+    // Other ground lies behind an object that is narrower than the tested depth. Walkable floor
+    // behind a bar does not make the bar walkable.
     constexpr double kSame_m = 0.06;
     const double cell_m = terrain.geometry.resolution_m;
     for (Edge& edge : edges) {
@@ -124,7 +124,7 @@ bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     return false;
 }
 
-/// True for a spiral: a longer edge at one of the chain's steps has another direction.
+/// True for a spiral: at one of the chain's steps a longer edge has another direction.
 bool FeatureFinder::turns(std::span<const Edge> chain, std::span<const Edge> edges) const {
     constexpr double kLeast_rad = 0.21;  // 12 deg
     constexpr double kNear_m = 0.9;
@@ -146,7 +146,7 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     std::vector<Edge> chain;
     for (std::size_t i = 0; i < edges.size(); ++i) {  // edges are sorted, longest first
         const Edge& seed = edges[i];
-        // Higher edges may be boards without risers, which are no deeper than treads.
+        // A higher edge may be a board without a riser, which is no deeper than a tread.
         if (taken[i] || seed.length_m() < config_.min_width_m ||
             (seed.height_m() > config_.max_riser_m && seed.upper_depth_m > config_.max_going_m))
             continue;
@@ -176,7 +176,7 @@ void FeatureFinder::see_faces(const Terrain& terrain, std::vector<Edge>& edges) 
 
 void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& edges) {
     constexpr std::size_t kEnough = 3;
-    constexpr int kTries = 4;  // each costs 0.1 to 0.2 ms
+    constexpr int kTries = 4;  // each call costs 0.1 to 0.2 ms
     for (std::vector<Edge>& chain : chains_) {
         if (chain.size() >= kEnough) continue;
         from_above_.assign(chain.rbegin(), chain.rend());
@@ -190,7 +190,7 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
         if (seen_.size() == 1) edges[i] = seen_.front();
         if (!add_seen(edges)) ++i;
     }
-    // Edges below the noise of cells and slices may still be clear in the image.
+    // An edge below the noise of cells and slices may still be clear in the image.
     int tries = 0;
     for (const Edge& guess : guesses_) {
         const auto has = [&](const Edge& edge) { return is_part_of(guess, edge); };
@@ -218,8 +218,8 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 }
 
 void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
-    if (!edge.lower_seen) return;       // without lower ground there is nothing to explain
-    constexpr double kBeside_m = 0.05;  ///< the next riser is smeared this far over its tread
+    if (!edge.lower_seen) return;       // no lower ground: nothing to test
+    constexpr double kBeside_m = 0.05;  ///< smear of the next riser over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;
     const auto observed_at_m = [&](double depth_m) {
@@ -245,8 +245,8 @@ void FeatureFinder::weigh(const Terrain& terrain, std::vector<Edge>& edges) {
     });
 }
 
-/// Ends a flight where smooth ground explains the further steps. At least half of its steps must be
-/// proven. Every other step must be as likely as a drop, occluded, or between two proven ones.
+/// Ends a flight where smooth ground explains the further steps. At least half of the steps must be
+/// proven. Every other step must be as likely as a drop, occluded, or between two proven steps.
 void FeatureFinder::keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const {
     const auto is_step = [&](std::size_t k) { return is_step_of(config_, chain[k]); };
     const double likely = std::log(config_.drop_ratio);
@@ -294,7 +294,7 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
     for (std::size_t i = 0; i < out.edges.size(); ++i) {
         const Edge& edge = out.edges[i];
         if (in_flight_[i]) continue;
-        // With walkable ground above it the edge is a drop, from either side.
+        // An edge with walkable ground above it is a drop, from whichever side it is seen.
         const bool both = edge.upper_walkable && edge.lower_walkable;
         const bool goes_down = both ? edge.below_m(terrain.stance_m) < 0.0 : edge.upper_walkable;
         if (!goes_down && !edge.lower_walkable) continue;

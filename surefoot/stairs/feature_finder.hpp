@@ -21,8 +21,8 @@
 
 namespace surefoot::stairs {
 
-/// Finds the terrain features of one map: edges, and the flights, kerbs, drops and doors of them.
-/// It has no memory of earlier maps (see FeatureTracker). The same map gives the same result.
+/// Finds the terrain features of one map: edges, flights, kerbs, drops and doors. It has no memory
+/// of earlier maps (see FeatureTracker). The same map gives the same result.
 ///
 /// Owns the working memory. Not thread-safe.
 class FeatureFinder {
@@ -65,7 +65,7 @@ class FeatureFinder {
     FlightSides flight_sides_;
     DoorFinder door_finder_;
     traversability::Reachability reachability_;
-    grid::Layer walk_step_m_;  ///< NaN = cannot be walked to
+    grid::Layer walk_step_m_;  ///< reach_step_m of Reachability; NaN = not reachable
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
     std::vector<Edge> guesses_;  ///< lines whose lower ground the map does not show

@@ -13,8 +13,8 @@ namespace surefoot::stairs {
 struct Tracked {
     std::uint32_t id = 0;           ///< constant while the feature is tracked; 0 = not tracked
     int observations = 1;           ///< number of observations that found the feature
-    std::int64_t last_seen_ns = 0;  ///< stamp of the last observation that found it
-    bool seen_now = true;           ///< the newest observation found it
+    std::int64_t last_seen_ns = 0;  ///< stamp of the last observation that found the feature
+    bool seen_now = true;           ///< the newest observation found the feature
     /// True if the final map of a run shows the feature without the images (`surefoot stairs` on
     /// the folder of the run). Empty = not checked.
     std::optional<bool> in_final_map = std::nullopt;
@@ -34,7 +34,7 @@ struct Edge {
     bool lower_seen = false;
     bool open = false;            ///< a board without a riser: the camera sees through below it
     double height_sigma_m = 0.0;  ///< one sigma of upper_m - lower_m
-    double across_sigma_m = 0.0;  ///< one sigma of the position of the line, across it
+    double across_sigma_m = 0.0;  ///< one sigma of the line's position, across the line
     double angle_sigma_rad = 0.0;
     /// Depth of the ground on either side, up to the next edge or to unknown ground.
     double upper_depth_m = 0.0;
@@ -42,7 +42,7 @@ struct Edge {
     /// Natural logarithm of the likelihood ratio "step" over "smooth ground", last observation
     /// (StepEvidenceFinder). NaN = not computed, because the lower ground is not seen.
     double log_step_ratio = std::numeric_limits<double>::quiet_NaN();
-    bool hidden = false;  ///< the ground between both sides is not seen where it falls
+    bool hidden = false;  ///< the ground that falls between both sides is not seen
 
     bool upper_walkable = false;  ///< the stance reaches this side without a step
     bool lower_walkable = false;
@@ -73,12 +73,12 @@ struct FeaturePose {
 /// A feature that consists of one line: a drop, a kerb or a door sill.
 struct LineFeature {
     FeaturePose pose;       ///< seen from the stance: yaw leads across it, z = ground before it
-    double height_m = 0.0;  ///< ground behind minus ground before; of a sill: its own
+    double height_m = 0.0;  ///< height behind minus height before; for a sill: its own height
     double length_m = 0.0;
     double sigma_m = 0.0;         ///< one sigma of the height
     double across_sigma_m = 0.0;  ///< one sigma of the position along the yaw
     bool bottom_seen = true;      ///< false: `height_m` is a bound, the ground may be deeper
-    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its edge
+    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< see Edge::log_step_ratio
     Tracked tracked;  ///< drops and kerbs: the state of their edge
 };
 
@@ -90,7 +90,7 @@ enum class FlightKind : std::uint8_t { up, down };
 /// The kind of ground beside the steps of a flight.
 enum class SideKind : std::uint8_t { unknown, wall, level, open };
 
-/// The name in stairs.json, for example "wall".
+/// Returns the name in stairs.json, for example "wall".
 [[nodiscard]] const char* to_string(SideKind kind);
 
 struct FlightSide {
@@ -107,7 +107,7 @@ struct Flight {
     double riser_m = 0.0;         ///< mean
     double riser_sigma_m = 0.0;   ///< standard error of the mean
     double riser_spread_m = 0.0;  ///< scatter of single risers; 0 for one step
-    /// Mean distance from nosing to nosing; like the next two, NaN for a single step.
+    /// Mean distance from nosing to nosing. NaN for a single step, as are its sigma and its spread.
     double going_m = 0.0;
     double going_sigma_m = 0.0;
     double going_spread_m = 0.0;
@@ -117,7 +117,7 @@ struct Flight {
     std::vector<Edge> edges;
     double turn_rad = 0.0;  ///< change of direction from the first edge to the last (spiral)
     bool cut = false;       ///< the flight may continue beyond the known ground
-    bool open = false;      ///< boards without risers: at least half of the steps show it
+    bool open = false;      ///< boards without risers, found at half of the steps or more
     FlightSide left;        ///< left side, seen from the stance in the direction of travel
     FlightSide right;
     Tracked tracked;
@@ -130,7 +130,7 @@ struct Door {
     double width_sigma_m = 0.0;
     double sill_m = 0.0;  ///< highest point across the opening above the ground; 0 = none
     double sill_sigma_m = 0.0;
-    double clearance_m = 0.0;  ///< least free height; NaN = nothing seen overhead
+    double clearance_m = 0.0;  ///< smallest free height; NaN = nothing seen overhead
     Tracked tracked;
 };
 

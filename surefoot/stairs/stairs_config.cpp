@@ -12,28 +12,32 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    sigma_factor,
                    1.0,
                    10.0,
-                   "smallest height of an edge [sigma of the noise of both sides]");
-    visitor.number(
-        "smear_m", smear_m, 0.01, 0.5, "largest width over which the map may spread an edge");
+                   "smallest height of an edge, as a multiple of its sigma (noise of both sides)");
+    visitor.number("smear_m",
+                   smear_m,
+                   0.01,
+                   0.5,
+                   "largest width over which the map may smear the height change of an edge");
     visitor.number("min_length_m", min_length_m, 0.05, 5.0, "smallest length of an edge");
     visitor.number("fit_tolerance_m",
                    fit_tolerance_m,
                    0.002,
                    0.2,
-                   "largest distance of a point from its edge");
-    visitor.number("max_gap_m", max_gap_m, 0.0, 2.0, "largest unknown gap within one edge");
+                   "largest distance of an edge point from the line of its edge");
+    visitor.number(
+        "max_gap_m", max_gap_m, 0.0, 2.0, "largest gap without edge points within one edge");
     visitor.number("shadow_per_height",
                    shadow_per_height,
                    0.0,
                    20.0,
                    "largest horizontal length of the occluded region behind an edge, per metre of "
                    "edge height");
-    visitor.number("cell_reach",
-                   cell_reach,
-                   0.0,
-                   1.0,
-                   "how a cell represents its area: 0 = by the height at its centre, 1 = by the "
-                   "highest point of its area");
+    visitor.number(
+        "cell_reach",
+        cell_reach,
+        0.0,
+        1.0,
+        "height that a map cell holds: 0 = height at its centre, 1 = highest point of its area");
     visitor.number("min_riser_m",
                    min_riser_m,
                    0.01,
@@ -57,34 +61,34 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    max_facing_deg,
                    10.0,
                    90.0,
-                   "largest angle between the normal of a single step and the path; at a larger "
+                   "largest angle between the path and the normal of a single step; at a larger "
                    "angle the step is not a flight");
-    visitor.number(
-        "walk_step_m",
-        walk_step_m,
-        0.01,
-        0.5,
-        "largest height difference of neighbouring cells that is walked over without a step");
+    visitor.number("walk_step_m",
+                   walk_step_m,
+                   0.01,
+                   0.5,
+                   "largest height difference between neighbouring cells that counts as walkable "
+                   "ground without a step");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "largest height of a kerb");
     visitor.number("drop_m", drop_m, 0.01, 1.0, "largest fall to lower ground that is not a drop");
     visitor.number("step_ratio",
                    step_ratio,
                    0.0,
                    1e12,
-                   "smallest likelihood ratio of step to smooth ground that makes an edge a step; "
-                   "0 = every edge is a step");
+                   "smallest likelihood ratio (step to smooth ground) of an edge that counts as a "
+                   "step; 0 = every edge is a step");
     visitor.number("drop_ratio",
                    drop_ratio,
                    0.0,
                    1e12,
-                   "smallest likelihood ratio of step to smooth ground that makes a falling edge a "
-                   "drop; 0 = every falling edge is a drop");
+                   "smallest likelihood ratio (step to smooth ground) of a falling edge that "
+                   "counts as a drop; 0 = every falling edge is a drop");
     visitor.number("evidence_shared_m",
                    evidence_shared_m,
                    0.0001,
                    0.1,
-                   "one sigma of the errors that cells within 0.1 m share; used in the likelihood "
-                   "ratios of steps and drops");
+                   "one sigma of the height error that cells within 0.1 m share; affects the "
+                   "likelihood ratios of steps and drops");
     visitor.group("doors", doors);
     visitor.group("patches", patches);
     visitor.group("classes", classes);

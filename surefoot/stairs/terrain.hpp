@@ -21,7 +21,7 @@ struct View {
     double cx_px = 0.0;
     double cy_px = 0.0;
     double baseline_m = 0.0;
-    /// Pixels so close to unmatched pixels are not mapped (elevation.pixels.reach_px).
+    /// Pixels within this distance of unmatched pixels are not mapped (elevation.pixels.reach_px).
     double unmapped_px = 0.0;
 
     /// True if both cameras image the point inside their image borders. Ignores occlusion.
@@ -33,8 +33,8 @@ struct View {
     /// Number of pixels that show level ground at a point, per square metre of ground; 0 behind or
     /// above the camera. Same formula as elevation::ExpectedPoints.
     [[nodiscard]] double pixels_per_m2(const Eigen::Vector3d& p_map_m) const;
-    /// How far level ground continues beyond its last mapped point [m]: `unmapped_px` projected
-    /// onto the ground along `way`, a unit vector that leads away from the camera.
+    /// Length of level ground beyond its last mapped point [m]: `unmapped_px` projected onto the
+    /// ground along `way`, a unit vector that leads away from the camera.
     [[nodiscard]] double unmapped_m(const Eigen::Vector3d& p_map_m,
                                     const Eigen::Vector2d& way) const;
 };
@@ -45,12 +45,12 @@ struct Terrain {
     grid::GridGeometry geometry;
     ImageView<const float> height_m;       ///< highest surface of the cell; NaN = unknown
     ImageView<const float> height_var_m2;  ///< empty = 0
-    /// For unknown cells: a ray passed at this height, so the ground lies lower. Empty layer or NaN
-    /// = no bound.
+    /// Upper bound of the ground in an unknown cell: a ray passed at this height. Empty layer or
+    /// NaN = no bound.
     ImageView<const float> free_above_m;
     ImageView<const float> clearance_m;  ///< free height above the cell; empty or NaN = open
-    /// Number of measured points over the number that level ground would give; vertical faces give
-    /// a multiple. Empty layer or NaN = unknown.
+    /// Number of measured points divided by the number that level ground would give. Vertical faces
+    /// give values above 1. Empty layer or NaN = unknown.
     ImageView<const float> density_ratio;
     /// Number of observations that agree on the height; an empty layer means more than one.
     ImageView<const std::uint32_t> observations;
@@ -58,7 +58,7 @@ struct Terrain {
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     /// Needed to decide whether ground ends within the camera's view; empty = no such decision.
     std::optional<View> view;
-    /// Disparities of the current frame, with pixels that the map omits; NaN = no match.
+    /// Disparities of the current frame, including pixels that the map omits; NaN = no match.
     ImageView<const float> disparity_px;
 
     [[nodiscard]] bool known(int ix, int iy) const {

@@ -9,8 +9,8 @@
 namespace surefoot::odometry {
 namespace {
 
-/// If the range is unknown: a reading counts as saturated when it stays exactly the same for this
-/// many samples at a rate or force that a machine in steady motion never has.
+/// If the range is unknown, a reading counts as saturated when it stays exactly the same for this
+/// many samples. Its rate or force must be one that a machine in steady motion never has.
 constexpr int kStuckSamples = 4;
 constexpr double kStuckRate_rad_s = 2.0;
 constexpr double kStuckForce_m_s2 = 15.0;
@@ -29,7 +29,8 @@ bool at_range(const ImuLimits& limits, const ImuSample& sample) {
            beyond(sample.specific_force_m_s2, limits.accel_range_m_s2);
 }
 
-/// High and constant on one axis; `get` returns the three axes of a sample.
+/// True if the readings are high and constant on one axis. `get` returns the three axes of a
+/// sample.
 template <typename Get>
 bool stuck(std::span<const ImuSample> samples, double least, const Get& get) {
     Eigen::Vector3i run = Eigen::Vector3i::Ones();
@@ -82,7 +83,7 @@ ImuProblem problem_of(const ImuLimits& limits,
     return is_stuck ? ImuProblem::saturated : ImuProblem::none;
 }
 
-/// Reading at a time. `next` is the index of the first sample that is not before this time.
+/// Returns the reading at a time. `next` is the index of the first sample that is not before it.
 ImuSample reading_at(std::span<const ImuSample> samples, std::size_t next, std::int64_t time_ns) {
     if (next == 0 || next == samples.size()) {
         ImuSample held = next == 0 ? samples.front() : samples.back();
@@ -116,7 +117,7 @@ void step(const ImuNoise& noise, const ImuSample& from, const ImuSample& to, Imu
     const Eigen::Matrix3d T_half = exp_so3(0.5 * turn_rad).conjugate().toRotationMatrix();
     const Eigen::Matrix3d G = dt_s * right_jacobian_so3(turn_rad);
     const Eigen::Matrix3d J_half = 0.5 * dt_s * right_jacobian_so3(0.5 * turn_rad);
-    const Eigen::Matrix3d tilt = -R_half * skew(force);  // of the acceleration by phi_half
+    const Eigen::Matrix3d tilt = -R_half * skew(force);  // d acceleration / d phi_half
     const Eigen::Matrix3d by_phi = tilt * T_half;
     const Eigen::Matrix3d by_gyro = tilt * J_half;
 
@@ -214,7 +215,7 @@ Preintegration preintegrate(const ImuLimits& limits,
 Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& theta_rad) {
     const double angle2 = theta_rad.squaredNorm();
     const Eigen::Matrix3d S = skew(theta_rad);
-    // Below 1e-4 rad the next terms of the series vanish beside the first ones.
+    // Below 1e-4 rad the next terms of the series are negligible.
     if (angle2 < 1e-8) return Eigen::Matrix3d::Identity() - 0.5 * S + (1.0 / 6.0) * S * S;
     const double angle = std::sqrt(angle2);
     return Eigen::Matrix3d::Identity() - (1.0 - std::cos(angle)) / angle2 * S +

@@ -29,18 +29,18 @@ struct ImuNoise {
 
 struct ImuLimits {
     double max_gap_s = 0.03;        ///< longest time without a sample
-    double gyro_range_rad_s = 0.0;  ///< readings at the range are saturated; 0 = unknown
-    double accel_range_m_s2 = 0.0;  ///< measuring range per axis, as above
+    double gyro_range_rad_s = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
+    double accel_range_m_s2 = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
 };
 
-/// Why an interval has no preintegrated motion.
+/// Reason why an interval has no preintegrated motion.
 enum class ImuProblem : std::uint8_t {
     none,
     no_samples,  ///< the list is empty, or no sample is near the interval
-    gap,         ///< a time without a sample exceeds the limit, inside or at an end
+    gap,         ///< no sample for longer than the limit, inside or at an end
     stamps,      ///< stamps repeat or go back, or the interval is empty
     not_finite,
-    saturated,  ///< at the range limit; if the range is unknown: high and constant
+    saturated,  ///< a reading is at its range limit; if that is unknown: high and constant
 };
 [[nodiscard]] const char* to_string(ImuProblem problem) noexcept;
 
@@ -64,14 +64,14 @@ struct ImuMotion {
     Eigen::Matrix3d d_position_d_gyro = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d d_position_d_accel = Eigen::Matrix3d::Zero();
 
-    /// The motion for another bias, to first order in the change of bias.
+    /// These functions return the motion for another bias, to first order in the change of bias.
     [[nodiscard]] Eigen::Quaterniond rotation_at(const ImuBias& other) const;
     [[nodiscard]] Eigen::Vector3d velocity_at(const ImuBias& other) const;
     [[nodiscard]] Eigen::Vector3d position_at(const ImuBias& other) const;
 };
 
 struct Preintegration {
-    ImuProblem problem = ImuProblem::no_samples;  ///< unless `none`, `motion` is invalid
+    ImuProblem problem = ImuProblem::no_samples;  ///< if not `none`, `motion` is invalid
     ImuMotion motion;
 };
 
@@ -86,7 +86,7 @@ struct Preintegration {
                                           std::int64_t end_ns,
                                           const ImuBias& bias);
 
-/// Exp(theta + d) = Exp(theta) Exp(J d) to first order in d; Chirikjian 2012, (10.86).
+/// Returns J in Exp(theta + d) = Exp(theta) Exp(J d), first order in d; Chirikjian 2012, (10.86).
 [[nodiscard]] Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& theta_rad);
 /// Inverse of right_jacobian_so3: Log(Exp(theta) Exp(d)) = theta + J^-1 d; for |theta| < pi.
 [[nodiscard]] Eigen::Matrix3d inverse_right_jacobian_so3(const Eigen::Vector3d& theta_rad);

@@ -11,10 +11,10 @@
 
 namespace surefoot::odometry {
 
-/// Checks whether the IMU delivers samples at its usual rate. A frame lacks samples when four usual
-/// periods (median of the last ones) pass without a sample, or when its readings cannot be
-/// integrated. One such frame may be a late delivery; `gap` is true from the second in a row on. An
-/// IMU that never delivered a sample has no gap.
+/// Checks whether the IMU delivers samples at its usual rate. A frame lacks samples if its readings
+/// cannot be integrated, or if no sample comes for four usual periods (median of the last periods).
+/// One such frame may be a late delivery, so `gap` needs two of them in a row. An IMU that never
+/// delivered a sample has no gap.
 class ImuWatch {
   public:
     /// `late_s`: samples may arrive this much later than their frame.
@@ -22,7 +22,7 @@ class ImuWatch {
 
     /// Takes samples in the order of their arrival.
     void listen(std::span<const ImuSample> samples);
-    /// Ends a frame at `time_ns` that has all its samples; `problem`: result of their integration.
+    /// Ends the frame at `time_ns` after its samples. `problem`: result of their integration.
     void finish(std::int64_t time_ns, ImuProblem problem);
     [[nodiscard]] bool gap() const noexcept;
 
@@ -33,7 +33,7 @@ class ImuWatch {
     std::array<std::int64_t, 32> periods_ns_{};  ///< the last periods, in a ring
     std::size_t heard_periods_ = 0;
     std::optional<std::int64_t> last_ns_;  ///< stamp of the last sample
-    bool hole_ = false;                    ///< a gap before a sample since the last frame
+    bool hole_ = false;                    ///< a sample since the last frame came after a gap
     int lacking_frames_ = 0;               ///< number of consecutive frames that lack samples
 };
 

@@ -22,7 +22,8 @@ using inertial::PointsFactor;
 using inertial::PoseFactor;
 using inertial::VectorAll;
 
-/// Covariance of the present state and gravity after the previous state is marginalised.
+/// Returns the covariance of the present state and gravity after the previous state is
+/// marginalised.
 Matrix17 present_covariance(const MatrixAll& H) {
     const Eigen::Matrix<double, kFrame, kFrame> H_pp = H.topLeftCorner<kFrame, kFrame>();
     const Eigen::Matrix<double, kFrame, kInertialSize> H_pr =
@@ -32,7 +33,7 @@ Matrix17 present_covariance(const MatrixAll& H) {
     return inverse_of<kInertialSize>(information);
 }
 
-/// Levenberg-Marquardt over both states; `Evidence` is any evidence about the present one.
+/// Levenberg-Marquardt over both states; `Evidence` is any evidence about the present state.
 template <typename Evidence>
 class JointProblem {
   public:
@@ -53,7 +54,7 @@ class JointProblem {
         return normal;
     }
 
-    /// Minimises from `pair` on; returns false when a step is not finite.
+    /// Minimises the cost, starting at `pair`. Returns false if a step is not finite.
     [[nodiscard]] bool minimise(int iterations, Pair& pair, Normal& normal) {
         normal = at(pair);
         double damping = 1e-9;
@@ -75,7 +76,7 @@ class JointProblem {
                 if (damping > 1e4) break;
             }
         }
-        // Evaluated again, because the evidence stores the last pair at which it was evaluated.
+        // Evaluates the evidence again, because it stores the last pair at which it was evaluated.
         normal = at(pair);
         return true;
     }
@@ -184,8 +185,9 @@ InertialSolution fuse(const InertialModel& model,
 InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                         const Matrix6& visual_covariance) {
     InertialBelief result = belief;
-    // Vision is part of the belief, so the difference has no negative direction, except for robust
-    // weights at two slightly different poses. Those directions stay unchanged.
+    // Vision is part of the belief, so the difference normally has no negative direction. Robust
+    // weights at two slightly different poses can cause one. The covariance in such a direction
+    // stays unchanged.
     result.covariance.topLeftCorner<6, 6>() +=
         positive_part(visual_covariance - belief.covariance.topLeftCorner<6, 6>());
     return result;

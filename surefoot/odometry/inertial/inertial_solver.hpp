@@ -13,7 +13,7 @@ namespace surefoot::odometry {
 
 /// Layout of the error vector of an inertial state: first index of each component.
 inline constexpr int kInertialSize = 17;
-inline constexpr int kPoseAt = 0;      ///< (translation, rotation) as in pose.hpp
+inline constexpr int kPoseAt = 0;      ///< index of the pose: translation, rotation, as in pose.hpp
 inline constexpr int kVelocityAt = 6;  ///< index of the velocity in odom axes
 inline constexpr int kGyroBiasAt = 9;
 inline constexpr int kAccelBiasAt = 12;
@@ -34,7 +34,7 @@ struct InertialState {
     [[nodiscard]] Eigen::Vector3d up_odom() const;
 };
 [[nodiscard]] InertialState perturbed(const InertialState& state, const Vector17& delta);
-/// The delta for which `to == perturbed(from, delta)`. Both share the same R_odom_level.
+/// Returns the delta for which `to == perturbed(from, delta)`. Both must share R_odom_level.
 [[nodiscard]] Vector17 difference(const InertialState& from, const InertialState& to);
 
 /// A state and its covariance.
@@ -54,14 +54,14 @@ struct VisualEvidence {
     const camera::RectifiedRig& rig;
     const PoseSolverConfig& config;
     std::span<const PointMatch> matches;
-    double residual_scale = 1.0;  ///< factor from the configured to the actual pixel noise
+    double residual_scale = 1.0;  ///< actual pixel noise / configured pixel noise
 };
 
-/// A pose known from another source; also the velocity, if the machine stands still.
+/// A pose known from another source, and a velocity of zero if the machine stands still.
 struct PoseEvidence {
     Pose T_odom_imu;
     Matrix6 covariance = Matrix6::Zero();
-    std::optional<double> standing_sigma_m_s;  ///< 1 sigma of a zero velocity; empty = it may move
+    std::optional<double> standing_sigma_m_s;  ///< 1 sigma of zero velocity; empty = it may move
 };
 
 struct InertialSolution {
@@ -69,7 +69,7 @@ struct InertialSolution {
     InertialBelief belief;
     std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
-    double residual_px = 0.0;  ///< rms of the pixel components of the inliers
+    double residual_px = 0.0;  ///< rms residual of the inliers, per pixel component
 };
 
 /// Predicts the present state from the IMU alone: `before`, moved by `motion`.
@@ -77,10 +77,10 @@ struct InertialSolution {
                                      const InertialBelief& before,
                                      const ImuMotion& motion);
 
-/// Estimates the states of the previous and present frames from a belief about the previous one,
-/// the IMU's motion between them and the observations of the present frame. Gauss-Newton over both
-/// states and gravity, robust for points as `refine_pose` is. Then the previous state is
-/// marginalised (Schur complement). The result is the belief about the present state.
+/// Estimates the states of the previous and the present frame from a belief about the previous
+/// state, the IMU's motion and the observations of the present frame. Levenberg-Marquardt over both
+/// states and gravity, robust for points as in `refine_pose`. Then marginalises the previous state
+/// (Schur complement). Returns the belief about the present state.
 ///
 /// Landmarks count as known up to their covariance, which acts as noise of this frame alone. See
 /// `with_vision_counted_once` for the consequence for the next frame.
@@ -91,18 +91,18 @@ struct InertialSolution {
                                     const ImuMotion& motion,
                                     const VisualEvidence& seen,
                                     const Pose& T_odom_camera_start);
-/// The same with a known pose instead of points. A standing camera reveals the gyroscope's bias.
+/// Fuses a known pose instead of points. A standing camera reveals the gyroscope's bias.
 [[nodiscard]] InertialSolution fuse(const InertialModel& model,
                                     const InertialBelief& before,
                                     const ImuMotion& motion,
                                     const PoseEvidence& known);
 
-/// Belief for the next frame, after a frame whose pose vision alone knows up to `visual_covariance`
-/// (of the IMU's pose). Neighbouring frames see the same landmarks with the same errors, so a pose
-/// that collects information from frame to frame would count these errors several times. The
-/// function assumes the worst case: landmarks cause all of the visual error. It raises the pose
-/// covariance to that of vision alone, as an independent shift of the map would. Information about
-/// velocity, biases and gravity stays, because it comes from differences of poses.
+/// Returns the belief for the next frame. `visual_covariance` is the covariance of the IMU's pose
+/// from vision alone. Neighbouring frames see the same landmarks with the same errors. A pose that
+/// collects information from frame to frame would count these errors several times. The function
+/// assumes the worst case: landmarks cause all of the visual error. It raises the pose covariance
+/// to that of vision alone, as an independent shift of the map would. Information about velocity,
+/// biases and gravity stays, because it comes from differences of poses.
 [[nodiscard]] InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                                       const Matrix6& visual_covariance);
 

@@ -56,7 +56,7 @@ std::optional<InertialStart> start_inertial(std::span<const SeenMotion> frames) 
     InertialStart start;
     find_gyro_bias(frames, start);
 
-    // Unknown per axis: p_0, v_0 and g; the design matrix is the same for all three axes.
+    // Unknowns per axis: p_0, v_0 and g. The design matrix is the same for all three axes.
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d b = Eigen::Matrix3d::Zero();
     const auto row = [](double t) { return Eigen::Vector3d(1.0, t, 0.5 * t * t); };

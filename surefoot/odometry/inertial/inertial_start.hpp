@@ -18,15 +18,15 @@ struct SeenMotion {
 /// Result for the last of several frames in a row, estimated from vision and the IMU together.
 struct InertialStart {
     InertialState state;        ///< the accelerometer's bias stays zero
-    double residual_m = 0.0;    ///< rms of the positions
-    double residual_rad = 0.0;  ///< rms of the turns from frame to frame
-    double gravity_m_s2 = 0.0;  ///< estimated magnitude; its direction is in the state
+    double residual_m = 0.0;    ///< rms residual of the positions
+    double residual_rad = 0.0;  ///< rms residual of the turns between frames
+    double gravity_m_s2 = 0.0;  ///< estimated magnitude of gravity; `state` has its direction
 };
 
-/// Estimates the gyroscope bias by linear least squares over the rotations, then velocity and
-/// gravity over the positions: p_k = p_0 + v_0 t_k + g t_k^2 / 2 + the integrated IMU readings.
+/// Estimates the gyroscope bias by linear least squares over the rotations. Then estimates velocity
+/// and gravity over the positions: p_k = p_0 + v_0 t_k + g t_k^2 / 2 + the integrated readings.
 /// Works for standing and moving cameras; odom need not be level. Returns nothing with fewer than
-/// four frames or when the gravity found is too small.
+/// four frames or if the gravity found is too small.
 ///
 /// The linear initialisation of Martinelli 2014, with known poses.
 [[nodiscard]] std::optional<InertialStart> start_inertial(std::span<const SeenMotion> frames);

@@ -12,8 +12,8 @@ namespace {
 constexpr double kChi2Limit = 22.46;
 /// This many frames in a row beyond the limit are a contradiction, not chance.
 constexpr int kContradictions = 8;
-/// Fifteen sigma is not chance either: a bias has jumped, or vision tracks something else. The
-/// disagreement is reported at once, even if the state later adapts to it.
+/// A difference of fifteen sigma is not chance: a bias has jumped, or vision tracks something else.
+/// The disagreement is reported at once, even if the state later adapts to it.
 constexpr double kChi2Jump = 225.0;
 constexpr int kAgreements = 20;  ///< this many frames in a row within the limit end a contradiction
 /// An initialisation with larger residuals is rejected: the rig's IMU has another mount or another
@@ -23,14 +23,14 @@ constexpr double kStartResidual_rad = 0.02;
 /// Jitter alone never separates vision and IMU by more than this.
 constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
-constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimate
-constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first velocity
-constexpr double kStartTilt_rad = 0.005;  ///< sigma of gravity's direction, without the bias
-/// Two seconds of a fast IMU. A longer interval has a gap.
+constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimated discord
+constexpr double kStartSpeed_m_s = 0.05;  ///< one sigma of the first velocity
+constexpr double kStartTilt_rad = 0.005;  ///< one sigma of gravity's direction, without the bias
+/// Largest number of stored samples: two seconds of a fast IMU. A longer interval has a gap.
 constexpr int kMostSamples = 4000;
 /// Sigma [m, rad] of a pose that is exact by definition.
 constexpr double kExact = 1e-6;
-/// Sigmas of a standing camera, whose pose may still drift by what the still detector accepts.
+/// Sigmas of a standing camera. Its pose may still drift as far as the still detector accepts.
 constexpr double kHeld_m = 2e-4;
 constexpr double kHeld_rad = 1e-4;
 constexpr double kStandingSpeed_m_s = 5e-3;
@@ -121,8 +121,8 @@ Matrix6 InertialTracker::discord_covariance() const {
     return variance.asDiagonal();
 }
 
-/// Learns the discord from the difference `off` between vision and prediction, beyond the
-/// covariance `expected` without discord.
+/// Learns the discord from the difference `off` between vision and prediction. `expected` is the
+/// covariance of `off` without discord.
 void InertialTracker::listen(const Vector6& off, const Matrix6& expected) {
     const Vector6 excess = off.cwiseAbs2() - expected.diagonal();
     const auto learn = [](double& sigma, double excess_mean, double most) {
@@ -146,7 +146,7 @@ bool InertialTracker::still_agrees(double chi2) {
     return false;
 }
 
-/// Sets `belief` as the state of the present frame, which has visual evidence.
+/// Sets the belief about the present frame, which has visual evidence.
 void InertialTracker::believe(const InertialBelief& belief) {
     belief_ = belief;
     unseen_ = belief;
@@ -171,7 +171,7 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
     const double chi2 = squared_distance(off, expected + discord);
     listen(off, expected);
     if (!still_agrees(chi2)) return std::nullopt;
-    // A single large difference: belief and readings are less certain than they state.
+    // After one large difference, belief and readings count as less certain than they state.
     const double doubt = std::max(chi2 / kChi2Limit, 1.0);
     InertialBelief before = *belief_;
     before.covariance *= doubt;
@@ -183,7 +183,7 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
              before,
              motion,
              PoseEvidence{visual.T_world_camera * T_camera_imu, covariance_imu + discord, {}});
-    // The camera itself deviates from the path by the discord.
+    // The discord is the deviation of the camera from the path.
     motion.covariance.topLeftCorner<3, 3>() += discord.bottomRightCorner<3, 3>();
     motion.covariance.bottomRightCorner<3, 3>() += discord.topLeftCorner<3, 3>();
     const InertialSolution camera = fuse(model_, before, motion, seen, visual.T_world_camera);

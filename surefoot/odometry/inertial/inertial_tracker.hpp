@@ -53,9 +53,9 @@ class InertialTracker {
     [[nodiscard]] std::optional<CameraFix> reckon();
     /// Sets the final pose of the present frame.
     void place(const Pose& T_odom_camera);
-    /// Vision and IMU contradicted each other for some time, or once by far too much for chance.
+    /// True if vision and IMU disagreed for some time, or once by far too much for chance.
     [[nodiscard]] bool disagrees() const noexcept { return disagrees_; }
-    /// Samples are missing in this frame and at least the one before: vision continues alone.
+    /// True if samples are missing in this and the previous frame: vision continues alone.
     [[nodiscard]] bool gap() const noexcept { return watch_.gap(); }
     /// State after the last frame; nothing before the initialisation.
     [[nodiscard]] const std::optional<InertialBelief>& belief() const noexcept { return belief_; }
@@ -72,13 +72,13 @@ class InertialTracker {
     InertialConfig config_;
     InertialModel model_;
     ImuWatch watch_;
-    std::vector<ImuSample> samples_;  ///< from the last one at or before the present frame on
+    std::vector<ImuSample> samples_;  ///< samples since the last one at or before the present frame
     std::int64_t time_ns_ = 0;        ///< stamp of the present frame
     bool has_time_ = false;
     Preintegration step_;                    ///< motion from the previous to the present frame
     std::optional<InertialBelief> belief_;   ///< belief after the previous frame
-    std::optional<InertialBelief> present_;  ///< predicted for the present one
-    std::optional<InertialBelief> unseen_;   ///< as belief_, pose errors since the last seen frame
+    std::optional<InertialBelief> present_;  ///< predicted belief for the present frame
+    std::optional<InertialBelief> unseen_;   ///< belief_, pose errors since the last seen frame
     double blind_s_ = 0.0;                   ///< time since the last seen frame
     Pose T_odom_camera_;                     ///< returned pose of the present frame
     double discord_m_ = 0.0;

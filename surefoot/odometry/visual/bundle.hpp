@@ -34,15 +34,15 @@ struct BundleConfig {
 };
 
 struct BundleResult {
-    double cost_before = 0.0;  ///< robust, in squared sigmas
+    double cost_before = 0.0;  ///< robust cost [squared sigmas]
     double cost_after = 0.0;
-    int steps = 0;                             ///< accepted
-    std::vector<Eigen::Matrix3d> information;  ///< one per point, given the poses [1/m^2]
-    std::vector<double> residual_sigmas;       ///< one per sight, after adjustment; inf = behind
+    int steps = 0;                             ///< number of accepted steps
+    std::vector<Eigen::Matrix3d> information;  ///< one per point, for fixed poses [1/m^2]
+    std::vector<double> residual_sigmas;       ///< one per sight, at the end; inf = behind camera
 };
 
-/// Bundle adjustment: Levenberg-Marquardt with Huber weights on (u_left, v, u_right), the points
-/// eliminated by their Schur complement (Triggs et al. 2000). Serial and deterministic.
+/// Bundle adjustment by Levenberg-Marquardt with Huber weights on (u_left, v, u_right). The Schur
+/// complement eliminates the points (Triggs et al. 2000). Serial and deterministic.
 [[nodiscard]] BundleResult adjust_bundle(const camera::RectifiedRig& rig,
                                          const BundleConfig& config,
                                          BundleProblem& problem);

@@ -14,10 +14,10 @@ namespace surefoot::odometry {
 struct CornerConfig {
     int grid_columns = 16;
     int grid_rows = 10;
-    int most = 240;                ///< number of corners wanted, occupied ones included
-    double min_gradient = 2.5;     ///< rms grey step per pixel in the weaker direction
-    double min_distance_px = 8.0;  ///< distance from another corner
-    int border_px = 14;            ///< no corner closer to the image border
+    int most = 240;                ///< wanted number of corners, including occupied ones
+    double min_gradient = 2.5;     ///< smallest rms grey step per pixel, weaker direction
+    double min_distance_px = 8.0;  ///< smallest distance from another corner
+    int border_px = 14;            ///< smallest distance from the image border
 };
 
 /// Detects corners (Shi and Tomasi 1994: the weaker eigenvalue of the gradient's second moments),

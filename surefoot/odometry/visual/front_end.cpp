@@ -10,26 +10,27 @@
 namespace surefoot::odometry {
 namespace {
 
-constexpr int kBlock = 32;              ///< alignments per piece of work
+constexpr int kBlock = 32;              ///< alignments per task of the executor
 constexpr double kTrackShift_px = 3.0;  ///< search radius around a tracked point
 constexpr double kAgainShift_px = 5.0;  ///< search radius around a prediction
 /// Noise factor of a point that was tracked but no longer matches its patch.
 constexpr double kFollowedNoise = 2.5;
-constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is removed
-constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
+constexpr int kGiveUpAfter = 12;    ///< largest number of failures in a row of a kept landmark
+constexpr double kBorder_px = 8.0;  ///< smallest distance of a patch centre from the image border
 
 /// If fewer tracks than this share have a depth, the front end checks whether the cameras are
 /// swapped.
 constexpr double kHardlyAnyDepth = 0.2;
-/// Least number of corners that show their camera, and least share of them from the other camera,
-/// to call the cameras swapped. Correct images have 1 to 6 %, swapped ones 85 to 98 %.
+/// The cameras count as swapped if at least this number of corners shows its camera. At least this
+/// share of these corners must come from the other camera. The share is 1 to 6 % in correct images
+/// and 85 to 98 % in swapped images.
 constexpr double kEnoughTell = 20.0;
 constexpr double kExchangedShare = 0.7;
 
-/// An image is usable from this share of the other image's structure on.
+/// An image is usable if it has at least this share of the other image's structure.
 constexpr double kOtherStructure = 0.3;
 
-/// Mean square difference of pixels two columns apart, in every eighth row.
+/// Returns the mean square difference of pixels two columns apart, in every eighth row.
 double structure_of(ImageView<const std::uint8_t> image) {
     constexpr int kRows = 8;
     std::int64_t sum = 0;

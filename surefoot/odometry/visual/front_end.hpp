@@ -15,8 +15,8 @@ struct FrontEndConfig {
     KltConfig klt;
     CornerConfig corners;
     StereoPointConfig stereo;
-    double min_correlation = 0.8;  ///< correlation of an aligned patch
-    int most_tracks = 240;         ///< including tracks that were found again
+    double min_correlation = 0.8;  ///< smallest correlation of an aligned patch
+    int most_tracks = 240;         ///< largest number, including tracks that were found again
     int most_attempts = 60;        ///< attempts per frame to find landmarks again
 };
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kLevels = 4;  ///< full size and four halvings: about 50 px of unpredicted motion
 constexpr int kWindow_px = 15;
 constexpr int kSharpnessLevel = 2;
-constexpr int kBlock = 64;  ///< points per piece of work
+constexpr int kBlock = 64;  ///< points per task of the executor
 
 /// OpenCV's derivatives are 32 times the grey step per pixel (Scharr: 3 + 10 + 3, twice).
 constexpr double kDerivativeScale = 32.0;
@@ -19,7 +19,7 @@ constexpr double kDerivativeScale = 32.0;
 }  // namespace
 
 struct ImagePyramid::Impl {
-    std::vector<cv::Mat> levels;  ///< image, derivatives, image, derivatives, ...
+    std::vector<cv::Mat> levels;  ///< per level: the image, then its derivatives
     int top = 0;
     int width = 0;
     int height = 0;
@@ -37,7 +37,7 @@ void ImagePyramid::build(ImageView<const std::uint8_t> image) {
     const cv::Mat wrapped(image.height,
                           image.width,
                           CV_8UC1,
-                          const_cast<std::uint8_t*>(image.data),  // OpenCV has no view of const
+                          const_cast<std::uint8_t*>(image.data),  // OpenCV has no const view
                           static_cast<std::size_t>(image.stride));
     impl_->top = cv::buildOpticalFlowPyramid(wrapped,
                                              impl_->levels,
@@ -75,7 +75,7 @@ double ImagePyramid::sharpness() const {
 
 namespace {
 
-/// Tracks one block one way. `points` holds the start positions and receives the results.
+/// Tracks one block in one direction. `points` holds the start positions and receives the results.
 void track_block(const ImagePyramid& from,
                  const ImagePyramid& to,
                  const std::vector<cv::Point2f>& origins,
@@ -112,7 +112,7 @@ void track_there_and_back(const ImagePyramid& from,
     std::vector<std::uint8_t> found;
     std::vector<std::uint8_t> returned;
     track_block(from, to, origins, kLevels, config, points, found);
-    // Back from the result. The origin is a good start, so one level is enough.
+    // Tracks back from the result. The original position is a good start, so one level is enough.
     std::vector<cv::Point2f> back = origins;
     track_block(to, from, points, 1, config, back, returned);
     const auto limit_px = static_cast<float>(config.forward_backward_px);

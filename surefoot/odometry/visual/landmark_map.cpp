@@ -184,14 +184,14 @@ std::optional<PredictedView> LandmarkMap::predict_view(const Landmark& landmark,
         view_from_host.col(axis) = (*moved - *centre) / kWarpStep_px;
     }
     const double det = view_from_host.determinant();
-    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // too different to compare
+    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // views too different to compare
     return PredictedView{*centre, view_from_host.inverse()};
 }
 
 void LandmarkMap::collect_problem(std::vector<int>& slots_used) {
     problem_.clear();
     const int first_free =
-        newest().id - config_.window_keyframes + 2;  // oldest of the window: fixed
+        newest().id - config_.window_keyframes + 2;  // the window's oldest keyframe stays fixed
     const int oldest = keyframes_.front().id;
     for (const Keyframe& keyframe : keyframes_) {
         problem_.T_world_camera.push_back(keyframe.T_odom_camera);

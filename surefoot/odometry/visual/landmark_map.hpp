@@ -28,14 +28,14 @@ struct Sighting {
 struct Landmark {
     std::int64_t id = -1;  ///< never reused; -1 = empty slot
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, given the keyframes
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom, if keyframes are exact
     HostPatch patch;
     int host = -1;  ///< id of the keyframe that the patch is from; -1 = no patch
     /// Change of the ray at unit depth per pixel of the host image's u and v, in host camera axes.
     Eigen::Matrix<double, 3, 2> host_axes = Eigen::Matrix<double, 3, 2>::Zero();
     std::vector<Sighting> sightings;
-    int failures = 0;  ///< frames in a row in which it should be visible but was not found
-    int agreed = 0;    ///< number of frames whose pose it agreed with
+    int failures = 0;  ///< frames in a row that should show the landmark but do not
+    int agreed = 0;    ///< number of frames whose pose agrees with the landmark
 };
 
 /// Predicted position of a landmark in an image, and the deformation of its patch there.
@@ -45,7 +45,7 @@ struct PredictedView {
 };
 
 struct LandmarkMapConfig {
-    int window_keyframes = 8;  ///< adjusted together; older ones stay fixed
+    int window_keyframes = 8;  ///< newest keyframes, adjusted together; older ones stay fixed
     int most_keyframes = 100;
     int most_landmarks = 3000;
     BundleConfig bundle;
@@ -61,14 +61,14 @@ class LandmarkMap {
     /// Sets one sigma [px] of new observations. The next adjustment also uses it for stored
     /// observations.
     void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
-    /// Appends a keyframe. Beyond the limit the oldest one is removed with the landmarks it hosts.
+    /// Appends a keyframe. Beyond the limit, removes the oldest one with its hosted landmarks.
     int add_keyframe(const Pose& T_odom_camera);
-    /// Adds a landmark that the newest keyframe observes at `raw_px` = `pixel`. Returns its slot,
-    /// or nothing when its patch would leave the image.
+    /// Adds a landmark that the newest keyframe observes at `raw_px` (rectified: `pixel`). Returns
+    /// its slot, or nothing if its patch would leave the image.
     std::optional<int> add_landmark(ImageView<const std::uint8_t> left,
                                     const Eigen::Vector2d& raw_px,
                                     const StereoPixel& pixel);
-    /// The same without a patch, for points that are found by other means. Returns the slot.
+    /// Adds a landmark without a patch, for points from another source. Returns its slot.
     int add_point(const StereoPixel& pixel);
     /// Replaces the landmark's patch by one from the newest keyframe's image.
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
@@ -76,7 +76,7 @@ class LandmarkMap {
     void remove(int slot);
     /// Bundle adjustment of the newest keyframes and their landmarks; drops outlier observations.
     void adjust();
-    /// Removes the least useful landmarks beyond the limit, but none that `in_use` marks.
+    /// Removes the least useful landmarks beyond the limit, but never one that `in_use` marks.
     void limit(const std::vector<std::uint8_t>& in_use);
 
     [[nodiscard]] bool empty() const noexcept { return keyframes_.empty(); }
@@ -88,7 +88,7 @@ class LandmarkMap {
     [[nodiscard]] const Keyframe& newest() const { return keyframes_.back(); }
     [[nodiscard]] int keyframes() const noexcept { return static_cast<int>(keyframes_.size()); }
 
-    /// Pixel of a landmark in a camera at a given pose; nothing when behind or outside the lens.
+    /// Predicts a landmark's pixel; nothing if the point is behind the camera or outside its lens.
     [[nodiscard]] std::optional<Eigen::Vector2d> predict_pixel(const Landmark& landmark,
                                                                camera::Side side,
                                                                const Pose& T_odom_camera) const;

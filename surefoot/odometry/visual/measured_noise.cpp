@@ -6,11 +6,13 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Three times the noise of a calibrated ZED. Larger residuals have another cause than noise.
+/// Largest ratio of the result to the expected noise: three times the noise of a calibrated ZED.
+/// Larger residuals have another cause than noise.
 constexpr double kMostNoise = 3.0;
-/// Scenes of one camera differ by up to this factor: below it the configured noise holds. Above it
-/// the measured noise gains weight, and from kMeasured on it counts fully. With a start at 1.5,
-/// twice the ZED's noise gave a NEES of 14 (corridor, seeds 21-24).
+/// Limits of the ratio of measured to expected noise. Scenes of one camera differ by up to
+/// kTolerated, so the expected noise holds below this ratio. From kMeasured on the measured noise
+/// counts fully; in between its weight grows. With kTolerated = 1.5, twice the ZED's noise gave a
+/// NEES of 14 (corridor, seeds 21-24).
 constexpr double kTolerated = 1.2;
 constexpr double kMeasured = 1.5;
 constexpr double kShare = 0.1;  ///< weight of one frame in the estimate, after the first ten

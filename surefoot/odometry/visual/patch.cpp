@@ -72,7 +72,7 @@ bool invert_gradients(PatchTemplate& patch,
     return true;
 }
 
-/// Reads the image around a position and removes its mean; false beyond the image border.
+/// Reads the image around a position and removes its mean. Returns false at the image border.
 bool read_window(ImageView<const std::uint8_t> image,
                  const Eigen::Vector2d& centre_px,
                  std::array<float, PatchTemplate::kCount>& window,
@@ -86,7 +86,7 @@ bool read_window(ImageView<const std::uint8_t> image,
     const float a = static_cast<float>(centre_px.x() - u_floor);
     const float b = static_cast<float>(centre_px.y() - v_floor);
     const int u0 = static_cast<int>(u_floor) - kRadius;  // in range: in the image, as checked
-    const int v0 = static_cast<int>(v_floor) - kRadius;  // in range: the same
+    const int v0 = static_cast<int>(v_floor) - kRadius;  // in range: in the image, as checked
     std::size_t i = 0;
     for (int v = 0; v < PatchTemplate::kSize; ++v) {
         const std::uint8_t* row = image.row(v0 + v) + u0;
@@ -119,7 +119,7 @@ std::optional<HostPatch> cut_patch(ImageView<const std::uint8_t> image,
 
 std::optional<PatchTemplate> warp_patch(const HostPatch& host,
                                         const Eigen::Matrix2d& host_from_view) {
-    constexpr int kRadius = PatchTemplate::kRadius + 1;  // one more for the gradients
+    constexpr int kRadius = PatchTemplate::kRadius + 1;  // one more pixel for the gradients
     constexpr int kSize = 2 * kRadius + 1;
     std::array<float, kSize * kSize> warped{};
     const Eigen::Matrix2f A = host_from_view.cast<float>();
@@ -132,7 +132,7 @@ std::optional<PatchTemplate> warp_patch(const HostPatch& host,
                   at.y() < HostPatch::kSize - 1))
                 return std::nullopt;
             const int u0 = static_cast<int>(at.x());  // in range: inside the patch, see above
-            const int v0 = static_cast<int>(at.y());  // in range: likewise
+            const int v0 = static_cast<int>(at.y());  // in range: inside the patch, see above
             warped[i++] = sample(&host.pixels[static_cast<std::size_t>(v0 * HostPatch::kSize + u0)],
                                  HostPatch::kSize,
                                  at.x() - static_cast<float>(u0),

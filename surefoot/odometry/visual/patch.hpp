@@ -10,8 +10,8 @@
 
 namespace surefoot::odometry {
 
-/// Image patch around a point, from the image in which the point was first seen. With it the point
-/// is found again without that image.
+/// Image patch around a point, from the image in which the point was first seen. The patch alone
+/// suffices to find the point again.
 struct HostPatch {
     static constexpr int kRadius = 13;
     static constexpr int kSize = 2 * kRadius + 1;
@@ -19,7 +19,7 @@ struct HostPatch {
     Eigen::Vector2f centre = Eigen::Vector2f::Zero();  ///< position of the point, in patch pixels
 };
 
-/// Copies the patch around `raw_px`; returns nothing when it does not lie inside the image.
+/// Copies the patch around `raw_px`. Returns nothing if the patch leaves the image.
 [[nodiscard]] std::optional<HostPatch> cut_patch(ImageView<const std::uint8_t> image,
                                                  const Eigen::Vector2d& raw_px);
 
@@ -29,13 +29,13 @@ struct PatchTemplate {
     static constexpr int kSize = 2 * kRadius + 1;
     static constexpr int kCount = kSize * kSize;
     std::array<float, kCount> value;   ///< mean removed
-    std::array<float, kCount> step_u;  ///< rows of the pseudo-inverse: grey difference -> pixels
+    std::array<float, kCount> step_u;  ///< pseudo-inverse row: grey differences to a shift [px]
     std::array<float, kCount> step_v;
     float norm = 0.0F;  ///< norm of `value`
 };
 
 /// Warps a patch. `host_from_view` maps pixel offsets of the view to offsets of the host image.
-/// Nothing when the warp leaves the patch or the template has no texture in some direction.
+/// Returns nothing if the warp leaves the patch or a direction of the template has no texture.
 [[nodiscard]] std::optional<PatchTemplate> warp_patch(const HostPatch& host,
                                                       const Eigen::Matrix2d& host_from_view);
 
@@ -45,8 +45,8 @@ struct Alignment {
 };
 
 /// Moves `start_px` to the best match of the template in the image, up to gain and offset. Method:
-/// inverse-compositional Gauss-Newton (Baker and Matthews 2004) with the two photometric parameters
-/// projected out. Nothing when it leaves the image or moves farther than `max_shift_px`.
+/// inverse-compositional Gauss-Newton (Baker and Matthews 2004); gain and offset are projected out.
+/// Returns nothing if the patch leaves the image or moves farther than `max_shift_px`.
 [[nodiscard]] std::optional<Alignment> align_patch(const PatchTemplate& patch,
                                                    ImageView<const std::uint8_t> image,
                                                    const Eigen::Vector2d& start_px,

@@ -45,7 +45,7 @@ class PointFrontEnd final : public Tracks {
 
     std::vector<Point> points_;  ///< points of the present frame
     bool right_shows_something_ = false;
-    std::map<std::int64_t, Known> known_;  ///< by the point's id; may name removed landmarks
+    std::map<std::int64_t, Known> known_;  ///< key: id of the point; may name removed landmarks
 };
 
 }  // namespace surefoot::odometry

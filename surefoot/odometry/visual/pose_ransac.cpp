@@ -10,7 +10,7 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Probability that one sample is free of outliers at which the search stops early.
+/// The search stops early when one sample is free of outliers with this probability.
 constexpr double kConfidence = 0.9999;
 
 struct Consensus {

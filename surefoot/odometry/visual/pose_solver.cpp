@@ -17,7 +17,7 @@ constexpr double kMinDepth_m = 0.02;
 constexpr double kMinConditioning = 1e-7;
 /// From this many points with a full vote on, they alone determine the pose in the first rounds.
 constexpr int kMinTrusted = 20;
-/// Medians of the norm of two and of three normal errors: roots of the chi-square medians.
+/// Medians of the norms of two and of three normal errors: square roots of the chi-square medians.
 constexpr double kMedianOfTwo = 1.1774;
 constexpr double kMedianOfThree = 1.5382;
 
@@ -25,8 +25,8 @@ constexpr double kMedianOfThree = 1.5382;
 struct Residual {
     int rows = 0;
     Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< measured - predicted [px]
-    Eigen::Matrix<double, 3, 6> d_pose;               ///< derivative of the prediction
-    Eigen::Matrix3d d_camera;                         ///< the same by the camera point
+    Eigen::Matrix<double, 3, 6> d_pose;               ///< d prediction / d pose perturbation
+    Eigen::Matrix3d d_camera;                         ///< d prediction / d point in camera axes
 };
 
 Residual residual_of(const camera::RectifiedRig& rig, const PointMatch& match, const Pose& T) {
@@ -61,7 +61,7 @@ double huber_weight(double norm_sigmas, double limit_sigmas) {
     return norm_sigmas <= limit_sigmas ? 1.0 : limit_sigmas / norm_sigmas;
 }
 
-/// Whether the information determines all six directions, independent of units.
+/// True if the information determines all six directions, whatever their units.
 bool well_conditioned(const Matrix6& H) {
     const Vector6 diagonal = H.diagonal();
     if (!(diagonal.minCoeff() > 0.0)) return false;
@@ -134,7 +134,7 @@ VisualNormalEquations visual_normal_equations(const camera::RectifiedRig& rig,
         const Eigen::Matrix3d W = weight_of(residual, matches[i], R_camera_world, config.sigma_px);
         const double chi2 = residual.value.dot(W * residual.value);
         const double norm = std::sqrt(chi2);
-        if (!(norm <= gate_sigmas)) {  // gated out: constant cost
+        if (!(norm <= gate_sigmas)) {  // an outlier adds a constant cost
             normal.cost += config.huber_sigmas * (2.0 * gate_sigmas - config.huber_sigmas);
             continue;
         }

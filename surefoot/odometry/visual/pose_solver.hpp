@@ -15,10 +15,10 @@ namespace surefoot::odometry {
 /// A landmark with known position and its observation in the present frame.
 struct PointMatch {
     Eigen::Vector3d p_world_m;
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< for p_world_m, in world axes
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of p_world_m, in world
     StereoPixel pixel_px;
     double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
-    double vote = 1.0;          ///< weight when poses are compared by their agreeing points
+    double vote = 1.0;          ///< weight of the point in the vote for a pose
 };
 
 struct PoseSolverConfig {
@@ -34,18 +34,18 @@ struct PoseSolution {
     bool found = false;  ///< if false, the other members are invalid
     Pose T_world_camera;
     Matrix6 covariance =
-        Matrix6::Zero();               ///< for T_world_camera (pose.hpp), scaled by the residual
+        Matrix6::Zero();               ///< covariance of T_world_camera, scaled by the residuals
     std::vector<std::uint8_t> inlier;  ///< one flag per match
     int inliers = 0;
-    double residual_px = 0.0;     ///< rms of the pixel components of the inliers
+    double residual_px = 0.0;     ///< rms residual of the inliers, per pixel component
     double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
 };
 
-/// Minimal number of points for a pose, with at least one to spare.
+/// Smallest number of points for a pose; at least one point is redundant.
 inline constexpr int kMinimalPoseMatches = 5;
 
 /// Finds the pose with the most votes of points within `ransac_threshold_px` of their (u_left, v).
-/// It tries `T_predicted` first, then three-point poses of random samples (P3P). The same seed
+/// Tries the predicted pose first, then three-point poses of random samples (P3P). The same seed
 /// gives the same pose.
 ///
 /// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.
@@ -55,22 +55,22 @@ inline constexpr int kMinimalPoseMatches = 5;
                                      const Pose& T_world_camera_predicted,
                                      Rng rng);
 
-/// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
-/// weights and a gate. The first rounds use a wide gate and only matches with a full vote, if there
-/// are enough. Each residual is weighted by its pixel noise plus the projected covariance of its
-/// point; points count as independent. The covariance is the inverse information, scaled by the
-/// residuals (by no less than kMinResidualScale).
+/// Refines a good start pose by robust least squares over (u_left, v, u_right): Levenberg-Marquardt
+/// with Huber weights and a gate. The first rounds use a wide gate and, if there are enough, only
+/// matches with a full vote. Each residual is weighted by its pixel noise plus the projected
+/// covariance of its point; points count as independent. The covariance is the inverse information,
+/// scaled by the residuals (by no less than kMinResidualScale).
 ///
-/// Not found when fewer than kMinimalPoseMatches points agree or a direction stays unconstrained.
+/// `found` is false if fewer than kMinimalPoseMatches points agree or a direction is unconstrained.
 [[nodiscard]] PoseSolution refine_pose(const camera::RectifiedRig& rig,
                                        const PoseSolverConfig& config,
                                        std::span<const PointMatch> matches,
                                        const Pose& T_world_camera_start);
 
 /// Ratio of actual to expected residuals of the matches at a pose: the median of the residuals in
-/// sigmas over the median of normal errors. Without a gate, this measures the noise while fewer
-/// than half are outliers. Residuals beyond `ransac_threshold_px` are left out. Uses matches with a
-/// full vote, if there are enough. Nothing when too few remain.
+/// sigmas, divided by the median of normal errors. The ratio is valid while fewer than half of the
+/// matches are outliers. Leaves out residuals beyond `ransac_threshold_px`. Uses only matches with
+/// a full vote, if there are enough. Returns nothing if too few matches remain.
 [[nodiscard]] std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
                                                           const PoseSolverConfig& config,
                                                           std::span<const PointMatch> matches,
@@ -81,8 +81,8 @@ struct VisualNormalEquations {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
     double cost = 0.0;       ///< robust
-    double chi2 = 0.0;       ///< sum over the residuals inside the gate, not robust
-    double square_px = 0.0;  ///< squared residuals in the image, in the same sum
+    double chi2 = 0.0;       ///< sum of squared residuals [sigma^2] inside the gate
+    double square_px = 0.0;  ///< sum of squared pixel residuals inside the gate
     int rows = 0;
     int inliers = 0;
 };
@@ -99,7 +99,7 @@ struct VisualNormalEquations {
 /// Lower limit of the factor by which small residuals shrink the sigmas of the covariance.
 inline constexpr double kMinResidualScale = 0.5;
 
-/// How a perturbation of T_x_b moves T_x_a = T_x_b * T_b_a, given T_a_b (both on the right).
+/// Maps a perturbation of T_x_b to one of T_x_a = T_x_b * T_b_a, given T_a_b (both on the right).
 [[nodiscard]] Matrix6 adjoint(const Pose& T_a_b);
 
 /// Covariance of T_a_body = T_a_camera * T_body_camera^-1 from that of T_a_camera.

@@ -15,13 +15,13 @@ namespace {
 constexpr int kRadius = 4;  ///< radius of the coarse search window
 constexpr int kSize = 2 * kRadius + 1;
 constexpr int kCount = kSize * kSize;
-constexpr int kKnot_px = 8;      ///< between knots the epipolar curve is nearly straight
+constexpr int kKnot_px = 8;      ///< knot spacing; in between the epipolar curve is nearly straight
 constexpr int kSamePeak_px = 3;  ///< positions this close belong to one maximum
 constexpr double kCorrelationNoise =
-    0.05;  ///< correlation of whole-pixel windows: smaller differences are noise
-constexpr double kCoarseCorrelation = 0.6;  ///< before the sub-pixel refinement
+    0.05;  ///< smaller differences of the whole-pixel correlation are noise
+constexpr double kCoarseCorrelation = 0.6;  ///< smallest correlation before the refinement
 constexpr double kRefineShift_px = 2.0;
-constexpr double kDepthEdge = 0.03;  ///< relative depth step within the 3x3 neighbourhood
+constexpr double kDepthEdge = 0.03;  ///< smallest relative depth step of an edge in 3x3 pixels
 
 struct Window {
     std::array<float, kCount> value{};

@@ -8,9 +8,9 @@
 
 namespace surefoot::odometry {
 
-/// Measurement of a point by an ideal stereo camera in rectified pixels: (u_left, v, u_right).
-/// Their errors are independent, because each camera is aligned separately. If u_right is NaN
-/// (unknown), only (u_left, v) counts. The disparity is u_left - u_right.
+/// Measurement of a point by an ideal stereo camera in rectified pixels: (u_left, v, u_right). The
+/// errors of the three values are independent, because each camera is aligned separately. If
+/// u_right is NaN (unknown), only (u_left, v) counts. The disparity is u_left - u_right.
 using StereoPixel = Eigen::Vector3d;
 
 [[nodiscard]] inline double disparity_px(const StereoPixel& pixel) noexcept {

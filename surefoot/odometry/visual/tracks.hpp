@@ -16,11 +16,11 @@ namespace surefoot::odometry {
 struct Track {
     int slot = 0;          ///< slot of the landmark in the map
     std::int64_t id = -1;  ///< id of the landmark, because a slot may be reused
-    Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< in the raw left image
-    /// Pixel at the stamp of the frame, whenever its row was exposed; u_right NaN = unknown.
+    Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< position in the raw left image
+    /// Pixel, moved from its row's exposure to the stamp of the frame; u_right NaN = unknown.
     StereoPixel pixel_px = StereoPixel::Zero();
     double noise_factor = 1.0;  ///< sigma relative to that of an aligned point
-    double correlation = 0.0;   ///< with the landmark's patch; 0 = tracked but not aligned
+    double correlation = 0.0;   ///< correlation with the landmark's patch; 0 = not aligned
 };
 
 /// The landmarks that the present frame shows. `FrontEnd` finds them in images, `PointFrontEnd`
@@ -37,10 +37,10 @@ class Tracks {
     void move(const Vector6& velocity) { velocity_ = velocity; }
     /// Finds the landmarks in the present frame; `T_odom_camera` is the predicted camera pose.
     virtual void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Finds them as precisely as possible; `T_odom_camera` must be good to about a pixel.
+    /// Finds the landmarks as precisely as possible. `T_odom_camera` must be good to about a pixel.
     virtual void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Makes landmarks of points without one. The map's newest keyframe must be the present frame.
-    /// Returns the number of new landmarks.
+    /// Makes a landmark of each point that has none. The map's newest keyframe must be the present
+    /// frame. Returns the number of new landmarks.
     virtual int seed(LandmarkMap& map, Executor& executor) = 0;
     /// Makes the present frame the reference from which the next frame is tracked.
     virtual void keep();
@@ -48,9 +48,9 @@ class Tracks {
     virtual void clear();
     /// Sharpness of the present frame until `keep`. Meaningful only relative to other frames.
     [[nodiscard]] virtual double sharpness() const = 0;
-    /// The right camera shows about as much as the left camera in the present frame.
+    /// True if the right camera shows about as much as the left camera in the present frame.
     [[nodiscard]] virtual bool right_shows_something() const = 0;
-    /// The cameras are swapped, as `align` or `seed` found in the present frame.
+    /// True if `align` or `seed` found in the present frame that the cameras are swapped.
     [[nodiscard]] virtual bool cameras_swapped() const { return false; }
 
     /// Drops the tracks that are not marked.
@@ -60,7 +60,7 @@ class Tracks {
     /// Lets the map remove landmarks beyond its limit, but none that has a track.
     void forget_excess(LandmarkMap& map);
 
-    /// The present frame has data to track.
+    /// True if the present frame has data to track.
     [[nodiscard]] bool loaded() const noexcept { return loaded_; }
     /// Present tracks, in the order of `matches`.
     [[nodiscard]] const std::vector<Track>& tracks() const noexcept { return tracks_; }

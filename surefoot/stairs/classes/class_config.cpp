@@ -11,12 +11,11 @@ void ClassConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    10.0,
                    "smallest free height above ground; ground with less free height is a tunnel");
-    visitor.number(
-        "max_step_m",
-        max_step_m,
-        0.01,
-        1.0,
-        "largest height difference between two surfaces that one step can reach, up or down");
+    visitor.number("max_step_m",
+                   max_step_m,
+                   0.01,
+                   1.0,
+                   "largest height difference that one step can overcome, up or down");
     visitor.number("level_deg",
                    level_deg,
                    0.1,
@@ -34,13 +33,16 @@ void ClassConfig::describe(ConfigVisitor& visitor) {
                    0.1,
                    10.0,
                    "largest height of a table; higher raised objects are walls");
-    visitor.number(
-        "max_sigma_m", max_sigma_m, 0.001, 1.0, "largest sigma of a cell that has a class");
+    visitor.number("max_sigma_m",
+                   max_sigma_m,
+                   0.001,
+                   1.0,
+                   "largest height sigma of a cell; a cell with a larger sigma gets no class");
     visitor.number("reach_m",
                    reach_m,
                    0.1,
                    10.0,
-                   "largest distance of the ground with which high and low cells are compared");
+                   "largest distance from a cell to the ground from which its height is measured");
 }
 
 std::optional<std::string> ClassConfig::problem() const {

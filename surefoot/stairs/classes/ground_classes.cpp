@@ -19,11 +19,12 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kSigmas = 2.0;         ///< significance of a slope for the classes level and steep
+constexpr double kSigmas = 2.0;         ///< slope limits count with this many sigma of the slope
 constexpr double kUnseenDrop_m = 0.15;  ///< depth of the marked drop behind ground that ends
-/// Tilt of treads and distortion of maps stay below this over a tread (see flights.cpp).
+/// Largest height error over the depth of a tread, from its tilt and from map distortion (see
+/// flights.cpp).
 constexpr double kTread_m = 0.035;
-constexpr double kLeastSigma_m = 0.001;  ///< no level of a map is more accurate
+constexpr double kLeastSigma_m = 0.001;  ///< smallest sigma of a level; no map is more accurate
 constexpr std::size_t kLeastTreadCells = 12;
 
 double square(double value) {
@@ -46,7 +47,7 @@ bool can_stand(GroundClass name) {
     }
 }
 
-/// The cells [ix0, ix1) x [iy0, iy1) about all points, with a rim, clipped to the map.
+/// The cells [ix0, ix1) x [iy0, iy1) around all points plus a rim, clipped to the map.
 struct CellBox {
     int ix0 = 0, ix1 = 0, iy0 = 0, iy1 = 0;
 };
@@ -93,8 +94,8 @@ struct TreadLevel {
     double height_m = 0.0;
     double sigma_m = 0.0;
 };
-/// Mean of the cells within 2.5 times their scatter of the median. One independent error per square
-/// of kCorrelation_m. `sorted_m` is working memory.
+/// Returns the mean of the cells within 2.5 times their scatter of the median. Each square of
+/// kCorrelation_m has one independent error. `sorted_m` is working memory.
 TreadLevel level_of(const std::vector<float>& heights_m,
                     std::vector<float>& sorted_m,
                     double var_m2,
@@ -218,7 +219,7 @@ void GroundClassifier::name_patches(const PatchMap& patches) {
     }
 }
 
-/// Class of a cell whose height is unknown.
+/// Returns the class of a cell whose height is unknown.
 GroundClass GroundClassifier::unseen_class(const NearGround& ground, float free_above_m) const {
     if (!(free_above_m == free_above_m) || ground.distance_m == kFar) return GroundClass::unknown;
     return off_the_way_m(ground, static_cast<double>(free_above_m)) < -config_.drop_m
@@ -318,7 +319,7 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     for_inside([&](int ix, int iy) {
         GroundClass& name = out.of_cell.row(iy)[ix];
         if (!terrain.known(ix, iy)) {
-            // A hole shows free space below the tread; a part hidden by the next tread does not.
+            // A hole shows free space below the tread. A part that the next tread hides shows none.
             const float free_m =
                 terrain.free_above_m.empty() ? kNanF : terrain.free_above_m.row(iy)[ix];
             const bool is_hole = static_cast<double>(free_m) < level.height_m - config_.drop_m;

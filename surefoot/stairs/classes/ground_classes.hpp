@@ -25,10 +25,10 @@ enum class GroundClass : std::uint8_t {
     tread,    ///< between two consecutive edges of a flight, at the level of the tread
     riser,    ///< a cell on the edge of a step, or beside it at a height between both levels
     ramp,     ///< a reachable plane that is steeper than level ground
-    kerb,     ///< like a riser, for a single edge that is no higher than a kerb
+    kerb,     ///< like a riser, but at a single edge that is no higher than a kerb
     sill,     ///< a raised cell between the jambs of a door
-    drop,     ///< lower than any ramp from reachable ground leads, and too low to step down to;
-              ///< also unknown cells that rays prove to be so low
+    drop,     ///< ground too low for any ramp or step down from reachable ground; also unknown
+              ///< cells that rays prove to be so low
     wall,     ///< higher than a step, and steep, narrow or on no plane
     table,    ///< a level plane that is higher than a step and not reachable: table tops,
               ///< platforms seen from below
@@ -75,7 +75,7 @@ class GroundClassifier {
     /// Four corners in order around the quadrilateral.
     using Quad = std::array<Eigen::Vector2d, 4>;
     void name_patches(const PatchMap& patches);
-    /// How far a height differs from every height that a ramp from the near ground can reach.
+    /// Distance of a height from the range of heights that a ramp from the near ground can reach.
     [[nodiscard]] double off_the_way_m(const NearGround& ground, double height_m) const;
     [[nodiscard]] GroundClass walked_class(const PlanarPatch& patch) const;
     [[nodiscard]] GroundClass other_class(const PlanarPatch& patch, double above_m) const;
@@ -98,7 +98,7 @@ class GroundClassifier {
     StairsConfig config_;
     PatchWalk walk_;
     std::vector<GroundClass> class_;  ///< class of each patch
-    std::vector<double> above_m_;     ///< sums over blocks of a patch
+    std::vector<double> above_m_;     ///< sum of off_the_way_m over the blocks of a patch
     std::vector<int> above_count_;
     std::vector<float> heights_m_;
     std::vector<float> sorted_m_;

@@ -16,11 +16,12 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: the slope of a small patch is less certain
-constexpr double kContact_m = 0.2;           ///< a foot passes if patches meet over this length
-constexpr double kStance_m = 0.3;            ///< same value as in traversability::Reachability
+constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: largest slope sigma of a patch that carries
+constexpr double kContact_m = 0.2;           ///< smallest contact of two patches for a foot
+constexpr double kStance_m = 0.3;            ///< equal to the value in traversability::Reachability
 constexpr double kSurface_m = 0.05;          ///< height range of one surface under the body
-/// Tilt of treads and distortion of maps stay below this over a tread (see flights.cpp).
+/// Largest height error over the depth of a tread, from its tilt and from map distortion (see
+/// flights.cpp).
 constexpr double kTread_m = 0.035;
 
 }  // namespace
@@ -75,7 +76,7 @@ bool PatchWalk::may_carry(const PlanarPatch& patch) const {
            patch.slope_sigma_rad <= kCarries_sigma_rad;
 }
 
-/// Number of blocks within the radius, for each patch that may carry the machine.
+/// Counts the blocks within the radius for each patch that may carry the machine.
 PatchWalk::NearStance PatchWalk::count_near(const Vector2d& stance_m,
                                             double radius_m,
                                             const PatchMap& patches) {
@@ -127,7 +128,7 @@ void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
 /// Links patches whose planes meet within a step, over a foot's width.
 void PatchWalk::link_neighbours(double block_m) {
     links_.clear();
-    const double near_m = config_.smear_m + block_m;  // an edge may lie oblique in the grid
+    const double near_m = config_.smear_m + block_m;  // an edge may be oblique to the grid
     for (std::size_t i = 0; i < contacts_.size();) {
         const Contact& first = contacts_[i];
         int steps = 0;
@@ -145,7 +146,7 @@ void PatchWalk::link_neighbours(double block_m) {
     }
 }
 
-/// The patch on one side of an edge whose plane has the measured level of that side.
+/// Returns the patch on one side of an edge whose plane has the measured level of that side.
 std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
                                      const Edge& edge,
                                      bool upper,
@@ -169,7 +170,7 @@ std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
 void PatchWalk::link_flight(const grid::GridGeometry& grid,
                             const Flight& flight,
                             const PatchMap& patches) {
-    if (flight.steps < 2) return;  // a single step adds nothing to the two planes beside it
+    if (flight.steps < 2) return;  // a single step proves no more than the two planes
     const bool up = flight.kind == FlightKind::up;
     std::int32_t last = kNone;
     const auto update = [&](std::int32_t id) {

@@ -16,18 +16,18 @@ namespace surefoot::stairs {
 
 /// The reachable ground nearest to a block.
 struct NearGround {
-    float distance_m = 0.0F;  ///< infinite = none within stairs.classes.reach_m
+    float distance_m = 0.0F;  ///< distance; infinite = none within stairs.classes.reach_m
     float height_m = 0.0F;
 };
 
 /// Finds the patches that are reachable from the stance, and the distance of each block to them.
 ///
 /// Compares the planes of patches where they meet, not neighbouring cells (as Reachability does). A
-/// matcher can smear a kerb or a table over five cells, so that no step between cells remains, but
-/// the planes keep their distance. Two patches connect where they lie within
-/// stairs.classes.max_step_m over a foot's width with no more than an edge and its occluded region
-/// between them, or along a flight of two or more steps. A patch steeper than
-/// stairs.classes.ramp_deg, or of unknown slope, is not walked on.
+/// matcher can smear a kerb or a table over five cells. Then no step between cells remains, but the
+/// planes keep their distance. Two patches connect where they lie within stairs.classes.max_step_m
+/// over a foot's width, with only an edge and its occluded region between them. They also connect
+/// along a flight of two or more steps. A patch steeper than stairs.classes.ramp_deg, or of unknown
+/// slope, is not walked on.
 ///
 /// The machine stands on the lowest patch near it that holds a quarter of the known blocks there,
 /// and on patches of that level. Without known ground near it, the nearest known ground counts.
@@ -44,14 +44,14 @@ class PatchWalk {
   private:
     /// Two patches with only unknown ground and borders between them.
     struct Contact {
-        std::int32_t low = 0;  ///< the lower number of the two
+        std::int32_t low = 0;  ///< the lower one of the two patch numbers
         std::int32_t high = 0;
         float rise_m = 0.0F;  ///< height from `low` to `high`, at the middle between both
         float gap_m = 0.0F;
     };
     struct NearStance {
         int blocks = 0;
-        double nearest_m = 0.0;  ///< nearest block of a walkable patch; infinite = none
+        double nearest_m = 0.0;  ///< distance to the nearest block of a walkable patch; inf = none
         Eigen::Vector2d nearest_at_m = Eigen::Vector2d::Zero();
     };
     struct Link {
@@ -79,7 +79,7 @@ class PatchWalk {
     StairsConfig config_;
     std::vector<Contact> contacts_;
     std::vector<Link> links_;
-    std::vector<int> near_stance_;  ///< number of blocks of each patch
+    std::vector<int> near_stance_;  ///< number of blocks of each patch near the stance
     std::vector<std::uint8_t> walked_;
     std::vector<std::int32_t> waiting_;
     std::vector<NearGround> near_;

@@ -12,11 +12,12 @@
 namespace surefoot::stairs {
 namespace {
 
-/// Floor of the sigma of a cell when cells are weighted.
+/// Smallest sigma of a cell for its weight.
 constexpr double kLeastSigma_m = 0.005;
-/// Noise in nine cells must not create a slope: without more cells it counts as level within 0.1.
+/// One sigma of the prior slope of ground. Noise in nine cells must not create a slope.
 constexpr double kSlopeSigma = 0.1;
-/// A block below this share of cells on one plane is mixed; its cells are assigned one by one.
+/// A block is mixed if fewer than this share of its cells lie on one plane. Its cells are assigned
+/// one by one.
 constexpr double kBlockShare = 0.7;
 constexpr int kQualities = 32;
 constexpr double kQualityStep_m = 0.002;
@@ -39,19 +40,19 @@ void PatchConfig::describe(ConfigVisitor& visitor) {
                    tolerance_m,
                    0.001,
                    0.2,
-                   "largest distance of a cell from its plane, unless sigma_factor allows more");
+                   "largest distance of a cell with a small sigma from its plane");
     visitor.number("sigma_factor",
                    sigma_factor,
                    0.0,
                    10.0,
-                   "largest distance of a cell from its plane [sigma of the cell], if this is more "
-                   "than tolerance_m");
-    visitor.number("max_tolerance_m",
-                   max_tolerance_m,
-                   0.001,
-                   0.5,
-                   "upper limit of the distance of a cell from its plane that tolerance_m and "
-                   "sigma_factor allow");
+                   "largest distance of a cell with a large sigma from its plane, as a multiple of "
+                   "this sigma");
+    visitor.number(
+        "max_tolerance_m",
+        max_tolerance_m,
+        0.001,
+        0.5,
+        "largest distance of any cell from its plane, even if the sigma of the cell is very large");
     visitor.number("min_area_m2", min_area_m2, 0.0, 10.0, "smallest area of a planar patch");
 }
 
@@ -119,7 +120,8 @@ void PatchFinder::find(const Terrain& terrain, PatchMap& out) {
     sum_blocks(terrain);
     order_seeds();
     grow_all(out);
-    // A region that began beside another surface leans until its border is correct.
+    // The plane of a region that began beside another surface is tilted until its border is
+    // correct.
     for (int round = 0; round < kBorderRounds; ++round) {
         join_regions(out);
         settle_borders(out);
@@ -194,7 +196,7 @@ PatchFinder::Sums PatchFinder::around(int bx, int by) const {
     return sums;
 }
 
-/// Seeds in order: blocks inside flat ground first, then blocks that are flat alone.
+/// Sorts the seeds: first blocks inside flat ground, then blocks that are flat alone.
 void PatchFinder::order_seeds() {
     const std::size_t count = blocks_.size();
     quality_.assign(count, 0);
@@ -245,7 +247,7 @@ void PatchFinder::grow_all(PatchMap& out) {
 }
 
 void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
-    constexpr double kFirstBlocks = 4.0;  ///< until then the plane of the seed is used
+    constexpr double kFirstBlocks = 4.0;  ///< up to this size the plane of the seed is used
     constexpr double kMore = 1.5;
     const auto id = static_cast<std::int32_t>(regions_.size());
     Region region{{}, start};
@@ -444,7 +446,7 @@ void PatchFinder::measure(const Terrain& terrain, PatchMap& out) const {
             plane.at_0_m + plane.gx * x + plane.gy * y;
         patch.gradient = {plane.gx, plane.gy};
         patch.rms_m = std::sqrt(square_m2_[i] / std::max(1, patch.cells));
-        // Smaller eigenvalue of the horizontal scatter.
+        // Returns the smaller eigenvalue of the horizontal scatter.
         const double a = s.xx / s.w - x * x, b = s.xy / s.w - x * y, c = s.yy / s.w - y * y;
         const double narrow_m2 =
             std::max(0.0, 0.5 * (a + c) - std::sqrt(0.25 * square(a - c) + b * b));

@@ -21,18 +21,18 @@ struct PatchConfig {
     double tolerance_m = 0.015;
     double sigma_factor = 3.0;
     double max_tolerance_m = 0.04;
-    double min_area_m2 = 0.02;  ///< least area of a patch
+    double min_area_m2 = 0.02;  ///< smallest area of a patch
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
 /// A connected piece of ground on one plane. Map frame.
 struct PlanarPatch {
-    Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< on the plane
+    Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< point on the plane
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< dz / dx, dz / dy
-    double slope_sigma_rad = 0.0;  ///< one sigma, along the narrower side; infinite = unknown
+    double slope_sigma_rad = 0.0;  ///< slope sigma along the narrower side; infinite = unknown
     double rms_m = 0.0;            ///< scatter of its cells about the plane
     double width_m = 0.0;          ///< smaller side of the rectangle about the cells
     int cells = 0;
@@ -58,15 +58,15 @@ struct PatchMap {
     }
 };
 
-/// Divides the known ground into planes. Each block of cells is fitted alone, weighted by the cell
-/// variances. Regions grow from the flattest blocks over neighbours that lie on the region's plane
-/// so far. Regions on one plane are joined, and border blocks move to the better plane. Last, each
-/// cell takes the best plane of its block and the eight around it, so borders follow cells.
-/// (Growing from the best seed: Besl and Jain 1988; over blocks with sums that add up: Feng,
-/// Taguchi and Kamat 2014.)
+/// Divides the known ground into planes. Each block of cells is fitted alone, weighted by the
+/// cell variances. Regions grow from the flattest blocks over neighbours that lie on the region's
+/// plane so far. Regions on one plane are joined, and border blocks move to the better plane.
+/// Last, each cell takes the best plane of its block and the eight around it, so borders follow
+/// cells. Growth from the best seed: Besl and Jain 1988. Sums over blocks: Feng, Taguchi and
+/// Kamat 2014.
 ///
-/// A block with less than half of its cells known is no seed. Owns the working memory: maps of one
-/// size allocate nothing after the first few calls. The same map gives the same result.
+/// A block with less than half of its cells known is no seed. Owns the working memory: maps of
+/// one size allocate nothing after the first few calls. The same map gives the same result.
 class PatchFinder {
   public:
     explicit PatchFinder(const PatchConfig& config) : config_(config) {}

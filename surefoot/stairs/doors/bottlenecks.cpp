@@ -13,7 +13,8 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Height range within a block: floor has less (noise included), a block with wall has more.
+/// Limit of the height range within a block. Floor has a smaller range, noise included; a block
+/// with a wall has a larger one.
 constexpr float kLevel_m = 0.1F;
 constexpr std::int16_t kNone = -1;
 
@@ -91,8 +92,8 @@ void BottleneckFinder::measure_blocks(const Terrain& terrain) {
     }
 }
 
-/// Lowest level block within kReach_m on every side: a running minimum by doubling, first along the
-/// rows, then along the columns.
+/// Finds the lowest level block within kReach_m on every side. Method: running minimum by doubling,
+/// first along the rows, then along the columns.
 void BottleneckFinder::spread_ground() {
     const int width = low_m_.width();
     const int height = low_m_.height();
@@ -119,7 +120,8 @@ void BottleneckFinder::mark_walls(double rise_m) {
     bottleneck_.resize(nx, ny);
     const auto rise = static_cast<float>(rise_m);
     for (int by = 0; by < ny; ++by) {
-        // A window begins at its block: the window of a block and its reach begins at the margin.
+        // The image `low_m_` has a margin of `reach_` blocks, so a window begins at the index of
+        // its block.
         const float* ground_m = low_m_.row(by);
         for (int bx = 0; bx < nx; ++bx)
             bottleneck_.row(by)[bx] = high_m_.row(by)[bx] >= ground_m[bx] + rise ? 1 : 0;
@@ -200,7 +202,8 @@ bool BottleneckFinder::in_bottleneck(int bx, int by, const BottleneckLimits& lim
         return false;
     const Vector2i near = to_wall(bx, by);
     if (near.squaredNorm() > range_ * range_) return false;
-    // A block with any part of a wall counts as wall; the middle may lie between two blocks.
+    // The width is uncertain by two blocks: a block with any part of a wall counts as wall, and the
+    // middle may lie between two blocks.
     const double width = 2.0 * near.cast<double>().norm();
     if ((width + 2.0) * block_m_ < limits.min_width_m ||
         (width - 2.0) * block_m_ > limits.max_width_m)
@@ -209,7 +212,8 @@ bool BottleneckFinder::in_bottleneck(int bx, int by, const BottleneckLimits& lim
     if (!bottleneck_.contains(opposite.x(), opposite.y()) ||
         wall_bx_.row(opposite.y())[opposite.x()] < 0)
         return false;
-    // At most two blocks: the walls are at least six blocks apart.
+    // The opposite wall is at most two blocks away from the opposite point. The walls are at least
+    // six blocks apart.
     return to_wall(opposite.x(), opposite.y()).squaredNorm() <= 4;
 }
 

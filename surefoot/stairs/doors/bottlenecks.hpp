@@ -16,7 +16,7 @@ struct BottleneckLimits {
     double min_width_m = 0.0;
     double max_width_m = 0.0;
     double max_depth_m = 0.0;
-    double rise_m = 0.0;  ///< anything so high above the ground beside it is a wall
+    double rise_m = 0.0;  ///< an object at least this high above the ground beside it is a wall
 };
 
 /// The narrowest place of free ground between two walls; accurate to one or two blocks.
@@ -40,7 +40,7 @@ class BottleneckFinder {
     static constexpr double kBlock_m = 0.05;
     static constexpr double kReach_m = 0.15;
 
-    /// Nearest to the stance first. The reference is valid until the next call.
+    /// Writes the nearest to the stance first. The reference is valid until the next call.
     const std::vector<Bottleneck>& find(const Terrain& terrain, const BottleneckLimits& limits);
 
   private:
@@ -70,8 +70,8 @@ class BottleneckFinder {
     /// Lowest level block of the square that begins at a block; +inf = none. The image has a margin
     /// of `reach_` blocks, so the square about a block begins at the block's own index.
     Image<float> low_m_;
-    Image<float> high_m_;  ///< highest; -inf = unknown
-    // One entry per column: the cells of one row of blocks.
+    Image<float> high_m_;  ///< highest cell of a block; -inf = unknown
+    // One entry per column of cells, for one row of blocks.
     std::vector<float> column_low_m_;
     std::vector<float> column_high_m_;
     std::vector<int> column_known_;

@@ -22,11 +22,11 @@ using Eigen::Vector2d;
 constexpr double kGround_m = 0.4;
 /// Within this distance of a wall the heights are wrong: a matcher rounds off the corner.
 constexpr double kCorner_m = 0.075;
-/// Largest offset along the way between the middles of facing jambs: noise of wall begins.
+/// Largest offset along the way between the middles of facing jambs, caused by noise of the wall.
 constexpr double kOffset_m = 0.15;
 /// Apparent extra thickness of a wall on each side, caused by noise.
 constexpr double kWallNoise_m = 0.25;
-/// A cell with both wall and floor gets a height between them.
+/// A cell that contains wall and floor gets a height between both.
 constexpr double kFoot_m = 0.1;
 /// Behind a sill the matcher returns to ground level only after this many sill heights.
 constexpr double kShadowPerHeight = 5.0;
@@ -43,7 +43,8 @@ struct Range {
     double from = 0.0;
     double to = 0.0;
 
-    /// Keeps the part where |slope x + offset| <= limit. For slope 0 the offset must be within.
+    /// Keeps the part where |slope x + offset| <= limit. Precondition for slope 0: |offset| <=
+    /// limit.
     void cut(double slope, double offset, double limit) {
         if (std::abs(slope) < 1e-9) return;
         const double a = (-limit - offset) / slope;
@@ -56,9 +57,9 @@ struct Range {
 }  // namespace
 
 struct DoorFinder::Jamb {
-    double at_m = 0.0;  ///< across, from the middle of the bottleneck; >= 0 on both sides
+    double at_m = 0.0;  ///< distance from the bottleneck's middle, across; >= 0 on both sides
     double sigma_m = 0.0;
-    double front_m = 0.0;  ///< position along the way
+    double front_m = 0.0;  ///< front end of the jamb along the way
     double back_m = 0.0;
     [[nodiscard]] bool faces(const Jamb& other) const {
         return front_m <= other.back_m && other.front_m <= back_m &&
@@ -66,26 +67,26 @@ struct DoorFinder::Jamb {
     }
 };
 
-/// Frame: across = to the left, along = away from the stance.
+/// An opening in its own frame: across = to the left, along = away from the stance.
 struct DoorFinder::Opening {
     Vector2d bottleneck_m;
     Vector2d across;
     double width_m = 0.0;
-    double middle_m = 0.0;  ///< across, from the bottleneck
+    double middle_m = 0.0;  ///< position of the middle across, from the bottleneck
     double sigma_m = 0.0;
-    double front_m = 0.0;  ///< front of the jambs: along, from the bottleneck
+    double front_m = 0.0;  ///< front of the jambs along the way, from the bottleneck
     double back_m = 0.0;
-    double before_m = 0.0;  ///< height of the ground
+    double before_m = 0.0;  ///< height of the ground before the jambs
     double behind_m = 0.0;
-    float wall_from_m = 0.0F;  ///< anything higher is not ground
-    float foot_from_m = 0.0F;  ///< in rows that lead to a jamb; sills are lower
+    float wall_from_m = 0.0F;  ///< higher cells are not ground
+    float foot_from_m = 0.0F;  ///< in rows to a jamb, higher cells are its foot; sills are lower
 
     [[nodiscard]] Vector2d along() const { return {across.y(), -across.x()}; }
 };
 
 struct DoorFinder::Sill {
-    double above_before_m = 0.0;  ///< 0 = not visible; the same for the next one
-    double ridge_m = 0.0;         ///< above the ground on both sides
+    double above_before_m = 0.0;  ///< height above the ground before the jambs; 0 = not visible
+    double ridge_m = 0.0;         ///< height above the ground on both sides; 0 = not visible
     double sigma_m = 0.0;
     double along_m = 0.0;  ///< position of the ridge along the way
 };
@@ -93,12 +94,11 @@ struct DoorFinder::Sill {
 /// The ground on one side of the jambs, as a straight line along the way.
 struct DoorFinder::GroundLine {
     bool known = false;
-    double at_m = 0.0;  ///< position of its end at the jambs, along the way
+    double at_m = 0.0;  ///< position of the jamb end of the line, along the way
     double height_m = 0.0;
     double slope = 0.0;
-    double point_var_m2 =
-        0.0;              ///< variance of the mean height over the width, at one position along
-    double var_m2 = 0.0;  ///< variance of height_m
+    double point_var_m2 = 0.0;  ///< variance of the mean height over the width, at one position
+    double var_m2 = 0.0;        ///< variance of height_m
     [[nodiscard]] double height_at(double along_m) const {
         return height_m + slope * (along_m - at_m);
     }
@@ -236,13 +236,13 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
     return static_cast<double>(upper_median_in_place(values_));
 }
 
-/// Fits a line through the cells of both walls with least absolute distances, because distant cells
-/// are mostly false points behind a jamb, all on one side. Method: least squares, reweighted with
-/// the inverse of the previous distance. Returns false if the line turns too far.
+/// Fits a line through the cells of both walls. Minimises the absolute distances, because most
+/// distant cells are false points behind a jamb, all on one side. Method: least squares, reweighted
+/// with the inverse of the previous distance. Returns false if the line turns too far.
 bool DoorFinder::turn_to_walls(Opening& opening) const {
     constexpr int kRounds = 6;
-    constexpr double kSure_m = 0.03;      // nearer cells have equal weights: about one cell
-    constexpr double kMaxTurn_rad = 0.6;  // blocks place a bottleneck more precisely
+    constexpr double kSure_m = 0.03;      // nearer cells have equal weights; about one cell
+    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more precisely
     const Vector2d first = opening.across;
     double offset_m = 0.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -343,8 +343,9 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
     const double sine = std::min(std::abs(opening.across.x()), std::abs(opening.across.y()));
     const double cosine = std::max(std::abs(opening.across.x()), std::abs(opening.across.y()));
     jamb.at_m += 0.5 * sine * cell_m_;
-    // The error is uniform over one cell for one row. From row to row the jamb moves by a part of a
-    // cell, so the rows sample different parts; at 45 deg it moves by a whole cell.
+    // In one row the error is uniform over one cell. From row to row the jamb moves by a part of a
+    // cell, so the rows sample different parts of a cell. At 45 deg it moves by a whole cell, so
+    // all rows sample the same part.
     const double moves = std::min(sine / cosine, 1.0 - sine / cosine);
     const double parts = 1.0 + moves * static_cast<double>(count - 1);
     jamb.sigma_m =
@@ -373,11 +374,11 @@ bool DoorFinder::has_wall(const Opening& opening, double side, const Jamb& jamb)
            static_cast<double>(hits) >= 0.7 * static_cast<double>(bins);
 }
 
-/// True if the wall continues along the way before or behind the jamb. Then it is no jamb but the
-/// side of an object that stands along the way.
+/// True if the wall continues along the way before or behind the jamb. Then the jamb is the side of
+/// an object that stands along the way.
 bool DoorFinder::goes_on(const Opening& opening, double side, const Jamb& jamb) const {
     constexpr double kBeside_m = 0.25;
-    constexpr double kAway_m = 0.15;  // noise of the visible part of the wall
+    constexpr double kAway_m = 0.15;  // beyond the noise of the visible wall
     constexpr double kFar_m = 0.45;
     double at_jamb = 0.0;
     double before = 0.0;
@@ -458,12 +459,12 @@ DoorFinder::GroundLine DoorFinder::ground_line(const Opening& opening,
     const double errors_across = std::max(1.0, opening.width_m / config_.correlation_m);
     const double errors_along = std::max(1.0, n * bin_m / config_.correlation_m);
     line.point_var_m2 = std::max(rest_m2, cell_var_m2 / n / errors_across);
-    // Variance at the end of a line: one part from its mean and three from its slope.
+    // The variance at the end of a line has one part from its mean and three parts from its slope.
     line.var_m2 = 4.0 * line.point_var_m2 / errors_along;
     return line;
 }
 
-/// Empty if the ground beside the jambs is not known well enough.
+/// Measures the sill. Returns nothing if the ground beside the jambs is not known well enough.
 std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     take_profile(opening);
     const double bin_m = std::max(cell_m_, kBin_m);
@@ -477,7 +478,7 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
         if (along_m < front_m || along_m > back_m || profile_[i].count == 0) continue;
         top_m = std::max(top_m, profile_[i].mean_m() - before.height_at(along_m));
     }
-    // A matcher fills the region that a sill hides, beginning at the sill.
+    // A matcher fills the occluded region behind a sill, beginning at the sill.
     const double seen_m = back_m + std::min(kShadowPerHeight * top_m, kLongestShadow_m);
     const GroundLine behind = ground_line(opening, seen_m, seen_m + kGround_m);
     if (!behind.known) return std::nullopt;
@@ -485,8 +486,8 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     sill.sigma_m = std::sqrt(std::max(before.point_var_m2, behind.point_var_m2) +
                              0.5 * (before.var_m2 + behind.var_m2));
     const double least_m = std::max(config_.min_sill_m, config_.sigma_factor * sill.sigma_m);
-    // If the ground has a step, a ridge must be higher than both sides. Else it must be higher than
-    // the line between both sides, which is more certain than extrapolations.
+    // If the ground has a step, a ridge must be higher than both sides. If it has none, the ridge
+    // must be higher than the line between both sides, which is more certain than an extrapolation.
     const double middle_m = 0.5 * (front_m + back_m);
     const bool step = std::abs(behind.height_at(middle_m) - before.height_at(middle_m)) > least_m;
     double ridge_m = 0.0;
@@ -511,7 +512,7 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     return sill;
 }
 
-/// Least free height that is supported by more than a single wrong match.
+/// Returns the smallest free height that more than a single wrong match supports.
 double DoorFinder::clearance_m(const Opening& opening) {
     values_.clear();
     for (const Near& cell : near_) {
@@ -544,12 +545,12 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
         rise_m,
         0.01,
         2.0,
-        "smallest height of a wall above the ground beside the wall; lower objects are not walls");
+        "smallest height above the neighbouring ground at which a cell may belong to a wall");
     visitor.number("wall_height_m",
                    wall_height_m,
                    0.01,
                    3.0,
-                   "smallest visible height of a wall above the ground");
+                   "smallest height above the ground of the highest visible part of a wall");
     visitor.number("wall_length_m",
                    wall_length_m,
                    0.01,
@@ -557,20 +558,29 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    "smallest length of the wall on either side of a door");
     visitor.number(
         "min_sill_m", min_sill_m, 0.0, 1.0, "smallest height of a sill that is reported");
-    visitor.number("sigma_factor",
-                   sigma_factor,
-                   0.0,
-                   100.0,
-                   "smallest height of a sill above the floor [sigma]");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
-    visitor.number("jamb_sigma_m", jamb_sigma_m, 0.0, 1.0, "one sigma of the position of a jamb");
+        "sigma_factor",
+        sigma_factor,
+        0.0,
+        100.0,
+        "smallest height of a sill above the floor, as a multiple of the sigma of this height");
+    visitor.number(
+        "correlation_m",
+        correlation_m,
+        0.001,
+        10.0,
+        "distance on the ground over which the errors of the stereo matcher are correlated");
+    visitor.number("jamb_sigma_m",
+                   jamb_sigma_m,
+                   0.0,
+                   1.0,
+                   "one sigma of the position of a jamb, without the error from the cell size");
     visitor.number("overhead_side_m",
                    overhead_side_m,
                    0.0,
                    1.0,
-                   "side length of a square; an overhead object smaller than this square may be a "
-                   "wrong match");
+                   "side length of a square; an overhead object of smaller area may be a wrong "
+                   "match and does not limit the clearance");
 }
 
 std::optional<std::string> DoorConfig::problem() const {

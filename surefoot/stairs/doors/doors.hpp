@@ -16,14 +16,14 @@ namespace surefoot::stairs {
 
 struct DoorConfig {
     double min_width_m = 0.6;    ///< doors in buildings have 0.76 m and more
-    double max_width_m = 1.4;    ///< least distance of the pillars of a corridor
+    double max_width_m = 1.4;    ///< pillars of a corridor are at least this far apart
     double max_depth_m = 0.5;    ///< jamb depth along the way; deeper passages are corridors
-    double rise_m = 0.2;         ///< anything higher above the ground beside it is not ground
+    double rise_m = 0.2;         ///< a cell this high above the ground beside it is not ground
     double wall_height_m = 0.5;  ///< visible height of a wall; the camera looks down on walls
-    double wall_length_m = 0.3;  ///< length of wall on both sides of the opening
+    double wall_length_m = 0.3;  ///< smallest length of the wall on each side of the opening
     double min_sill_m = 0.008;   ///< lower sills cannot be distinguished from floor noise
-    double sigma_factor = 3.0;   ///< a sill exceeds the floor by so many sigma
-    /// Correlation length of semi-global matching errors: 30-50 px, 0.1 m of floor at 1 m.
+    double sigma_factor = 3.0;   ///< smallest height of a sill above the floor [sigma]
+    /// Correlation length of semi-global matching errors: 30-50 px, which is 0.1 m of floor at 1 m.
     double correlation_m = 0.1;
     /// One sigma of a jamb's position beyond cell quantisation. Source: 20 rendered doors with the
     /// noise of the real ZED.
@@ -32,7 +32,7 @@ struct DoorConfig {
     double overhead_side_m = 0.05;
 
     void describe(ConfigVisitor& visitor);
-    /// The first reason why these settings are invalid, or nothing.
+    /// Returns the first reason why these settings are invalid, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
@@ -58,7 +58,7 @@ class DoorFinder {
   public:
     explicit DoorFinder(const DoorConfig& config) : config_(config) {}
     [[nodiscard]] const DoorConfig& config() const noexcept { return config_; }
-    /// Nearest to the stance first. Replaces both lists; `sills` are those of `doors`.
+    /// Replaces both lists, nearest door to the stance first; `sills` holds the sills of `doors`.
     /// Precondition: `config().problem()` is empty.
     void find(const Terrain& terrain, std::vector<Door>& doors, std::vector<LineFeature>& sills);
 
@@ -69,14 +69,14 @@ class DoorFinder {
     struct GroundLine;
     /// A known cell near an opening.
     struct Near {
-        Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  ///< from the middle of its bottleneck
+        Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  ///< offset from the bottleneck middle
         float height_m = 0.0F;
         float var_m2 = 0.0F;
         float clearance_m = 0.0F;
     };
     /// The point where a row of cells meets the wall, in the frame of the opening.
     struct RowEnd {
-        double across_m = 0.0;  ///< offset from the middle
+        double across_m = 0.0;  ///< offset from the middle of the opening
         double along_m = 0.0;
     };
     /// Mean height of the ground over the width of an opening.

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kHuber_m = 0.012;  ///< half a cell
+constexpr double kHuber_m = 0.012;  ///< limit of the Huber weights: half a cell
 constexpr int kRounds = 6;
 
 }  // namespace
@@ -24,7 +24,7 @@ double upper_tolerance_m(double scatter_m, double rise_m) {
     return std::clamp(kSigmas * scatter_m, kShare * rise_m, 0.6 * rise_m);
 }
 
-/// The rows that cross an edge (the columns if the line runs along the rows).
+/// Walks the rows that cross an edge (the columns if the line runs along the rows).
 class Rows {
   public:
     Rows(const Terrain& terrain, const EdgeLine& line, const BorderSearch& search)
@@ -70,8 +70,8 @@ class Rows {
     [[nodiscard]] Vector2d middle_m(int cell) const {
         return axis_ == 0 ? grid_.center_m({cell, row_}) : grid_.center_m({row_, cell});
     }
-    /// A position in this row, in cells from the centre of the first cell, in the frame of the
-    /// line.
+    /// Converts a position in this row [cells from the centre of the first cell] to the frame of
+    /// the line.
     [[nodiscard]] BorderPoint point(double cells, int edge) const {
         Vector2d p_m;
         p_m[axis_] = grid_.origin_m[axis_] + (cells + 0.5) * grid_.resolution_m;
@@ -107,9 +107,9 @@ void add_border_points(const Terrain& terrain,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out) {
     Rows rows(terrain, line, search);
-    // If a cell holds the highest point of its area, the centre of the last upper cell lies beyond
-    // the edge by the oblique part of the edge within the cell. If a cell holds the height at its
-    // centre, the last upper centre lies half a cell before the edge.
+    // If a cell holds the highest point of its area, the last upper centre lies beyond an oblique
+    // edge, by less than half a cell. If a cell holds the height at its centre, the last upper
+    // centre lies half a cell before the edge.
     const Vector2d down = line.down().cwiseAbs();
     const double reach_m =
         0.5 * terrain.geometry.resolution_m *
@@ -128,7 +128,7 @@ void add_border_points(const Terrain& terrain,
         while (!is_upper(cell) && cell != rows.edge() && cell != rows.end()) cell += rows.way();
         if (!is_upper(cell)) continue;
         while (cell != rows.end() && is_upper(cell + rows.way())) cell += rows.way();
-        if (cell == rows.end()) continue;  // no end of the upper ground: not this edge
+        if (cell == rows.end()) continue;  // the upper ground does not end here: not this edge
         // Interpolates between the cell centres if the next cell is known.
         const double height_m = rows.value(terrain.height_m, cell);
         const double next_m = rows.value(terrain.height_m, cell + rows.way());
@@ -145,11 +145,11 @@ void add_faces_near(const Terrain& terrain,
                     const EdgeLine& line,
                     const BorderSearch& search,
                     std::vector<BorderPoint>& out) {
-    constexpr double kLevel = 1.2;  ///< times the points of level ground, with a margin
-    constexpr double kLeast = 1.5;  ///< least excess points per point of level ground
+    constexpr double kLevel = 1.2;  ///< density ratio of level ground, with a margin
+    constexpr double kLeast = 1.5;  ///< smallest excess of a row, in points of a level cell
     Rows rows(terrain, line, search);
-    // Weights must not depend on the position: distant level ground near the camera height shows
-    // fewer points, and a ratio to them would pull the face towards it.
+    // Weights must not depend on the position. Distant level ground near the camera height shows
+    // fewer points, so a ratio to that number would pull the face towards it.
     const auto level_px = [&](const Eigen::Vector2d& p_m, double z_m) {
         return terrain.view ? terrain.view->pixels_per_m2({p_m.x(), p_m.y(), z_m}) : 1.0;
     };
@@ -182,7 +182,7 @@ void add_face_points(const Terrain& terrain,
                      const BorderSearch& search,
                      std::vector<BorderPoint>& out) {
     if (terrain.density_ratio.empty()) return;
-    // Heights alone give a border that is too early: centre the window on the face.
+    // The border from heights alone lies too early, so the window is centred on the face.
     BorderSearch centred = search;
     std::vector<BorderPoint> found;
     for (int round = 0; round < 3; ++round) {
@@ -202,7 +202,7 @@ double across_sigma_m(const grid::GridGeometry& grid, const EdgeLine& line, doub
     const double length_m = std::max(line.length_m(), grid.resolution_m);
     const double scatter_m = std::max(rms_m, 0.25 * grid.resolution_m) /
                              std::sqrt(std::max(1.0, length_m / kCorrelation_m));
-    // On an edge along the grid all rows see the edge at the same position within a cell.
+    // If an edge runs along the grid, all rows see the edge at the same position within a cell.
     const Vector2d along = line.along().cwiseAbs();
     const double parts = std::max(1.0, length_m * along.minCoeff() / grid.resolution_m);
     return std::hypot(scatter_m, grid.resolution_m / std::sqrt(12.0 * parts));

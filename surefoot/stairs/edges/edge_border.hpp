@@ -11,8 +11,8 @@ namespace surefoot::stairs {
 
 /// The end of the upper ground in one row or column of cells, in the frame of an edge line.
 struct BorderPoint {
-    double s_m = 0.0;  ///< across the line; positive on its lower side
-    double t_m = 0.0;  ///< along the line, from its beginning
+    double s_m = 0.0;  ///< position across the line; positive on its lower side
+    double t_m = 0.0;  ///< position along the line, from its beginning
     int edge = 0;      ///< number of the edge among parallel edges
 };
 
@@ -20,22 +20,22 @@ struct BorderPoint {
 struct BorderSearch {
     int edge = 0;             ///< number that the found points get
     double at_m = 0.0;        ///< expected position of the edge, across the line
-    double upper_m = 0.0;     ///< height of the ground above it
+    double upper_m = 0.0;     ///< height of the ground above the edge
     double below_m = 0.0;     ///< cells may lie this much below `upper_m` and still be upper ground
-    double inside_m = 0.07;   ///< the search begins so far before the edge, on the upper ground ...
-    double outside_m = 0.12;  ///< ... and ends so far behind it
+    double inside_m = 0.07;   ///< the search begins this far before the edge, on the upper ground
+    double outside_m = 0.12;  ///< the search ends this far behind the edge
     double cell_reach = 1.0;  ///< see StairsConfig
-    double beside_m = 0.0;    ///< the search also covers rows so far beyond the ends of the line
+    double beside_m = 0.0;    ///< the search also covers rows up to this far beyond the line's ends
 };
 
-/// A cell this far below the upper level is still upper ground: based on the scatter of the cells,
-/// but always less than the riser.
+/// Largest depth of an upper cell below the upper level. It follows from the scatter of the cells,
+/// but is always less than the riser.
 [[nodiscard]] double upper_tolerance_m(double scatter_m, double rise_m);
 
-/// Walks from the upper ground across the edge, row by row (by column where the line runs along
-/// the rows). Adds the point between two cell centres where the ground falls below its level. The
-/// threshold is a tenth of the step, not half: cells before and behind a distant riser hold
-/// points of its face, which depth noise moves by several cells, and a cell keeps its highest
+/// Walks from the upper ground across the edge, row by row (by column where the line runs along the
+/// rows). Adds the point between two cell centres where the ground falls below its level. The
+/// threshold is a tenth of the step, not half. Cells before and behind a distant riser hold points
+/// of its face, because depth noise moves these points by several cells. A cell keeps its highest
 /// point.
 void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
@@ -49,10 +49,10 @@ inline constexpr double kFaceShared_px = 0.05;
 /// An edge with fewer face points is placed by the ground above it.
 inline constexpr std::size_t kLeastPoints = 10;
 
-/// Like add_border_points, but adds the position of the vertical face below the edge: per row the
-/// middle of the points in excess of level ground (`Terrain::density_ratio`), if enough rows show
-/// enough of them. Depth noise moves face points both ways, so their middle is unbiased. Cell
-/// heights keep the highest point and are biased.
+/// Adds the position of the vertical face below the edge instead of the border. The position in a
+/// row is the middle of the points in excess of level ground (`Terrain::density_ratio`). Adds
+/// nothing if too few rows show enough of them. Depth noise moves face points both ways, so their
+/// middle is unbiased. Cell heights keep the highest point and are biased.
 void add_face_points(const Terrain& terrain,
                      const EdgeLine& line,
                      const BorderSearch& search,

@@ -15,10 +15,11 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kTouch_cells = 2;
-/// Larger than the noise of one cell, smaller than the height between neighbouring steps.
+/// Largest height difference of touching points. It is larger than the noise of one cell and
+/// smaller than the height between neighbouring steps.
 constexpr float kLevel_m = 0.06F;
 constexpr int kDraws = 60;
-constexpr double kNear_m = 0.6;  ///< largest distance of a drawn pair
+constexpr double kNear_m = 0.6;  ///< largest distance between two drawn points
 
 Vector2d down_of(Side side) {
     switch (side) {
@@ -150,7 +151,7 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
 
 void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
                                 std::span<const std::int32_t> chain) {
-    const double least_m = 0.5 * config_.min_length_m;  // shorter pieces may still be joined
+    const double least_m = 0.5 * config_.min_length_m;  // shorter pieces may be joined later
     const auto least_points =
         saturated_integer<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
     left_.clear();
@@ -198,7 +199,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             for (const Placed& placed : run_) best.members.push_back(placed.point);
         }
         const bool good = fit(points, best);
-        // Points beside the line belong to it, although they do not help to place it.
+        // Points beside the line belong to it, although the fit does not use them.
         const Vector2d from_m = best.line.from_m;
         const Vector2d along = best.line.along();
         const double length_m = best.line.length_m();

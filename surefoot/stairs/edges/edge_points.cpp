@@ -12,9 +12,10 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-/// A single cell may be less significant than an edge: the finished edge is tested again.
+/// Smallest height of an edge point in sigma. It is lower than that of an edge, because the
+/// finished edge is tested again.
 constexpr double kPointSigmas = 1.5;
-constexpr double kLongestShadow_m = 2.5;  ///< of a drop of 1 m, see shadow_per_height
+constexpr double kLongestShadow_m = 2.5;  ///< for a drop of 1 m, see shadow_per_height
 
 bool known(float value) {
     return value == value;
@@ -96,7 +97,7 @@ void EdgePointFinder::take_line(const Terrain& terrain, Side side, int index) {
 }
 
 void EdgePointFinder::scan(const Line& line) {
-    // Most ground does not fall. One pass that finds the lowest cell ahead excludes most cells.
+    // Most ground does not fall. One pass finds the lowest cell ahead and excludes most cells.
     const auto cells = static_cast<std::size_t>(line.cells);
     low_m_.assign(cells, kNothing);
     for (std::size_t ahead = 1; ahead <= static_cast<std::size_t>(window_cells_); ++ahead) {
@@ -155,7 +156,7 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
     found.upper_m = top_m;
     found.ends = low < 0 && !(bound_m < top_m);
     if (found.ends) {
-        // The next window must be unknown from its first cell on.
+        // Ground ends only if the next window is unknown from its first cell on.
         if (k <= window_cells_ || cell - window_cells_ < 0) return false;
         found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // assumed, not seen
         return true;

@@ -16,7 +16,7 @@ enum class Side : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
 
 /// The last cell of upper ground in a row or column, before the ground falls.
 struct EdgePoint {
-    Eigen::Vector2f at_m;  ///< middle of the cell border on that side
+    Eigen::Vector2f at_m;  ///< middle of the cell's border towards the lower ground
     std::int16_t ix = 0;   ///< column of the upper cell
     std::int16_t iy = 0;
     Side side = Side::plus_x;
@@ -26,19 +26,19 @@ struct EdgePoint {
 };
 
 /// Finds points where the ground falls, along all rows and columns, in both directions. For a cell,
-/// `top` is the highest of the cells up to `smear_m` before it and `low` the lowest of the cells up
-/// to `smear_m` behind it. Behind known ground two more values count for `low`: the next known
-/// cell, if it lies within the occluded region of such an edge, and the free-space bound of the
-/// cells in between. The cell is an edge point if top - low reaches the least height and exceeds
-/// the noise, if the cell lies above the middle of both, and if the next cell lies below the middle
-/// or is unknown.
+/// `top` is the highest cell up to `smear_m` before it, and `low` is the lowest cell up to
+/// `smear_m` behind it. Behind known ground two more values count for `low`: the next known cell,
+/// if it lies within the occluded region of such an edge, and the free-space bound of the cells in
+/// between. The cell is an edge point under three conditions: top - low reaches the least height
+/// and exceeds the noise; the cell lies above the middle of both; the next cell lies below the
+/// middle or is unknown.
 ///
 /// If nothing is known behind the cell although the camera would see continuing ground there
 /// (Terrain::view), the ground ends. It may fall too steeply to be visible.
 class EdgePointFinder {
   public:
     explicit EdgePointFinder(const StairsConfig& config) : config_(config) {}
-    /// Sorted by iy, then ix, then side. Allocates only until the largest map was processed.
+    /// Sorts the points by iy, ix, side. Allocates only until the largest map was processed.
     void find(const Terrain& terrain, std::vector<EdgePoint>& out);
 
   private:
@@ -53,8 +53,8 @@ class EdgePointFinder {
     /// A row or a column, walked in one direction.
     struct Line {
         int cells = 0;
-        const float* height_m = nullptr;  ///< a copy without gaps
-        Strided var_m2;                   ///< read for few cells only
+        const float* height_m = nullptr;  ///< copied heights without gaps
+        Strided var_m2;                   ///< variances, read for few cells only
         Strided free_above_m;
     };
     struct Found {

@@ -16,20 +16,20 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kUpper_m = 0.7;  ///< depth of ground examined before and behind an edge
+constexpr double kUpper_m = 0.7;  ///< depth of the examined ground before an edge
 constexpr double kLower_m = 1.2;
-constexpr double kLeastShare = 0.25;  ///< least share of known cells in a slice
+constexpr double kLeastShare = 0.25;  ///< smallest share of known cells in a slice
 /// Largest difference of neighbouring slices of level ground; a ramp of 1:8 has 3 mm in 25 mm.
 constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< depth of level ground that gives the height
 constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread between occluded regions
 constexpr double kStripRange_m = 0.06;
-constexpr double kBeside_m = 0.3;   ///< the edge may continue beyond the ends of its line
+constexpr double kBeside_m = 0.3;   ///< largest extension of an edge beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the largest turn [rad] of an edge against its line
-constexpr double kEnd_m = 0.25;  ///< ground end: known over this depth before it, unknown behind it
+constexpr double kEnd_m = 0.25;     ///< ground ends: known over this depth before, unknown behind
 constexpr double kEndRms_m = 0.025;
-constexpr double kRagged_m = 0.075;  ///< in some rows the ground ends earlier by this much
-/// A steeper slope is not explained by noise on level ground.
+constexpr double kRagged_m = 0.075;  ///< in some rows the ground may end this much earlier
+/// Largest slope that noise on level ground explains.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< depth of ground that gives the slope
 
@@ -134,7 +134,7 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
     slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
 }
 
-/// The level ground near slice `first`, from there on in steps of `step`.
+/// Returns the level ground near slice `first`, from there on in steps of `step`.
 Level EdgeProfiler::level_from(int first, int step) const {
     const Slices all{slices_, 0.0, resolution_m_};
     const int slices = all.count();
@@ -143,8 +143,8 @@ Level EdgeProfiler::level_from(int first, int step) const {
         return known(k) && known(k + step) &&
                std::abs(at(k).height_m - at(k + step).height_m) <= kLevel_m;
     };
-    // The longest level piece counts, up to the needed depth: beside a riser a few slices may agree
-    // by depth noise.
+    // The longest level piece counts, up to the needed depth. Beside a riser, depth noise can make
+    // a few slices agree.
     const int enough = std::max(1, grid::whole_cells(std::round(kMeasured_m / resolution_m_)));
     const int furthest = grid::whole_cells(std::ceil(2.0 * config_.smear_m / resolution_m_));
     int begin = first;
@@ -160,7 +160,7 @@ Level EdgeProfiler::level_from(int first, int step) const {
         const int passed = std::max(1, run);
         k += passed * step;
         tried += passed;
-        // Ground behind an occluded region is as far away as the region is deep.
+        // Ground behind an occluded region is as far away as the region is long.
         if (tried > furthest && length > 0) break;
     }
     Level level;
@@ -182,7 +182,7 @@ Level EdgeProfiler::level_from(int first, int step) const {
     return level;
 }
 
-/// Rise over run away from the edge over `count` slices; 0 for fewer than three.
+/// Returns rise over run away from the edge over `count` slices; 0 for fewer than three slices.
 double EdgeProfiler::slope_of(int begin, int step, int count) const {
     if (count < 3) return 0.0;
     const double middle = 0.5 * (count - 1);
@@ -204,7 +204,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     if (!terrain.view || upper.end_m < kEnd_m || line.rms_m > kEndRms_m ||
         line.length_m() < config_.min_width_m)
         return false;
-    // Only for a line seen from the front: along a ray the view ends, not the ground.
+    // Only a line seen from the front can be a ground end. Along a ray the view ends, not the
+    // ground.
     const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
     const Vector2d observed_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
     if (observed_m.dot(line.down()) < 0.7 * observed_m.norm()) return false;
@@ -235,7 +236,7 @@ double EdgeProfiler::place(const Terrain& terrain,
     search.beside_m = kBeside_m;
     borders_.clear();
     const Vector2d to_stance_m = terrain.stance_m - line.from_m;
-    if (to_stance_m.dot(line.down()) > 0.0) {  // the riser face is on the side of the stance
+    if (to_stance_m.dot(line.down()) > 0.0) {  // the face is towards the stance
         add_face_points(terrain, line, search, borders_);
     }
     if (borders_.size() < kLeastPoints) add_border_points(terrain, line, search, borders_);

@@ -88,7 +88,7 @@ class EdgeProfiler {
     double resolution_m_ = 0.0;
     double length_m_ = 0.0;
     int upper_slices_ =
-        0;  ///< slices before the edge; slice k begins (k - upper_slices_) cells from it
+        0;  ///< number of slices before the edge; slice k begins (k - upper_slices_) cells from it
     std::vector<Slice> slices_;
     std::vector<int> cells_;  ///< number of cells of each slice
     std::vector<BorderPoint> borders_;

@@ -7,7 +7,7 @@
 
 namespace surefoot::stairs {
 
-/// True within 15 deg: an edge that was found alone has a ragged direction.
+/// True if the directions agree within 15 deg. A single edge has a ragged direction.
 [[nodiscard]] bool is_parallel(const Edge& a, const Edge& b);
 /// True if both edges have the same heights above and below.
 [[nodiscard]] bool same_ground(const Edge& a, const Edge& b);

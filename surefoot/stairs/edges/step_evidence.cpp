@@ -17,19 +17,21 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-/// Depth of ground used on either side. With more, one plane would have to fit several treads.
+/// Depth of ground used on either side. With more depth, one plane would have to fit several
+/// treads.
 constexpr double kWindow_m = 0.35;
-constexpr double kLeastShare = 0.25;  ///< least share of known cells in a slice
-constexpr int kLeastSlices = 2;       ///< on either side
-constexpr int kLags = 6;  ///< in cells: 0.15 m; beyond, `evidence_shared_m` covers the correlation
+constexpr double kLeastShare = 0.25;  ///< smallest share of known cells in a slice
+constexpr int kLeastSlices = 2;       ///< smallest number of slices on either side
+constexpr int kLags = 6;  ///< longest lag [cells], 0.15 m; `evidence_shared_m` covers more
 constexpr double kClip_sigma = 3.0;
 /// Prior: one sigma of the slope of ground (19 deg). It bounds the slopes of short pieces.
 constexpr double kUsualSlope = 0.35;
-constexpr int kCreaseStep = 2;  ///< distance of tested crease positions, in slices
+constexpr int kCreaseStep = 2;  ///< distance between tested creases [slices]
 constexpr int kLargestDegree = 5;
-/// Share of the least edge height, because the fit assigns a part of a low step to the slopes.
+/// Smallest fall as a share of the smallest edge height. The fit assigns a part of a low step to
+/// the slopes.
 constexpr double kLeastFall = 0.75;
-constexpr double kMostLogRatio = 690.0;  ///< 1e300: larger values are not distinguished
+constexpr double kMostLogRatio = 690.0;  ///< ratio 1e300; larger values are all equal
 
 constexpr double square(double value) {
     return value * value;
@@ -46,7 +48,7 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
                                 double upper_m,
                                 double lower_m) {
     resolution_m_ = terrain.geometry.resolution_m;
-    // A reach is about half a metre, which is tens of cells.
+    // The depth is about half a metre, which is tens of cells.
     const int upper = saturated_integer<int>(std::ceil(upper_m / resolution_m_));
     const int slices = upper + saturated_integer<int>(std::ceil(lower_m / resolution_m_));
     cells_.clear();
@@ -83,9 +85,9 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
     }
 }
 
-/// The slope along the edge that all slices share: per slice the slope between the medians of its
-/// two halves, then the median over the slices. Objects on the line and slices across a riser are
-/// few and have no effect.
+/// Returns the slope along the edge that all slices share. The slope of a slice is the slope
+/// between the medians of its two halves; the result is the median over the slices. Objects on the
+/// line and slices across a riser are few and have no effect.
 double StepEvidenceFinder::slope_along(double length_m) {
     slopes_.clear();
     std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
@@ -143,7 +145,7 @@ void StepEvidenceFinder::measure_slices(double length_m) {
     }
 }
 
-/// Computes the residual of each cell from the profile, linear between the slices.
+/// Computes the residual of each cell from the profile, which is linear between the slices.
 void StepEvidenceFinder::weigh_slices() {
     residual_m_.assign(static_cast<std::size_t>(box_width_) * static_cast<std::size_t>(box_height_),
                        std::numeric_limits<float>::quiet_NaN());
@@ -182,8 +184,8 @@ void StepEvidenceFinder::weigh_slices() {
     independent_ = std::max(2.0, independent);
 }
 
-/// Number of cells that count as one independent cell: sum of the autocorrelation over the lags
-/// along rows, times the sum along columns.
+/// Returns the number of cells that count as one independent cell: the sum of the autocorrelation
+/// over the lags along rows, times the sum along columns.
 double StepEvidenceFinder::cells_per_error(double scatter_m) const {
     if (!(scatter_m > 0.0)) return 1.0;
     const auto most = static_cast<float>(kClip_sigma * scatter_m);
@@ -224,7 +226,7 @@ double StepEvidenceFinder::cells_per_error(double scatter_m) const {
 }
 
 /// Fits two planes and the transition between them. Parameters: height of the upper plane at
-/// `from_m`, its slope, the rise from there to `to_m`, the slope of the lower plane.
+/// `from_m`, its slope, the rise from `from_m` to `to_m`, the slope of the lower plane.
 StepEvidenceFinder::Fit StepEvidenceFinder::fit_planes(double from_m,
                                                        double to_m,
                                                        bool is_step) const {
@@ -262,7 +264,7 @@ double StepEvidenceFinder::cost(double squares, int parameters) const {
     return 0.5 * squares + 0.5 * parameters * std::log(independent_);
 }
 
-/// The least cost of two planes with a crease, or with a slope between them.
+/// Returns the lowest cost of two planes with a crease, or with a slope between them.
 double StepEvidenceFinder::cost_of_creases() const {
     double least = kNothing;
     const auto is_walked = [](double slope) { return std::abs(slope) <= kSteepest; };
@@ -312,7 +314,7 @@ StepEvidenceFinder::Fit StepEvidenceFinder::fit_crease(double at_m) const {
             .rise_m = 0.0};
 }
 
-/// The cost of a polynomial; infinite if it is too steep or too bent for walkable ground.
+/// Returns the cost of a polynomial; infinite if it is too steep or too bent for walkable ground.
 double StepEvidenceFinder::cost_of_polynomial(int degree) const {
     constexpr int kMost = kLargestDegree + 1;
     using Square = Eigen::Matrix<double, kMost, kMost>;
@@ -359,7 +361,7 @@ double StepEvidenceFinder::cost_of_step(const Gap& gap, double& fall_m) const {
     double least = kNothing;
     const double widest_m = std::max(config_.smear_m, gap.to_m - gap.from_m);
     for (std::size_t a = 0; a + 1 < slices_.size(); ++a) {
-        // The middle between two slices.
+        // A position in the middle between two slices.
         const double from_m = 0.5 * (slices_[a].s_m + slices_[a + 1].s_m);
         if (from_m < -config_.smear_m || from_m > std::max(config_.smear_m, gap.to_m)) continue;
         for (std::size_t b = a; b + 1 < slices_.size(); ++b) {
@@ -377,7 +379,7 @@ double StepEvidenceFinder::cost_of_step(const Gap& gap, double& fall_m) const {
     return least;
 }
 
-/// The longest unknown interval at the edge and below it.
+/// Finds the longest unknown interval at the edge or below it.
 StepEvidenceFinder::Gap StepEvidenceFinder::find_gap() const {
     Gap gap;
     for (std::size_t k = 0; k + 1 < slices_.size(); ++k) {

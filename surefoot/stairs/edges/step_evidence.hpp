@@ -34,9 +34,9 @@ struct StepEvidence {
 /// count as independent, and the sum is divided by the number of cells that share one error.
 /// That number is the sum of the measured autocorrelation of the residuals along rows and
 /// columns of the map. The variance of a cell is its measured scatter along the edge, or the
-/// variance in the map if that is larger. In addition all cells of a slice, and slices
-/// within kCorrelation_m of each other, share an error of `evidence_shared_m`, so a longer
-/// edge does not average it away. A model pays for each of its parameters (BIC, Schwarz
+/// variance in the map if that is larger. In addition, all cells of a slice share an error of
+/// `evidence_shared_m`, and so do slices within kCorrelation_m of each other. A longer edge
+/// does not average this error away. A model pays for each of its parameters (BIC, Schwarz
 /// 1978).
 ///
 /// Owns the working memory; not thread-safe. The same map gives the same result.
@@ -57,15 +57,15 @@ class StepEvidenceFinder {
         int slice = 0;
         int x = 0;  ///< column and row in the box of all cells
         int y = 0;
-        double s_m = 0.0;  ///< across the edge; positive below it
-        double t_m = 0.0;  ///< along it
-        double z_m = 0.0;  ///< relative to the upper ground
+        double s_m = 0.0;  ///< position across the edge; positive below it
+        double t_m = 0.0;  ///< position along the edge
+        double z_m = 0.0;  ///< height relative to the upper ground
     };
     /// All cells at one distance from the edge.
     struct Slice {
-        double s_m = 0.0;  ///< mean
+        double s_m = 0.0;  ///< mean position across the edge
         double cells = 0.0;
-        double z_m = 0.0;  ///< mean, without the slope along the edge
+        double z_m = 0.0;  ///< mean height, without the slope along the edge
         double weight_per_m2 = 0.0;
     };
     struct Gap {
@@ -105,7 +105,7 @@ class StepEvidenceFinder {
     std::vector<float> residual_m_;  ///< residuals of the cells in the box; NaN = no cell
     std::vector<double> values_;
     std::vector<double> slopes_;
-    std::array<std::vector<double>, 2> halves_;  ///< heights of a slice
+    std::array<std::vector<double>, 2> halves_;  ///< heights of the two halves of a slice
 };
 
 /// True if the likelihood ratio of the edge reaches `StairsConfig::step_ratio`.

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNearest_m = 0.05;  ///< the ends of edges have this uncertainty
+constexpr double kNearest_m = 0.05;  ///< begin of the strip; the ends of edges are this uncertain
 constexpr double kFarthest_m = 0.25;
-constexpr double kInside_m = 0.1;  ///< a rail may stand on the treads
+constexpr double kInside_m = 0.1;  ///< depth over the tread, on which a rail may stand
 constexpr double kWall_m = 0.3;
 constexpr double kOpen_m = 0.1;
 constexpr double kLeastShare = 1.0 / 3.0;
@@ -26,7 +26,7 @@ constexpr double kRailBand_m = 0.1;
 struct Tread {
     Vector2d nose_m;   ///< end of its edge on the examined side
     Vector2d way;      ///< direction of travel over the tread
-    Vector2d outward;  ///< away from the flight
+    Vector2d outward;  ///< unit vector away from the flight
     double depth_m = 0.0;
     double level_m = 0.0;
     double climb = 0.0;
@@ -48,13 +48,13 @@ struct Strip {
     }
 };
 
-/// Makes the tread of a step. Returns false if the tread is too short or was not seen.
+/// Measures the tread of a step. Returns false if the tread is too short or was not seen.
 bool tread_of(const Flight& flight, std::size_t step, bool left, Tread& tread) {
     const Edge& edge = flight.edges[step];
     const bool up = flight.kind == FlightKind::up;
     if (!up && !edge.lower_seen) return false;
     const bool is_last = step + 1 == flight.edges.size();
-    // Seen from the stance, edges of flights up run to the right, edges of flights down to the
+    // Seen from the stance, edges of flights up run to the right. Edges of flights down run to the
     // left.
     const bool at_from = left == up;
     tread.nose_m = at_from ? edge.from_m : edge.to_m;

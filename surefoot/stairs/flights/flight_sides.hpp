@@ -14,7 +14,7 @@ namespace surefoot::stairs {
 /// A side of a step is a wall if something stands 0.3 m or more above the tread. It is open if the
 /// ground, or a ray over unknown cells, lies 0.1 m or more below the tread; else it is level. It is
 /// unknown if less than a third of the strip has data. The flight takes the kind of most of its
-/// known steps; of equal numbers, the more dangerous kind.
+/// known steps. If two kinds are equally frequent, the more dangerous kind counts.
 ///
 /// A rail is an object 0.75 to 1.1 m above the nosing line (NZ D1/AS1: handrails at 0.9 to 1.0 m)
 /// along at least half of the steps, within a band of 0.1 m. Rails that the map lacks are not

@@ -16,24 +16,24 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-/// Tilt of treads and distortion of maps stay below this over the depth of a tread.
+/// Largest height error over the depth of a tread, from its tilt and from map distortion.
 constexpr double kTread_m = 0.035;
-/// Steps of one flight differ by 5 mm by code (NZ D1/AS1, Table 6); twice that is allowed.
+/// Largest difference of the risers of a flight: twice the 5 mm of the code (NZ D1/AS1, Table 6).
 constexpr double kUnevenRiser_m = 0.01;
 constexpr double kUnevenGoing_m = 0.015;
 constexpr double kMaxSigma_m = 0.03;  ///< largest height sigma of a single step
 constexpr double kLeastStand_m = 0.08;
 constexpr double kBeside_m = 0.25;
-/// Floor of a tread's sigma: errors that the cells of a map share.
+/// Smallest sigma of a tread, from errors that the cells of a map share.
 constexpr double kTreadSigma_m = 0.001;
 /// One sigma of a riser error that all treads of a flight share: matching errors change slowly over
 /// the image. Exact maps do not have this error.
 constexpr double kRiserShared_m = 0.001;
-/// A visible part below this share of a tread is a strip near the camera height, about 30 mm too
-/// low.
+/// If less than this share of a tread is visible, only a strip near the camera height is measured.
+/// It lies about 30 mm too low.
 constexpr double kStrip = 0.5;
 constexpr double kStripSigma_m = 0.03;
-constexpr double kAlike = 0.2;  ///< largest relative difference of the measured goings of a flight
+constexpr double kAlike = 0.2;  ///< largest relative difference of a flight's goings
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -72,9 +72,9 @@ Line regress(std::span<const double> y, std::span<const double> sigma) {
     return line;
 }
 
-/// Number of values, from the first on, that lie on one line within `uneven` and three sigma of the
-/// prediction from the earlier ones. The far end of a flight is measured worst; values off the line
-/// are not used.
+/// Returns the number of values, from the first on, that lie on one line. A value lies on the line
+/// within `uneven` and three sigma of the prediction from the earlier values. The far end of a
+/// flight is measured worst, so values off the line are not used.
 std::size_t steady(std::span<const double> y, std::span<const double> sigma, double uneven) {
     std::size_t count = std::min<std::size_t>(2, y.size());
     while (count < y.size()) {
@@ -104,7 +104,7 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 bool FlightFinder::may_be_step(const Edge& edge) const {
-    // Without visible lower ground an edge can only be the last one of a flight.
+    // An edge without visible lower ground can only be the last one of a flight.
     const bool is_step = !edge.lower_seen || is_step_of(config_, edge);
     return is_step && edge.height_m() <= config_.max_riser_m &&
            edge.length_m() >= config_.min_width_m;
@@ -151,7 +151,7 @@ void FlightFinder::lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) 
         }
         chain.insert(below ? chain.begin() : chain.end(), edges[i]);
         edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // another edge may be next now
+        i = 0;  // the next edge may have changed
     }
 }
 
@@ -211,17 +211,17 @@ bool FlightFinder::add_chain(std::span<const Edge> from_below,
     return flights.size() > before;
 }
 
-/// True for a single step that can be walked to straight, and stood on.
+/// True for a single step that the machine can walk to straight, and stand on.
 bool FlightFinder::is_step_ahead(const Edge& edge,
                                  FlightKind kind,
                                  const Vector2d& stance_m) const {
     const bool up = kind == FlightKind::up;
     if (!edge.lower_seen || (up ? !edge.lower_walkable : !edge.upper_walkable)) return false;
-    // A raised edge at the foot of a wall is no step, because nobody can stand on it.
+    // A raised edge at the foot of a wall is no step, because it leaves no room to stand on.
     if ((up ? edge.upper_depth_m : edge.lower_depth_m) < kLeastStand_m ||
         edge.height_sigma_m > kMaxSigma_m)
         return false;
-    // The way straight on must meet the edge: the side of a ramp is no stair.
+    // The straight way must meet the edge: the side of a ramp is no stair.
     const double along_m = (stance_m - edge.from_m).dot(edge.along());
     if (along_m < -kBeside_m || along_m > edge.length_m() + kBeside_m) return false;
     const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
@@ -233,7 +233,7 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
                               FlightKind kind,
                               const Vector2d& stance_m,
                               std::vector<Flight>& flights) const {
-    // Single low or high steps at the ends may be kerbs; a flight needs regular steps.
+    // A single low or high step at an end may be a kerb. A flight needs regular steps.
     std::vector<double> heights_m;
     for (const Edge& edge : from_below) heights_m.push_back(edge.height_m());
     if (median_of(heights_m) < config_.min_riser_m) return;
@@ -313,14 +313,14 @@ void FlightFinder::measure_risers(Flight& flight) {
         const bool measured_twice = i + 1 < edges.size();
         const double height_m =
             measured_twice ? 0.5 * (far_m(edges[i]) + near_m(edges[i + 1])) : far_m(edges[i]);
-        // Of the last visible tread of a flight up only a strip may be visible, near camera height.
+        // The last visible tread of a flight up may show only a strip near the camera height.
         const double depth_m = edges[i].upper_depth_m;
         if (up && !measured_twice && i > 0 && depth_m < 0.6 * flight.going_m) break;
         const bool strip = up && depth_m < kStrip * flight.going_m;
         add(height_m,
             strip ? std::hypot(edges[i].height_sigma_m, kStripSigma_m) : edges[i].height_sigma_m);
     }
-    if (level_m.size() < 2) {  // even the ground below the first edge was not seen
+    if (level_m.size() < 2) {  // no ground below the first edge was seen
         flight.riser_m = edges.front().height_m();
         flight.riser_sigma_m = edges.front().height_sigma_m;
         return;

@@ -11,13 +11,13 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr double kMargin_m = 0.05;  ///< left out at both ends of an edge
-/// Lower end of the used part of a face. A semi-global matcher approaches from the tread above and
-/// places the top of a face 0.2-0.4 px too far, its foot 0.1 px too near, and the rest within 0.05
-/// px.
+constexpr double kMargin_m = 0.05;  ///< length left out at both ends of an edge
+/// Lower end of the used part of a face, as a share of its height. A semi-global matcher places the
+/// top of a face 0.2-0.4 px too far, because it approaches from the tread above. It places the foot
+/// 0.1 px too near, and the rest within 0.05 px.
 constexpr double kLowest = 0.1;
 constexpr double kHighest = 0.6;
-constexpr double kNearest_m = 0.1;  ///< least distance of a face from the camera
+constexpr double kNearest_m = 0.1;  ///< smallest distance of a face from the camera
 constexpr double kGate_m = 0.2;     ///< points farther from the face belong to another object
 constexpr std::size_t kLeastSamples = 40;
 constexpr double kLeastShare = 0.3;
@@ -27,9 +27,9 @@ constexpr int kRounds = 3;
 
 }  // namespace
 
-/// Fills runs_m_ with the distances that the pixels of a face measure, across the edge. The pixels
-/// are those that show the face if it stands `at_m` from the camera. Returns their number, matched
-/// or not.
+/// Fills runs_m_ with the distances to a face, measured by its pixels, across the edge. The pixels
+/// are those that show the face if it stands `at_m` from the camera. Returns the number of these
+/// pixels, matched or not.
 std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double at_m) {
     const View& view = *terrain.view;
     const Eigen::Vector3d& camera_m = view.T_map_camera.translation_m;
@@ -68,8 +68,8 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
 
 namespace {
 
-/// How much farther away level ground behind an open riser appears in the upper half of the face's
-/// pixels than in the lower half.
+/// Returns the additional distance of level ground behind an open riser: the distance in the upper
+/// half of the face's pixels minus that in the lower half.
 double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
     const double foot_m = terrain.view->T_map_camera.translation_m.z() - edge.lower_m;
     const double quarter_m = 0.25 * (kHighest - kLowest) * edge.height_m();

@@ -12,9 +12,9 @@
 namespace surefoot::stairs {
 
 /// Places the risers of a flight up by the visible part of their faces in the current frame. The
-/// map's face points include the top of the face, which a matcher places too far away (goings came
-/// out 5 mm too long). Pixels are selected by the expected position of the face in the image, not
-/// by their disparity, so that noise does not bias the selection.
+/// map's face points include the top of the face. A matcher places this top too far away, which
+/// makes goings 5 mm too long. Pixels are selected by the expected position of the face in the
+/// image, not by their disparity, so noise does not bias the selection.
 class SightFaces {
   public:
     /// Moves the edges whose faces are visible. Does nothing without `Terrain::view` and
@@ -23,7 +23,7 @@ class SightFaces {
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< how far the old edge lies behind the face; 0 = open
+        double behind_m = 0.0;  ///< distance of the old edge behind the face; 0 = open riser
         double sigma_m = 0.0;
         bool open = false;
     };

@@ -10,18 +10,18 @@ namespace {
 
 constexpr double kRiserStep_m = 0.008;
 constexpr double kGoingStep_m = 0.02;
-constexpr double kShortestGoing_m = 0.2;  ///< limit of real stairs; a spiral has no equal steps
+constexpr double kShortestGoing_m = 0.2;  ///< limit of real stairs; spirals have unequal steps
 constexpr double kLongestGoing_m = 0.4;
-constexpr int kMostSteps = 8;  ///< deeper steps are not visible
+constexpr int kMostSteps = 8;  ///< more steps are never visible
 constexpr double kDeepest_m =
-    1.3;  ///< lowest floor below the first edge in the other hypotheses (slope, fall)
+    1.3;  ///< lowest floor below the first edge, for the hypotheses slope and fall
 constexpr double kFloorStep_m = 0.025;
-constexpr double kSteepest = 0.9;  ///< steepest slope; anything steeper counts as an immediate fall
+constexpr double kSteepest = 0.9;  ///< steepest slope; a steeper one counts as an immediate fall
 constexpr double kSlopeStep = 0.03;
-constexpr double kMostCost = 3.0;       ///< limit per bin: between two treads a bin fits neither
-constexpr double kLeastSigma_m = 0.01;  ///< errors that the bins of a tread share
-constexpr double kLeastGain = 16.0;     ///< least cost advantage of a flight over all alternatives
-constexpr int kRefinements = 4;         ///< each one halves the search steps
+constexpr double kMostCost = 3.0;       ///< limit per bin: a bin between two treads fits neither
+constexpr double kLeastSigma_m = 0.01;  ///< one sigma of the error that the bins of a tread share
+constexpr double kLeastGain = 16.0;     ///< smallest cost gain of a flight over all alternatives
+constexpr int kRefinements = 4;         ///< each refinement halves the search steps
 
 }  // namespace
 
@@ -36,8 +36,8 @@ double SightFlight::cost(const EvenFlight& flight, double most) const {
     return sum;
 }
 
-/// Cost of ground that falls from `first_run_m` on and then is level. A slope above kSteepest is a
-/// vertical fall.
+/// Returns the cost of ground that falls from `first_run_m` on and then is level. A slope above
+/// kSteepest is a vertical fall.
 double SightFlight::cost_of_slope_to(double floor_m,
                                      double slope,
                                      double first_run_m,
@@ -58,7 +58,7 @@ double SightFlight::cost_of_slope_to(double floor_m,
     return sum;
 }
 
-/// The least cost of ground that falls evenly or at once, and then is level.
+/// Returns the lowest cost of ground that falls evenly or at once, and then is level.
 double SightFlight::cost_of_no_flight() const {
     double least = std::numeric_limits<double>::infinity();
     for (double floor_m = kFloorStep_m; floor_m <= kDeepest_m; floor_m += kFloorStep_m)
@@ -71,7 +71,7 @@ double SightFlight::cost_of_slope(std::span<const SightBin> bins,
                                   double height_m,
                                   double first_run_m,
                                   double least_run_m) {
-    constexpr int kPlaces = 3;  // half a tread before the nosing and behind it
+    constexpr int kPlaces = 3;  // from half a tread before the nosing to half a tread behind
     constexpr double kPlace_m = 0.05;
     take(bins, height_m, first_run_m);
     double least = std::numeric_limits<double>::infinity();

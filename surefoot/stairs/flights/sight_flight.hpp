@@ -17,7 +17,7 @@ struct EvenFlight {
     double going_m = 0.0;
     double cost = 0.0;  ///< sum over the bins of |residual| in sigma, each at most 3
 
-    /// Number of steps that a ray (`run_per_m`: run over fall) passes before it meets the flight.
+    /// Number of steps that a ray with `run_per_m` (run / fall) passes before it meets the flight.
     /// Camera: `height_m` above the upper ground, `first_run_m` before the first nosing.
     [[nodiscard]] int steps_to(double run_per_m, double height_m, double first_run_m) const {
         int k = 0;
@@ -32,13 +32,13 @@ struct EvenFlight {
 class SightFlight {
   public:
     explicit SightFlight(const StairsConfig& config) : config_(config) {}
-    /// `height_m`: of the camera above the upper ground; `first_run_m`: from the camera to the
-    /// first nosing. Empty if a slope or a single fall explains the bins as well.
+    /// Camera: `height_m` above the upper ground, `first_run_m` before the first nosing. Returns
+    /// nothing if a slope or a single fall explains the bins as well.
     [[nodiscard]] std::optional<EvenFlight> fit(std::span<const SightBin> bins,
                                                 double height_m,
                                                 double first_run_m);
 
-    /// The least cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
+    /// The lowest cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
     /// The slope begins near the first nosing.
     [[nodiscard]] double cost_of_slope(std::span<const SightBin> bins,
                                        double height_m,
@@ -48,7 +48,7 @@ class SightFlight {
     [[nodiscard]] static double cost_of_bin(const SightBin& bin, double depth_m);
 
   private:
-    /// A bin with data; its ray is described by its run at the level of the upper ground.
+    /// A bin with data, and the direction of its ray.
     struct Point {
         double run_per_m = 0.0;  ///< horizontal run of the ray per metre that it falls
         double depth_m = 0.0;

@@ -9,11 +9,11 @@
 
 namespace surefoot::stairs {
 
-/// Column step: neighbouring columns of a disparity image carry the same information.
+/// Step between the used columns. Neighbouring columns of a disparity image are redundant.
 inline constexpr int kSightStride_px = 4;
-/// Correlation length of semi-global matching errors, in columns ...
+/// Correlation length of semi-global matching errors along a row [columns].
 inline constexpr double kSightColumns_px = 25.0;
-/// ... and in rows.
+/// Correlation length of semi-global matching errors along a column [rows].
 inline constexpr double kSightRows_px = 3.0;
 
 /// A component of the camera's rays along one axis. Rays are scaled to length 1 along the optical
@@ -37,9 +37,9 @@ struct SightComponent {
 
 /// The camera's rays, projected into the plane across an edge. The edge is a point in this plane.
 struct SightPlane {
-    SightComponent run;    ///< across the edge, away from the camera
-    SightComponent fall;   ///< downward
-    SightComponent aside;  ///< along the edge
+    SightComponent run;    ///< component across the edge, away from the camera
+    SightComponent fall;   ///< component downward
+    SightComponent aside;  ///< component along the edge
 
     SightPlane(const View& view, const Eigen::Vector2d& way, const Eigen::Vector2d& along)
         : run(view, {way.x(), way.y(), 0.0}),
@@ -50,7 +50,7 @@ struct SightPlane {
         int first = 0;
         int last = -1;  ///< smaller than `first` = empty
     };
-    /// The rows of column `u_px` whose ray steepness lies between both values (fall over run).
+    /// The rows of column `u_px` whose rays have a steepness (fall / run) between both values.
     [[nodiscard]] Rows rows_between(double steepness_a,
                                     double steepness_b,
                                     double u_px,
@@ -62,7 +62,7 @@ struct SightPlane {
         // in range: finite, as checked, and clamped to the rows of the image
         return {static_cast<int>(std::clamp(std::min(a, b), -1.0, most) + 1.0),
                 std::min(
-                    static_cast<int>(std::clamp(std::max(a, b), -1.0, most)),  // in range: the same
+                    static_cast<int>(std::clamp(std::max(a, b), -1.0, most)),  // in range: as above
                     height_px - 1)};
     }
     /// The row of column `u_px` whose ray has this steepness; infinite or NaN = none.

@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kBefore_rad = 0.035;  ///< ground above the edge that is included
-constexpr double kBehind_rad = 0.3;    ///< three steps of 0.15 / 0.31 m seen from 0.7 m
-constexpr double kMargin_m = 0.1;      ///< the ends of an edge are less certain
+constexpr double kBefore_rad = 0.035;  ///< angle of the ground above the edge that is included
+constexpr double kBehind_rad = 0.3;    ///< shows three steps of 0.15 / 0.31 m from 0.7 m away
+constexpr double kMargin_m = 0.1;      ///< length left out at both ends, which are less certain
 constexpr std::size_t kLeastSamples = 6;
 constexpr double kLeastSigma_m = 0.004;
 constexpr double kSigmaOfMedian = 1.25;
@@ -33,9 +33,9 @@ void SightProfile::gather(const Terrain& terrain,
     const SightPlane plane(view, down, along);
     const double begin_m = (edge.from_m - view.T_map_camera.translation_m.head<2>()).dot(along);
     const double length_m = edge.length_m();
-    const double steep = height_m / distance_m;  // ray that meets the edge
+    const double steep = height_m / distance_m;  // steepness of the ray that meets the edge
     bin_rad_ = kSightBin_px / view.fy_px;
-    // Steepness of the ray that is flatter by the angle with this tangent.
+    // Returns the steepness of the ray that is flatter by the angle with this tangent.
     const auto steepness_at = [&](double tangent) {
         return (steep - tangent) / (1.0 + steep * tangent);
     };

@@ -20,10 +20,10 @@ struct SightBin {
 };
 
 /// The depths that the camera sees behind an edge down, from steep rays to flat ones, in the plane
-/// across the edge. There each nosing is a point: a tread is a run of constant depth, and a nosing
-/// is a change of depth, for any camera roll and edge direction. This is the v-disparity image
-/// (Labayrade et al. 2002), turned to the edge. It shows strips of five pixels, which the map omits
-/// because it drops pixels beside depth jumps.
+/// across the edge. In this plane each nosing is a point. A tread is a run of constant depth and a
+/// nosing is a change of depth, for any camera roll and edge direction. This is the v-disparity
+/// image (Labayrade et al. 2002), turned to the edge. It shows strips of five pixels, which the map
+/// omits because it drops pixels beside depth jumps.
 class SightProfile {
   public:
     /// Computes the bins, half a pixel each. Empty without `Terrain::view` and

@@ -10,14 +10,14 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr double kGrid_m = 0.005;  ///< grid of the tested depths
+constexpr double kGrid_m = 0.005;  ///< spacing of the tested depths
 constexpr double kHighest_m = -0.03;
 constexpr double kDeepest_m = 1.2;
 // in range: constants
 constexpr int kDepths = static_cast<int>((kDeepest_m - kHighest_m) / kGrid_m) + 1;
-constexpr int kLeastRise = 10;      ///< least riser in units of kGrid_m; less is one tread
-constexpr float kStepCost = 8.0F;   ///< in sigma of a bin: a step must explain at least this much
-constexpr float kMostCost = 3.0F;   ///< limit per bin: between two treads a bin fits neither
+constexpr int kLeastRise = 10;      ///< smallest riser in units of kGrid_m; less is one tread
+constexpr float kStepCost = 8.0F;   ///< a step must reduce the cost by at least this [sigma]
+constexpr float kMostCost = 3.0F;   ///< limit per bin: a bin between two treads fits neither
 constexpr int kLeastSupport = 3;    ///< 1.5 pixels
 constexpr double kFirst_m = 0.08;   ///< largest distance of the first nosing from the known edge
 constexpr double kUneven_m = 0.03;  ///< largest difference of risers and of goings in a flight
@@ -90,7 +90,7 @@ void SightSteps::measure(std::span<const SightBin> bins, Level& level) const {
         std::hypot(std::sqrt(kSightRows_px / kSightBin_px / w), kBlur_m / level.support);
 }
 
-/// The bin at which the depth passes the middle between two levels.
+/// Returns the bin at which the depth passes the middle between two levels.
 double SightSteps::nose_bin(std::span<const SightBin> bins,
                             const Level& upper,
                             const Level& lower) {
@@ -111,7 +111,7 @@ double SightSteps::nose_sigma_m(double run_m, double below_m) const {
     return kNose_bins * (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
 }
 
-/// `height_m`: of the camera above the upper ground.
+/// Finds the nosings. `height_m` is the height of the camera above the upper ground.
 void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     const auto steepness_at = [&](double bin) {
         const auto k = std::min(saturated_integer<std::size_t>(std::floor(bin)), bins.size() - 2);
@@ -128,7 +128,7 @@ void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     }
 }
 
-/// Number of steps, from the first on, that form one regular flight.
+/// Returns the number of steps, from the first on, that form one regular flight.
 std::size_t SightSteps::regular_steps() const {
     std::size_t steps = 1;
     double riser_m = levels_[1].depth_m - levels_[0].depth_m;
@@ -195,8 +195,8 @@ double SightSteps::log_ratio(std::span<const SightBin> bins, double height_m, st
                 SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)], levels_[level].depth_m);
     const double slope = even_.cost_of_slope(
         bins.subspan(begin, end - begin), height_m, noses_.front().run_m, 2.0 * config_.smear_m);
-    // Bins within kSightRows_px share one error. BIC: a step has two parameters (position, depth),
-    // a slope has three in total.
+    // Bins within kSightRows_px share one error. The BIC counts two parameters per step (position,
+    // depth) and three parameters for a slope.
     const double independent = static_cast<double>(end - begin) * kSightBin_px / kSightRows_px;
     const double parameters = 2.0 * static_cast<double>(steps) - 3.0;
     return (slope - cost) * kSightBin_px / kSightRows_px -
@@ -231,7 +231,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     find_noses(bins, height_m);
     if (std::abs(noses_.front().run_m - distance_m) > kFirst_m) return;
     std::size_t steps = regular_steps();
-    // More levels than steps: the matcher blurred a step.
+    // There are more levels than steps: the matcher blurred a step.
     if (steps < kPlain && levels_.size() > steps + 1) steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
     const double log_step_ratio = log_ratio(bins, height_m, steps);
@@ -239,7 +239,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     out.assign(known.begin(), known.end());
     const std::size_t last = known.size() - 1;
     const Edge seen = with_lower(known.back(), last);
-    // A single step may be misread: deeper ground in the map has priority.
+    // A single step may be a wrong measurement, so deeper ground in the map has priority.
     const bool is_deeper = seen.height_m() >= known.back().height_m() - 2.0 * seen.height_sigma_m;
     if (steps > 1 || is_deeper) out.back() = seen;
     if (!(first.height_m() > 0.0)) {  // the map does not show where the edge lies

@@ -18,9 +18,9 @@ namespace surefoot::stairs {
 class SightSteps {
   public:
     explicit SightSteps(const StairsConfig& config) : config_(config), even_(config) {}
-    /// Writes the edges of a flight down, from the top: the `known` edges (at least one), with the
-    /// visible ground below the last one, then further edges. Empty if fewer steps are visible than
-    /// known.
+    /// Writes the edges of a flight down, from the top: the `known` edges (at least one), then
+    /// further edges. The last known edge gets the visible ground below it. Writes nothing if fewer
+    /// steps are visible than known.
     void find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out);
 
   private:
@@ -49,7 +49,7 @@ class SightSteps {
     [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
                                              double height_m,
                                              std::size_t steps);
-    /// Log likelihood ratio: the first `steps` steps over ground that slopes.
+    /// Log likelihood ratio of the first `steps` steps to ground that slopes.
     [[nodiscard]] double log_ratio(std::span<const SightBin> bins,
                                    double height_m,
                                    std::size_t steps);
@@ -60,7 +60,7 @@ class SightSteps {
     SightFlight even_;
     double bin_rad_ = 0.0;
     std::vector<float> cost_;
-    std::vector<float> cheapest_;  ///< least cost over this level and all higher levels
+    std::vector<float> cheapest_;  ///< lowest cost over this level and all higher levels
     std::vector<std::int16_t> from_;
     std::vector<std::int16_t> cheapest_level_;
     std::vector<Level> levels_;

@@ -13,19 +13,20 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kReach_m = 2.5;  ///< on either side of the seed
+constexpr double kReach_m = 2.5;  ///< depth of the examined ground on either side of the seed
 constexpr int kRounds = 3;
 constexpr double kLeastTread_m = 0.05;
 constexpr double kLevel_m = 0.015;  ///< largest difference of neighbouring slices of a tread
 /// Edge points farther from the border of two treads belong to another object.
 constexpr double kNear_m = 0.07;
-constexpr double kFar_m = 0.1;   ///< the face of a riser lies nearer to the end of its tread
-constexpr double kSide_m = 0.4;  ///< a step may be wider than the seed by this on either side
+constexpr double kFar_m = 0.1;   ///< largest distance of a riser's face from its tread's end
+constexpr double kSide_m = 0.4;  ///< largest extension of a step beyond the seed, on either side
 /// A step whose extent is less than this share of both neighbours gets their extent.
 constexpr double kRagged = 0.5;
-/// Tolerance for the ground on which the seed was measured.
+/// Tolerance of the height of the ground on which the seed was measured.
 constexpr double kTread_m = 0.03;
-/// Steps of a flight differ by 5 mm by code (NZ D1/AS1); badly built ones differ more.
+/// Largest difference of the steps of a flight. The code allows 5 mm (NZ D1/AS1); badly built steps
+/// differ more.
 constexpr double kUneven_m = 0.02;
 
 }  // namespace
@@ -52,7 +53,7 @@ void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
     }
 }
 
-/// Number of slices from `first` on that are level with each other.
+/// Returns the number of slices, from `first` on, that are level with each other.
 int StepFitter::level_run(const EdgeProfiler::Slices& all, int first) {
     double sum_m = all.at(first).height_m * all.at(first).known_share;
     double weight = all.at(first).known_share;
@@ -100,7 +101,7 @@ void StepFitter::join_treads() {
 namespace {
 
 double place_between(const auto& upper, const auto& lower) {
-    // Beside an occluded region the edge is the end of the upper tread.
+    // At an occluded region the edge is the end of the upper tread.
     return std::min(0.5 * (upper.end_m + lower.begin_m), upper.end_m + kNear_m);
 }
 
@@ -112,8 +113,8 @@ void StepFitter::find_steps(const Edge& seed) {
     const auto at = [&](int k) -> const Tread& { return treads_[static_cast<std::size_t>(k)]; };
     int upper = -1;
     int lower = treads;
-    // Behind a board without a riser the ground below is visible. Of the treads about the line the
-    // two nearest count, not the ground on which the seed was measured.
+    // Behind a board without a riser the ground below is visible. So the two treads nearest to the
+    // line count, not the ground on which the seed was measured.
     const bool open = seed.height_m() > config_.max_riser_m;
     for (int k = 0; k < treads; ++k) {
         const double rise_m = upper < 0 ? 0.0 : at(upper).height_m - at(k).height_m;
@@ -136,8 +137,8 @@ void StepFitter::find_steps(const Edge& seed) {
     }
 }
 
-/// Adds one step up (-1) or down (+1) from a tread, if it is proven. An apparent short tread in
-/// between is a badly seen riser.
+/// Adds one step up (-1) or down (+1) from a tread, if the treads prove it. An apparent short tread
+/// in between is a badly measured riser.
 bool StepFitter::grow(int& from, int way) {
     const bool up = way < 0;
     const int treads = static_cast<int>(treads_.size());

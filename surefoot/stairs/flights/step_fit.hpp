@@ -35,7 +35,7 @@ class StepFitter {
         double scatter_m = 0.0;  ///< standard deviation of a cell
     };
     struct Step {
-        double at_m = 0.0;  ///< position of its edge: distance from the seed's line, down
+        double at_m = 0.0;  ///< distance of its edge from the seed's line, positive downward
         Tread upper;
         Tread lower;
         double from_m = 0.0;  ///< extent along the edge, counted from the begin of the seed

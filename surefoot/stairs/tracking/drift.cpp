@@ -7,7 +7,7 @@
 namespace surefoot::stairs {
 namespace {
 
-/// Larger eigenvalue of the upper left 2 x 2 part of a symmetric matrix.
+/// Returns the larger eigenvalue of the upper left 2 x 2 part of a symmetric matrix.
 double worst_of(const Eigen::Matrix3d& c) {
     const double half_difference = 0.5 * (c(0, 0) - c(1, 1));
     return 0.5 * (c(0, 0) + c(1, 1)) + std::hypot(half_difference, c(0, 1));
@@ -27,7 +27,7 @@ void Drift::add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odo
 }
 
 bool Drift::is_bounded() const {
-    constexpr double kMost = 1.0;  // (1 m)^2, (1 rad)^2: beyond, neighbouring edges are ambiguous
+    constexpr double kMost = 1.0;  // (1 m)^2, (1 rad)^2; with more, edges are ambiguous
     const double most =
         std::max(std::max(horizontal_var_m2, height_var_m2), std::max(yaw_var_rad2, tilt_var_rad2));
     // std::max may drop a NaN, so test the sum.

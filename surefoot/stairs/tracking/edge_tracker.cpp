@@ -17,21 +17,23 @@ using Eigen::Vector2d;
 
 constexpr double kGate_sigma = 3.4;
 /// Lower limits of the match gates, because a distant observation is off by more than its sigma.
-/// Half of the shortest going and half of the lowest riser, so that the next step is another edge.
+/// They are half of the shortest going and half of the lowest riser, so the next step never
+/// matches.
 constexpr double kAcross_m = 0.075;
 constexpr double kHeight_m = 0.04;
 constexpr double kAngle_rad = 20.0 * kRadPerDeg;
-/// Upper limits: edges farther apart never match, for any drift of the machine.
+/// Upper limits of the match gates. Edges farther apart never match, for any drift of the machine.
 constexpr double kMaxAcross_m = 0.25;
 constexpr double kMaxHeight_m = 0.08;
 constexpr double kMaxAngle_rad = 40.0 * kRadPerDeg;
-constexpr double kMinOverlap = 0.3;  ///< share of the shorter edge
+constexpr double kMinOverlap = 0.3;  ///< smallest overlap, as a share of the shorter edge
 constexpr double kPieceAcross_m = 0.03;
 /// An unmatched edge this close to a matched one is the same edge. Two edges of one upper ground
 /// that fall in one direction are never so close.
 constexpr double kDouble_m = 0.2;
 constexpr double kCovered = 0.7;
-/// Ends move by this much between observations: cells, and occluded regions.
+/// The ends of an edge move by this much between observations, because of cells and occluded
+/// regions.
 constexpr double kEnds_m = 0.1;
 constexpr double kFarthest_m = 100.0;  ///< beyond every map; used if there is no stance
 
@@ -45,7 +47,7 @@ double gate(double sigma, double floor, double ceiling) {
     return std::clamp(kGate_sigma * sigma, floor, ceiling);
 }
 
-/// Middle of the part that two edges share, on the second edge.
+/// Returns the middle of the part that two edges share, on the second edge.
 Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     const Vector2d along = b.along();
     const double from_m = (a.from_m - b.from_m).dot(along);
@@ -55,7 +57,7 @@ Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     return b.from_m + 0.5 * (first_m + last_m) * along;
 }
 
-/// Difference of the lower grounds, without the part that a bound leaves open.
+/// Returns the height difference of the lower grounds, without the part that a bound leaves open.
 double lower_difference_m(const Edge& a, const Edge& b) {
     const double difference_m = b.lower_m - a.lower_m;
     if (a.lower_seen && b.lower_seen) return std::abs(difference_m);
@@ -65,7 +67,7 @@ double lower_difference_m(const Edge& a, const Edge& b) {
     return 0.0;
 }
 
-/// The disagreement of two edges in sigma. Empty if they cannot be the same edge.
+/// Returns the disagreement of two edges in sigma. Empty if they cannot be the same edge.
 std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const Edge& edge = track.edge;
     if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m)
@@ -143,7 +145,7 @@ void take_height(const Edge& observation,
     double height_m = old_height_m;
     const double var_m2 = observation.height_sigma_m * observation.height_sigma_m;
     if (observation.lower_seen && !edge.lower_seen)
-        track.height = {};  // until now only a bound was known
+        track.height = {};  // only a bound was known so far
     if (observation.lower_seen) {
         const double higher_m = observation.height_m() - old_height_m;
         height_m += higher_m * track.height.take(var_m2, higher_m, most_observations);
@@ -206,7 +208,8 @@ void EdgeTracker::pair_up(std::span<const ObservedEdge> seen) {
         for (std::size_t s = 0; s < seen.size(); ++s)
             if (const auto cost = cost_of(tracks_[t], seen[s].edge))
                 pairs_.push_back({*cost, t, s});
-    // Takes the best pair first, then the best of the rest: each pair is the best of both edges.
+    // Takes the pair with the lowest cost first, then the lowest of the rest. So each pair is the
+    // best for both of its edges.
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
         if (a.cost != b.cost) return a.cost < b.cost;
         return a.track != b.track ? a.track < b.track : a.seen < b.seen;
@@ -233,7 +236,7 @@ void EdgeTracker::take_pieces(std::span<const ObservedEdge> seen) {
         EdgeTrack& track = tracks_[pair.track];
         const double shorter_m = std::min(piece.length_m(), taken.length_m());
         if (overlap_m(taken, piece) > kMinOverlap * shorter_m)
-            continue;  // a parallel edge beside it
+            continue;  // the piece is a parallel edge
         if (std::abs(track.edge.below_m(piece.middle_m())) > kPieceAcross_m) continue;
         grow(piece, track.edge);
         if (seen[pair.seen].drop) {
@@ -276,7 +279,7 @@ void EdgeTracker::take(const ObservedEdge& seen,
     edge.upper_walkable = observation.upper_walkable;
     edge.lower_walkable = observation.lower_walkable;
     edge.open = observation.open;
-    // From the last observation that saw the lower ground.
+    // The lower ground comes from the last observation that saw it.
     if (!std::isnan(observation.log_step_ratio)) edge.log_step_ratio = observation.log_step_ratio;
     edge.hidden = observation.hidden;
     name(seen, config_, track);
@@ -291,8 +294,8 @@ void EdgeTracker::take(const ObservedEdge& seen,
     track.shown = true;
 }
 
-/// Grows at once. A part beyond the observation's ends fades. For a drop it fades only if the
-/// ground there is level, or if the part is within the usual motion of ends.
+/// An edge grows at once. A part beyond the observation's ends fades. The part of a drop fades only
+/// if the ground there is level, or if the part is within the usual motion of ends.
 void EdgeTracker::take_ends(const Edge& observation,
                             const Terrain& terrain,
                             EdgeTrack& track) const {
@@ -384,7 +387,7 @@ bool EdgeTracker::is_over(const Terrain& terrain, const EdgeTrack& track) const 
            (track.shown ? config_.missed_observations : config_.first_observations);
 }
 
-/// True if observations find another edge just beside this one instead of this one.
+/// True if observations find another edge just beside the tracked edge instead of it.
 bool EdgeTracker::is_now_another(const EdgeTrack& track) {
     if (track.missed < config_.level_observations) return false;
     for (EdgeTrack& other : tracks_) {

@@ -37,8 +37,8 @@ struct EdgeTrack {
     bool kerb = false;
     bool kerb_down = false;
     int kerb_observations = 0;
-    int kerb_missed = 0;         ///< consecutive observations that found it, but not as a kerb
-    int missed = 0;              ///< consecutive observations that did not find it
+    int kerb_missed = 0;         ///< consecutive observations that found the edge, but no kerb
+    int missed = 0;              ///< consecutive observations that did not find the edge
     int place_known = 0;         ///< misses in which the ground at the edge was known
     int level_observations = 0;  ///< consecutive observations that find level or smooth ground
 };
@@ -62,7 +62,7 @@ class EdgeTracker {
         : config_(config), least_log_ratio_(std::log(evidence.drop_ratio)), evidence_(evidence) {
         tracks_.reserve(kMaxEdges);
     }
-    /// `first`: no earlier observation exists, so no confirmation by a second one is possible.
+    /// `first`: true for the very first observation, which needs no confirmation by a second one.
     void update(std::span<const ObservedEdge> seen,
                 const Terrain& terrain,
                 std::int64_t time_ns,
@@ -71,7 +71,7 @@ class EdgeTracker {
                 IdCounter& ids);
     void forget() { tracks_.clear(); }
 
-    /// Sorted by distance from the stance.
+    /// The tracked edges, sorted by distance from the stance.
     [[nodiscard]] std::span<const EdgeTrack> tracks() const { return tracks_; }
     [[nodiscard]] const EdgeTrack* find(std::uint32_t id) const;
     /// The track id of each edge in the last call; 0 = too far away to be tracked.
@@ -93,7 +93,7 @@ class EdgeTracker {
               std::int64_t time_ns,
               EdgeTrack& track);
     void take_ends(const Edge& seen, const Terrain& terrain, EdgeTrack& track) const;
-    /// Returns the new id, or 0 if all places are taken by nearer edges.
+    /// Returns the new id, or 0 if nearer edges occupy all tracks.
     std::uint32_t begin(const ObservedEdge& seen,
                         const Terrain& terrain,
                         std::int64_t time_ns,

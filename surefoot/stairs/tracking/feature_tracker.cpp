@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 /// Values of one observation are equal except for rounding.
 constexpr double kSame_m = 1e-3;
 
-/// The edge of a drop or kerb.
+/// Returns the edge of a drop or kerb.
 Edge edge_of(const LineFeature& line) {
     const Vector2d way(std::cos(line.pose.yaw_rad), std::sin(line.pose.yaw_rad));
     const bool goes_down = line.height_m < 0.0;
@@ -78,7 +78,7 @@ void FeatureTracker::update(const TerrainFeatures& found,
 }
 
 /// Collects the edges of an observation. An edge keeps its identity when its class changes, so
-/// drops, kerbs and steps are looked up among the edges; a missing one is added.
+/// drops, kerbs and steps are looked up among the edges. An edge that is missing there is added.
 void FeatureTracker::gather(const TerrainFeatures& found) {
     seen_.clear();
     for (const Edge& edge : found.edges) seen_.push_back({.edge = edge});

@@ -20,29 +20,29 @@ struct Moment {
     Drift drift;
 };
 
-/// Tracks features over time. Observations (FeatureFinder) of one place are joined under one id and
-/// reported as their mean. In odom.
+/// Tracks features over time, in odom. Joins the observations (FeatureFinder) of one feature under
+/// one id and reports their mean.
 ///
-/// - Two edges are the same if position across, direction, both heights and a shared length
-///   agree within 3.4 sigma, or within half a step if the sigmas are smaller. Flights match by
-///   their edges, doors and sills by their position.
+/// - Two edges are the same if they agree within 3.4 sigma, or within half a step if the sigmas
+///   are smaller. Compared: position across, direction, both heights and a shared length.
+///   Flights match by their edges, doors and sills by their position.
 /// - A mean is steadier than its observations, but its sigma is not below the best one
 ///   (ObservationWeight), because all observations read one map. Without a match the sigmas
 ///   grow with the drift.
 /// - Drops are reported from the first observation on, never farther away than the current
-///   observation plus its sigma, and at full length. A drop ends after `level_observations`
-///   consecutive observations of level or smooth ground on both sides, or of another edge just
-///   beside it, or when it leaves the map. A drop of the current observation is always reported
-///   (of more than EdgeTracker::kMaxEdges the nearest).
+///   observation plus its sigma, and at full length. A drop ends when it leaves the map. It also
+///   ends after `level_observations` consecutive observations of level or smooth ground on both
+///   sides, or of another edge just beside it. Every drop of the current observation is reported
+///   (the nearest EdgeTracker::kMaxEdges, if there are more).
 /// - All other features need two observations, because a wrong match rarely repeats its
-///   position. (The very first observation needs none.) They end after `missed_observations`
-///   consecutive observations that see the place but not the feature.
-/// - The number of steps is the one most of the last observations report. A going depends on
-///   visible riser faces, whose errors change between frames, so RobustMean may lower its
-///   sigma.
+///   position. (The very first observation needs no second one.) They end after
+///   `missed_observations` consecutive observations that see their location without them.
+/// - The last observations vote on the number of steps. A going depends on visible riser
+///   faces. Their errors change between frames, so the sigma of RobustMean may be below that
+///   of its observations.
 ///
 /// Kerbs and drops have the ids of their edges. No id is used twice, not even after `forget`.
-/// Observations of one place and size stop allocating after the first few. Not thread-safe.
+/// With one map size and number of features, only the first few calls allocate. Not thread-safe.
 class FeatureTracker {
   public:
     explicit FeatureTracker(const TrackingConfig& config);
@@ -71,7 +71,7 @@ class FeatureTracker {
     IdCounter ids_;
     bool nothing_yet_ = true;
     std::vector<ObservedEdge> seen_;
-    std::vector<Flight> seen_flights_;  ///< with the ids of their edges; the memory is reused
+    std::vector<Flight> seen_flights_;  ///< flights with their edges' ids; the memory is reused
     std::size_t flight_count_ = 0;
 };
 

@@ -15,12 +15,15 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and occlusion; equal for all
-/// One sigma of the going error that all observations share: texture biases the matcher each time.
+constexpr double kWidthSigma_m = 0.05;  ///< one sigma from noise and occlusion at the ends of edges
+/// One sigma of the going error that all observations share. Texture biases the matcher in the same
+/// way each time.
 constexpr double kGoingShared_m = 0.0015;
-/// Least lead in votes to change the number of steps: two alternating numbers do not change it.
+/// Smallest lead in votes that changes the number of steps. Two alternating numbers do not change
+/// it.
 constexpr float kLead = 1.0F;
-/// Edges this many risers off the flight's line belong to another flight, behind a landing.
+/// Edges that lie this many risers off the line of a flight belong to another flight, behind a
+/// landing.
 constexpr double kFarEnd_risers = 1.5;
 
 int common_edges(const Flight& a, const Flight& b) {
@@ -89,8 +92,8 @@ int refresh(const EdgeTracker& edges, Flight& flight) {
     return left;
 }
 
-/// Number of steps of `flight` before the separately observed far end `end` begins. 0 = `end` is
-/// another flight.
+/// Returns the number of steps of `flight` before the separately observed far end `end`. 0 = `end`
+/// is another flight.
 int steps_before(const Flight& end, const Flight& flight) {
     if (end.kind != flight.kind || flight.steps < 2 || !(flight.going_m > 0.0)) return 0;
     const Edge& first = flight.edges.front();
@@ -108,7 +111,7 @@ int steps_before(const Flight& end, const Flight& flight) {
     return steps <= static_cast<int>(flight.edges.size()) ? std::max(steps, 0) : 0;
 }
 
-/// Replaces the steps at the far end of the flight by the separately observed ones.
+/// Replaces the steps at the far end of the flight by the separately observed steps.
 void take_far_end(const Flight& end, int steps_before, Flight& flight) {
     flight.edges.resize(static_cast<std::size_t>(steps_before));
     flight.edges.insert(flight.edges.end(), end.edges.begin(), end.edges.end());
@@ -154,7 +157,7 @@ void FlightTracker::update(std::span<const Flight> seen,
             continue;
         }
         FlightTrack& track = add();
-        // `take` fills it; until then no observation has found it.
+        // `take` fills the new track. Until then no observation has found it.
         track.flight.tracked = {.id = ids.next(), .observations = 0};
         track.flight.going_m = track.flight.riser_m = track.flight.width_m = std::nan("");
         take(seen[i], time_ns, track);

@@ -19,16 +19,16 @@ namespace surefoot::stairs {
 struct FlightTrack {
     static constexpr int kMaxSteps = 64;
 
-    /// From the last observation with `flight.steps` steps, with the means of all observations.
+    /// Last observed flight with `flight.steps` steps; its values are means of all observations.
     Flight flight;
     ObservationWeight riser;
     RobustMean going;
     ObservationWeight width;
-    /// How often each number of steps was found; recent observations weigh most.
+    /// Votes for each number of steps; recent observations weigh most.
     std::array<float, kMaxSteps + 1> votes{};
     bool shown = false;
     int missed = 0;
-    int place_seen = 0;  ///< observations since the last match that see its place
+    int place_seen = 0;  ///< observations since the last match that see its location
 };
 
 /// Tracks flights. Two flights match if most of their edges match. Rules: see FeatureTracker.

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNear_m = 0.3;  ///< two doors are never so close to each other
+constexpr double kNear_m = 0.3;  ///< largest distance of a match; doors are farther apart
 
 double square(double value) {
     return value * value;

@@ -33,10 +33,10 @@ class LocatedFeatureTracker {
   private:
     struct Track {
         Place place;
-        ObservationWeight across;  ///< doors: width; sills: position across
-        ObservationWeight height;  ///< height of the sill
+        ObservationWeight across;  ///< weight of a door's width or of a sill's position across
+        ObservationWeight height;  ///< weight of the height of the sill
         bool shown = false;
-        int place_seen = 0;  ///< consecutive observations that see the place but not the feature
+        int place_seen = 0;  ///< consecutive observations that see its location but not it
     };
 
     void take(const Place& seen, std::int64_t time_ns, Track& track) const;

@@ -23,7 +23,7 @@ class ObservationWeight {
   private:
     bool empty_ = true;
     double mean_var_ =
-        0.0;  ///< as if observations were independent; at least best / most_observations
+        0.0;  ///< variance of the mean for independent errors; at least best_var_ / (most - 1)
     double best_var_ = 0.0;
     double scatter_var_ = 0.0;
 };

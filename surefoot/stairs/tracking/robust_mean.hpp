@@ -8,10 +8,10 @@ namespace surefoot::stairs {
 /// Mean of the last observations of a quantity. Their errors change between observations, and some
 /// are outliers in spite of a small stated sigma.
 ///
-/// Inliers lie within three of their sigmas of the weighted median (weights 1 / sigma). The mean is
-/// their minimum-variance mean. One outlier does not move it, five in thirty hardly do. Its sigma
-/// can be below those of the observations (unlike ObservationWeight): the larger one of the
-/// propagated sigma and the scatter, plus the shared error.
+/// Inliers lie within three of their sigmas of the weighted median (weights 1 / sigma). The result
+/// is the minimum-variance mean of the inliers. One outlier does not move it; five of thirty hardly
+/// do. Unlike with ObservationWeight, its sigma can be below those of the observations. This sigma
+/// is the larger one of propagated sigma and scatter, plus the shared error.
 class RobustMean {
   public:
     static constexpr int kMostObservations = 31;

@@ -14,29 +14,30 @@ void TrackingConfig::describe(ConfigVisitor& visitor) {
                     1,
                     RobustMean::kMostObservations,
                     "largest number of observations in the mean going of a flight");
-    visitor.integer("level_observations",
-                    level_observations,
-                    1,
-                    1000,
-                    "number of consecutive observations of level ground that end a drop");
+    visitor.integer(
+        "level_observations",
+        level_observations,
+        1,
+        1000,
+        "number of consecutive observations of level ground at a drop after which the drop ends");
     visitor.integer("missed_observations",
                     missed_observations,
                     1,
                     1000,
-                    "number of consecutive observations that see the location of a feature but not "
-                    "the feature, after which the feature ends (drops excepted)");
+                    "number of consecutive observations without a feature, with its location in "
+                    "view, after which the feature ends; drops do not end this way");
     visitor.integer("first_observations",
                     first_observations,
                     1,
                     1000,
-                    "number of consecutive observations that see the location of a feature but not "
-                    "the feature, after which a feature ends that was found only once");
+                    "number of consecutive observations without a feature, with its location in "
+                    "view, after which it ends if it was found only once");
     visitor.number(
         "steps_observations",
         steps_observations,
         1.0,
         1000.0,
-        "number of observations over which the most frequent number of steps of a flight is taken");
+        "memory, in observations, of the majority vote on the number of steps of a flight");
 }
 
 }  // namespace surefoot::stairs

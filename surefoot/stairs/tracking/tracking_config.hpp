@@ -6,20 +6,20 @@
 
 namespace surefoot::stairs {
 
-/// Settings of FeatureTracker. One observation = one call = one mapped frame.
+/// Settings of FeatureTracker. Each call with one mapped frame is one observation.
 struct TrackingConfig {
-    /// A mean covers at most so many observations. The map already averages: more observations
-    /// steady it no further, and the mean lags behind an approaching feature.
+    /// A mean covers at most this many observations. The map already averages: further observations
+    /// do not steady the mean, and the mean lags behind an approaching feature.
     double mean_observations = 4.0;
     /// The going of a flight averages more: it depends on the visible riser faces. Their errors
     /// change between observations, and a going neither drifts nor lags.
     int going_observations = RobustMean::kMostObservations;
     int level_observations =
-        5;  ///< in a row that see level ground where a drop was, until it is gone
+        5;  ///< consecutive observations of level ground after which a drop ends
     int missed_observations = 10;  ///< consecutive misses in view that end a feature (not a drop)
     int first_observations = 3;    ///< consecutive misses that end a feature found only once
     double steps_observations =
-        10.0;  ///< the number of steps is the one found most often in so many
+        10.0;  ///< number of observations that vote on the steps of a flight
 
     void describe(ConfigVisitor& visitor);
 };
