@@ -144,7 +144,8 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     if (!start_bundle(bundle)) return failed(kUnexplained);
     const std::vector<double> start_rms = view_rms_px(bundle);
     for (std::size_t v = 0; v < kept.size(); ++v)
-        if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose fits it");
+        if (std::isnan(start_rms[v]))
+            reject(result.rejected, kept[v], "no pose of the board fits this view");
     const std::optional<RobustFit> fit = solve_robustly(bundle, options.limits);
     if (!fit) return failed(kUnexplained);
     reject_dropped(*fit, kept, result.rejected);
@@ -164,14 +165,15 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
         covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
     if (const std::string found = doubt(result, options, variety); !found.empty()) {
-        return failed(fmt::format(
-            "calibration: {}; the boards differ by {:.1f} deg in tilt (at least {:.0f} are needed) "
-            "and {:.2f} times in distance: show the board tilted by 20 to 40 deg about both axes, "
-            "near and far",
-            found,
-            variety.tilt_deg,
-            options.least_tilt_deg,
-            variety.distance_ratio));
+        return failed(
+            fmt::format("calibration: {}; the views differ by {:.1f} deg in tilt (at least {:.0f} "
+                        "deg are needed) and by a factor of {:.2f} in the distance of the board: "
+                        "show the board tilted by 20 to 40 deg about both axes, "
+                        "near and far",
+                        found,
+                        variety.tilt_deg,
+                        options.least_tilt_deg,
+                        variety.distance_ratio));
     }
     result.rms_px = rms_px(bundle);
     result.sigma_px = fit->sigma_px;

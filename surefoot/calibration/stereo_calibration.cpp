@@ -115,9 +115,11 @@ Result<MonoCalibration> calibrate_camera(const char* name,
 }
 
 std::string scatter_text(const PoseDistance& off) {
-    return fmt::format("its relative pose is {:.4f} m and {:.2f} deg off the median of the pairs",
-                       off.translation_m,
-                       off.rotation_rad * 180.0 / std::numbers::pi);
+    return fmt::format(
+        "the relative pose of the two cameras differs by {:.4f} m and {:.2f} deg from the median "
+        "of the pairs",
+        off.translation_m,
+        off.rotation_rad * 180.0 / std::numbers::pi);
 }
 
 /// Removes pairs whose relative pose is far outside the scatter of the others.
@@ -138,7 +140,8 @@ void drop_gross(std::vector<Pair>& pairs, const Pose& middle, std::vector<Reject
             reject(rejected,
                    pair.index,
                    scatter_text(off) +
-                       "; check that its images are from the same moment and in order");
+                       "; check that both images are from the same moment and that the files are "
+                       "in order");
         }
         return gross;
     });
@@ -201,12 +204,13 @@ void reject_dropped(const RobustFit& fit,
         const Pair& pair = pairs[static_cast<std::size_t>(dropped.view)];
         reject(rejected,
                pair.index,
-               fmt::format("rms {:.2f} px for the pair and {:.2f} px for its single images; the "
-                           "limit is {:.2f} px; {}: check that its images are from the same moment",
-                           dropped.rms_px,
-                           pair.alone_rms_px,
-                           dropped.limit_px,
-                           scatter_text(distance(T_left_right, pair.T_left_right))));
+               fmt::format(
+                   "rms {:.2f} px for the pair and {:.2f} px for its single images; the limit for "
+                   "the pair is {:.2f} px; {}: check that both images are from the same moment",
+                   dropped.rms_px,
+                   pair.alone_rms_px,
+                   dropped.limit_px,
+                   scatter_text(distance(T_left_right, pair.T_left_right))));
     }
 }
 

@@ -120,16 +120,20 @@ GrownChessboard board_in(const Board& board, const Lattice& lattice) {
         fmt::format("{} x {}", high.first - low.first + 1, high.second - low.second + 1);
     const bool larger = border_shares(lattice, best, true).second > kLeastOfBorder;
     if (larger) {
-        grown.problem = fmt::format("a chessboard of {} inner corners, more than {} x {}",
-                                    size_text,
-                                    board.columns,
-                                    board.rows);
+        grown.problem = fmt::format(
+            "the chessboard in the image has {} inner corners, more than the {} x {} of the given "
+            "board; give the size of the board in the image",
+            size_text,
+            board.columns,
+            board.rows);
     } else if (border_shares(lattice, best, false).first < kLeastOfBorder ||
                (windows.size() > 1 && windows[1].corners == best.corners)) {
-        grown.problem = fmt::format("a part of {} inner corners of a chessboard of {} x {}",
-                                    size_text,
-                                    board.columns,
-                                    board.rows);
+        grown.problem = fmt::format(
+            "the image shows only a part of the chessboard, {} of {} x {} inner corners; show the "
+            "whole board",
+            size_text,
+            board.columns,
+            board.rows);
     } else {
         grown.points = points_of(board, lattice, best);
     }

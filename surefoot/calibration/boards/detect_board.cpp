@@ -121,11 +121,16 @@ BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
     const auto points = ordered_points(board, corners, view);
-    if (!points) return not_found("corners that do not form this chessboard");
+    if (!points)
+        return not_found(
+            "the corners in the image do not form this chessboard; check its size and show the "
+            "whole board");
     BoardSighting sighting = whole_board(*points);
     fit_corners(board, view, sighting.view);
     if (100 * std::ssize(sighting.view.ids) < kLeastPercent * board.columns * board.rows)
-        return not_found("a chessboard without clear corners (blurred?)");
+        return not_found(
+            "the corners of the chessboard are not clear, perhaps the image is blurred; hold the "
+            "board still");
     return sighting;
 }
 
@@ -152,8 +157,11 @@ BoardSighting find_chessboard(const Board& board,
         if (BoardSighting sighting = tried(corners); sighting.found()) return sighting;
     }
     if (!problem.empty()) return not_found(problem);
-    return not_found(fmt::format(
-        "no chessboard of {} x {} inner corners is fully visible", board.columns, board.rows));
+    return not_found(
+        fmt::format("no chessboard of {} x {} inner corners is fully visible; show the whole "
+                    "board, or correct its size",
+                    board.columns,
+                    board.rows));
 }
 
 cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& image) {
@@ -217,10 +225,12 @@ BoardSighting find_circles(const Board& board,
         sighting.view.disc_radius_m = discs.radius_m;
         return sighting;
     }
-    return not_found(fmt::format("no {} of {} x {} dark circles on white is fully visible",
-                                 board.kind == BoardKind::circles ? "grid" : "staggered grid",
-                                 board.columns,
-                                 board.rows));
+    return not_found(
+        fmt::format("no {} of {} x {} dark circles on white is fully visible; show the whole "
+                    "board, or correct its size",
+                    board.kind == BoardKind::circles ? "grid" : "staggered grid",
+                    board.columns,
+                    board.rows));
 }
 
 /// True if all points lie on one line of the board: they then do not fix the plane.
@@ -252,21 +262,26 @@ BoardSighting find_charuco(const Board& board, const cv::Mat& image) {
     if (!marker_ids.empty())
         cv::aruco::interpolateCornersCharuco(markers, marker_ids, image, charuco, corners, ids);
     if (static_cast<int>(ids.size()) < kFewestCharucoPoints) {
-        return not_found(fmt::format("{} markers of {} and {} corners between them; {} are needed",
-                                     marker_ids.size(),
-                                     board.dictionary,
-                                     ids.size(),
-                                     kFewestCharucoPoints));
+        return not_found(
+            fmt::format("the image shows {} markers of {} and {} corners between them; at least {} "
+                        "corners are needed: show more of the board",
+                        marker_ids.size(),
+                        board.dictionary,
+                        ids.size(),
+                        kFewestCharucoPoints));
     }
     if (on_one_line(board, ids))
-        return not_found("only corners on one line of the board; show more of it");
+        return not_found(
+            "all corners in the image lie on one line of the board; show more of the board");
     BoardSighting sighting;
     sighting.view.ids = ids;
     sighting.view.pixels = points_of(corners);
     // The window ends before the marker beside the corner.
     const double margin = 0.5 * (board.spacing_m - board.marker_m) / board.spacing_m;
     if (!refine_corners(board, image, margin, sighting.view))
-        return not_found("a ChArUco board without clear corners (blurred?)");
+        return not_found(
+            "the corners of the ChArUco board are not clear, perhaps the image is blurred; hold "
+            "the board still");
     return sighting;
 }
 
@@ -285,15 +300,18 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
     const int shorter = std::min(image.width, image.height);
     const int needed = kFewestPixelsPerPoint * std::min(board.columns, board.rows);
     if (shorter < needed && board.kind != BoardKind::charuco) {
-        return not_found(fmt::format("an image of {} x {} px is too small for {} x {} points",
-                                     image.width,
-                                     image.height,
-                                     board.columns,
-                                     board.rows));
+        return not_found(fmt::format(
+            "the image of {} x {} px is too small for a board of {} x {} points; use larger images",
+            image.width,
+            image.height,
+            board.columns,
+            board.rows));
     }
     if (shorter < kFewestPixelsPerPoint * 2)
         return not_found(
-            fmt::format("an image of {} x {} px is too small", image.width, image.height));
+            fmt::format("the image of {} x {} px is too small to show a board; use larger images",
+                        image.width,
+                        image.height));
     const cv::Mat pixels(image.height,
                          image.width,
                          CV_8UC1,
@@ -309,7 +327,8 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
     } catch (const cv::Exception& error) {
         return not_found(fmt::format("OpenCV failed: {}", error.err));
     }
-    return not_found("unknown kind of board");
+    return not_found(
+        "the kind of board is unknown; use chessboard, circles, asymmetric_circles or charuco");
 }
 
 }  // namespace surefoot::calibration

@@ -37,7 +37,7 @@ void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::s
 /// Median of the disc radii that the views state; 0 for views of points.
 [[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
 
-/// Text with the first three reasons: "6 of 8 views left out: view 2 ...; view 5 ...".
+/// Text with the first three reasons: "6 of 8 views were left out: view 2 ...; view 5 ...".
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
 [[nodiscard]] double median(std::vector<double> values);  ///< returns 0 for no values

@@ -142,7 +142,7 @@ std::string in_words(const LensAdvice& advice) {
                                               advice.better.rms_px,
                                               advice.chosen.rms_px,
                                               model_name(advice.chosen.kind))
-                                : fmt::format("rms {:.2f} px; {} cannot show most boards",
+                                : fmt::format("rms {:.2f} px; {} does not fit most views",
                                               advice.better.rms_px,
                                               model_name(advice.chosen.kind));
     return fmt::format("this lens looks like {} ({}): try --model {}",

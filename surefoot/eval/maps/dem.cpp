@@ -87,11 +87,11 @@ void CloudBounds::add(const Eigen::Vector3d& p_m) {
 Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
-        return input_error(fmt::format(
-            "no point with finite coordinates (and a height within {:g} m) among {}: there is "
-            "nothing to map",
-            kMaxHeight_m,
-            skipped_));
+        return input_error(
+            fmt::format("a point needs finite coordinates and a height within +-{:g} m; no point "
+                        "of {} has them: check the file and the unit of its heights",
+                        kMaxHeight_m,
+                        skipped_));
     }
     Eigen::Vector2d cells;
     DemGrid grid;

@@ -74,24 +74,29 @@ Call call_of(float live, float truth, double safe_threshold) {
 }  // namespace
 
 void EvalMapsConfig::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "safe_threshold", safe_threshold, 0.0, 1.0, "smallest traversability of a safe cell");
+    visitor.number("safe_threshold",
+                   safe_threshold,
+                   0.0,
+                   1.0,
+                   "smallest traversability (0 to 1) of a safe cell");
     visitor.number("edge_step_m",
                    edge_step_m,
                    0.0,
                    10.0,
-                   "smallest difference between neighbouring true heights that counts as an edge");
+                   "smallest difference between the true heights of neighbouring cells that counts "
+                   "as an edge");
     visitor.integer(
         "edge_margin_cells",
         edge_margin_cells,
         0,
         100,
-        "largest distance from an edge, in cells, at which a cell is left out of the errors");
-    visitor.number("large_error_m",
-                   large_error_m,
-                   0.0,
-                   10.0,
-                   "height error above which a cell counts in share_over_50mm");
+        "largest distance from an edge, in cells, at which the height errors leave a cell out");
+    visitor.number(
+        "large_error_m",
+        large_error_m,
+        0.0,
+        10.0,
+        "height error above which a cell counts as a large error (result share_over_50mm)");
 }
 
 grid::Layer resample_nearest(const grid::GridGeometry& from,

@@ -81,9 +81,9 @@ inline constexpr int kThumbnailCells = 80;
 
 /// Explains the colours of a confusion map in words.
 inline constexpr const char* kConfusionLegend =
-    "White: the map calls it safe, black: unsafe. The dot says whether that is right: green = yes, "
-    "blue on white = called safe and is NOT, orange on black = called unsafe and is safe. Grey: "
-    "never seen.";
+    "White cells are safe according to the map, black cells unsafe. Green dot: the map is right. "
+    "Blue dot on white: called safe and is NOT safe. Orange dot on black: called unsafe and is "
+    "safe. Grey cells were never seen.";
 
 [[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
 

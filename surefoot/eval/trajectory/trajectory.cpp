@@ -152,7 +152,7 @@ Error too_few(const Trajectory& estimate,
     return input_error(
         fmt::format("eval trajectory: {} poses match within {:.0f} ms, at least {} are needed; the "
                     "estimate {}, "
-                    "the truth {}: check that both use the same clock and overlap",
+                    "the truth {}: check that both use the same clock and overlap in time",
                     matched,
                     1e3 * tolerance_s,
                     needed,
@@ -176,11 +176,11 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
         rot_deg.push_back(kDegPerRad * log_so3(error.rotation).norm());
     }
     if (trans_m.empty()) {
-        return input_error(fmt::format(
-            "eval trajectory: no two matched poses are {:g} s apart (half of that is allowed as "
-            "difference); choose rpe_interval_s within the recording's length, or 0 for frame to "
-            "frame",
-            config.rpe_interval_s));
+        return input_error(
+            fmt::format("eval trajectory: no two matched poses are {:g} s apart (a deviation of "
+                        "half this time is allowed); choose rpe_interval_s shorter than the "
+                        "recording, or 0 for successive poses",
+                        config.rpe_interval_s));
     }
     errors.rpe_trans_rmse_m = rms(trans_m);
     errors.rpe_rot_rmse_deg = rms(rot_deg);
@@ -192,18 +192,23 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
 void EvalTrajectoryConfig::describe(ConfigVisitor& visitor) {
     static constexpr std::array<const char*, 3> kNames = {"se3", "yaw", "none"};
     visitor.enumeration(
-        "align", align, kNames, "transformation that is removed before positions are compared");
+        "align",
+        align,
+        kNames,
+        "alignment of the estimate with the truth before positions are compared: se3 = rotation "
+        "and shift, yaw = rotation about the vertical and shift, none = no alignment");
     visitor.number("tolerance_s",
                    tolerance_s,
                    0.0,
                    10.0,
-                   "largest time between an estimated pose and its true pose");
-    visitor.number(
-        "rpe_interval_s",
-        rpe_interval_s,
-        0.0,
-        3600.0,
-        "time over which relative pose errors are computed; 0 = from one matched pose to the next");
+                   "largest time difference between an estimated pose and the true pose that is "
+                   "matched with it");
+    visitor.number("rpe_interval_s",
+                   rpe_interval_s,
+                   0.0,
+                   3600.0,
+                   "time over which relative pose errors are computed; 0 = from each matched pose "
+                   "to the next");
 }
 
 std::vector<PosePair> associate(const Trajectory& estimate,
