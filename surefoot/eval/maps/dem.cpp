@@ -88,8 +88,8 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
         return input_error(
-            fmt::format("a point needs finite coordinates and a height within +-{:g} m; no point "
-                        "of {} has them: check the file and the unit of its heights",
+            fmt::format("no point with finite coordinates and a height within +-{:g} m among {} "
+                        "points; check the file and the unit of its heights",
                         kMaxHeight_m,
                         skipped_));
     }
