@@ -25,17 +25,19 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Least number of pixels between neighbouring points; the board is not searched for with fewer.
+/// Least number of pixels between neighbouring points. With fewer pixels the board is not searched.
 constexpr int kFewestPixelsPerPoint = 4;
 /// Half the window of the corner refinement, as in OpenCV's samples and in the published figures
 /// that we compare with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
-/// Least share of clear corners. Reflections may hide single ones; with fewer it is another object.
+/// Least percentage of clear corners. Reflections may hide single corners. An object with fewer
+/// clear corners is not this board.
 constexpr int kLeastPercent = 75;
-/// Searches boards with a blur above 2 px in images reduced to a half and to a quarter.
+/// Number of halvings of the image: boards with a blur above 2 px are found at half or a quarter of
+/// the size.
 constexpr int kMostHalvings = 2;
-/// With more dark spots the search for the grid would take minutes.
+/// Largest number of dark spots. With more spots the search for the grid would take minutes.
 constexpr std::size_t kMostBlobs = 600;
 /// Larger images are not enlarged to find small circles: this would take seconds.
 constexpr std::size_t kMostPixelsEnlarged = 1280 * 1024;
@@ -59,7 +61,8 @@ BoardSighting whole_board(const Points& points) {
     return sighting;
 }
 
-/// Distance of a point to its nearest neighbour in row and column; infinity without neighbours.
+/// Returns the distance of a point to its nearest neighbour in row and column [px]; infinity
+/// without neighbours.
 double nearest_px(const Board& board, const BoardView& view, std::size_t index) {
     double nearest = std::numeric_limits<double>::infinity();
     const int id = view.ids[index];
@@ -73,7 +76,7 @@ double nearest_px(const Board& board, const BoardView& view, std::size_t index) 
 }
 
 /// Moves corners to the point where the surrounding gradients meet. The half window is `reach` of
-/// the distance to the next corner. False if a corner moved too far.
+/// the distance to the next corner. Returns false if a corner moved too far.
 bool refine_corners(const Board& board, const cv::Mat& image, double reach, BoardView& view) {
     const BoardView rough = view;
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
@@ -100,7 +103,7 @@ Points sector_corners(const Board& board, const cv::Mat& image, int more) {
     return points_of(corners);
 }
 
-/// Boards grown from single corners, in an image whose sides are halved `halvings` times.
+/// Grows boards from single corners, in an image whose sides are halved `halvings` times.
 GrownChessboard grown_corners(const Board& board,
                               const cv::Mat& image,
                               ImageView<const std::uint8_t> view,
@@ -116,7 +119,7 @@ GrownChessboard grown_corners(const Board& board,
     return grown_chessboard(board, corners, view);
 }
 
-/// The board from rough corner positions.
+/// Finds the board from rough corner positions.
 BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
@@ -167,15 +170,15 @@ BoardSighting find_chessboard(const Board& board,
 cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& image) {
     cv::SimpleBlobDetector::Params params;
     params.minArea = 12.0F;  // radius 2 px
-                             // A board that fills the image has circles no larger than their cells.
+    // A board that fills the image has circles no larger than the cells of the grid.
     params.maxArea =
         0.7F * static_cast<float>(image.total()) / static_cast<float>(board.columns * board.rows);
     params.minDistBetweenBlobs = kFewestPixelsPerPoint;
     return params;
 }
 
-/// Centres of the grid from an image that is `enlarged` times the original, in pixels of the
-/// original and in the order of the board.
+/// Finds the centres of the grid in an image that is `enlarged` times the original. Returns the
+/// centres in pixels of the original and in the order of the board.
 std::optional<Points> find_grid(const Board& board,
                                 const cv::Mat& image,
                                 double enlarged,
@@ -197,7 +200,7 @@ std::optional<Points> find_grid(const Board& board,
     if (const auto grid = grown_grid(board, spots)) {
         if (auto points = in_order(*grid)) return points;
     }
-    // OpenCV's search tolerates spots beside the board better.
+    // OpenCV's search is more tolerant of spots beside the board than grown_grid.
     const int kind = board.kind == BoardKind::circles ? cv::CALIB_CB_SYMMETRIC_GRID
                                                       : cv::CALIB_CB_ASYMMETRIC_GRID;
     const cv::Size size(board.columns, board.rows);
@@ -233,7 +236,7 @@ BoardSighting find_circles(const Board& board,
                     board.rows));
 }
 
-/// True if all points lie on one line of the board: they then do not fix the plane.
+/// True if all points lie on one line of the board: these points do not determine the plane.
 bool on_one_line(const Board& board, const std::vector<int>& ids) {
     const int first_row = ids.front() / board.columns;
     const int first_column = ids.front() % board.columns;

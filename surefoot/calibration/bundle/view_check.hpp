@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 
 /// A view that the calibration does not use.
 struct RejectedView {
-    std::size_t index = 0;  ///< into the views given
+    std::size_t index = 0;  ///< index into the input views
     std::string reason;
     friend bool operator==(const RejectedView&, const RejectedView&) = default;
 };
@@ -22,9 +22,9 @@ struct RejectedView {
 /// Adds a view in ascending order. A second reason is appended to the first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
-/// First problem of a view, or nullopt. Problems: ids and pixels do not match; ids are not in order
-/// or not on the board; a pixel is NaN or outside the image. Also fewer than `least_points`, or
-/// points on a line.
+/// Describes the first problem of a view; nullopt if the view is usable. Problems: ids and pixels
+/// do not match; ids are not in order or not on the board; a pixel is NaN or outside the image; the
+/// disc radius is wrong; fewer than `least_points` points; all points on one line.
 [[nodiscard]] std::optional<std::string> view_problem(const Board& board,
                                                       const BoardView& view,
                                                       ImageSize size,
