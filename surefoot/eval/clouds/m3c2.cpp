@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr std::size_t kTaken = 256;  ///< core points that one thread takes
+constexpr std::size_t kTaken = 256;  ///< core points in one task of a thread
 
-/// Statistics of one cloud's points in the cylinder, along its axis from its centre.
+/// Statistics of one cloud's points in the cylinder: positions along the axis, from the centre.
 struct InCylinder {
     int count = 0;
     double mean_m = 0.0;

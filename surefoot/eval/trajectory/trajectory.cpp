@@ -31,12 +31,12 @@ std::vector<std::size_t> order_by_time(const Trajectory& trajectory) {
 
 struct Candidate {
     std::int64_t difference_ns;
-    std::size_t estimate_rank;  // position in time order
+    std::size_t estimate_rank;  // position of the estimated pose in time order
     std::size_t truth_rank;
     [[nodiscard]] auto key() const { return std::tuple(difference_ns, estimate_rank, truth_rank); }
 };
 
-/// All pairs within the tolerance, found with one sweep over both time orders.
+/// Returns all pairs within the tolerance. Goes once through both time orders.
 std::vector<Candidate> candidates_within(const Trajectory& estimate,
                                          const std::vector<std::size_t>& estimate_order,
                                          const Trajectory& truth,
@@ -93,9 +93,10 @@ double path_length(const Eigen::Matrix3Xd& points_m) {
     return length_m;
 }
 
-/// The pair that ends an interval starting at pair `start`: the next one, or the one nearest to
-/// `interval_ns` later and at most half an interval off. Intervals that reach beyond the last pair
-/// are left out: a shorter one would flatter the error.
+/// Returns the pair that ends an interval starting at pair `start`. For an interval of 0, this is
+/// the next pair. Otherwise it is the pair nearest to `interval_ns` later, at most half an interval
+/// off. Intervals that reach beyond the last pair are left out: a shorter interval would flatter
+/// the error.
 std::optional<std::size_t> interval_end(const Trajectory& estimate,
                                         const std::vector<PosePair>& pairs,
                                         std::size_t start,
@@ -247,7 +248,7 @@ Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
     if (align == Alignment::se3) {
         T_truth_estimate.rotation = Eigen::Quaterniond(best_rotation(covariance)).normalized();
     } else {
-        // d/dyaw of sum |q - Rz(yaw) p|^2 = 0 leaves the in-plane cross and dot products.
+        // Setting d/dyaw of sum |q - Rz(yaw) p|^2 to 0 leaves the in-plane cross and dot products.
         const double yaw =
             std::atan2(covariance(1, 0) - covariance(0, 1), covariance(0, 0) + covariance(1, 1));
         T_truth_estimate.rotation = exp_so3({0.0, 0.0, yaw});
