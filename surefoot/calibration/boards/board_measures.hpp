@@ -15,8 +15,8 @@ namespace surefoot::calibration {
 struct BoardMeasures {
     int points = 0;           ///< points that both cameras see
     int lengths = 0;          ///< number of distances between neighbours of a row or a column
-    double distance_m = 0.0;  ///< mean depth from the board size; rectified left frame
-    /// Mean difference of the triangulated depth and the depth from the board size in the left
+    double distance_m = 0.0;  ///< mean depth from the board size, in the rectified left frame
+    /// Mean difference between the triangulated depth and the depth from the board size in the left
     /// image. Compares baseline and rotation of the right camera with focal length and square size.
     double axial_m = 0.0;
     double axial_std_m = 0.0;    ///< scatter of the triangulated depths around their plane

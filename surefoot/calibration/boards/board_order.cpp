@@ -108,10 +108,10 @@ bool black_where_it_should_be(const Board& board,
     return compared > 0 && right >= kLeastAlternating * compared;
 }
 
-/// True if rows and columns change gently from point to point: no step is more than 2.5 times as
-/// long as the step before, nor rotated by more than 45 deg. Perspective and wide lenses change
-/// steps by up to half their length and by 30 deg at the image border. A grid with a wrong point
-/// jumps back and forth.
+/// True if rows and columns change gently from point to point. Each step is at most 2.5 times as
+/// long as the step before and rotated by at most 45 deg. Perspective and wide lenses change steps
+/// by up to half their length and by 30 deg at the image border. A grid with a wrong point jumps
+/// back and forth.
 bool is_smooth(const Board& board, const Points& points) {
     constexpr double kMostRatio = 2.5;
     constexpr double kLeastCosine = 0.7;

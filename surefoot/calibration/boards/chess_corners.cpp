@@ -75,7 +75,7 @@ double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
 /// Angles at which a ring changes between black and white, and the contrast of the ring.
 struct Crossings {
     std::vector<double> at_rad;
-    bool white_first = false;  ///< white before the first crossing
+    bool white_first = false;  ///< true if the ring is white before the first crossing
     double contrast_dn = 0.0;
 };
 

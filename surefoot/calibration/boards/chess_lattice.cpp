@@ -48,7 +48,7 @@ std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::
     if (!(p.x() >= 0.0 && p.y() >= 0.0 && p.x() < image.width - 1 && p.y() < image.height - 1))
         return std::nullopt;
     const int u = static_cast<int>(p.x());  // in range: inside the image, see above
-    const int v = static_cast<int>(p.y());  // in range: likewise
+    const int v = static_cast<int>(p.y());  // in range: inside the image, see above
     const double s = p.x() - u;
     const double t = p.y() - v;
     const std::uint8_t* upper = image.row(v) + u;

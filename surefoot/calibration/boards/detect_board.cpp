@@ -113,7 +113,7 @@ GrownChessboard grown_corners(const Board& board,
     if (times > 1) cv::resize(image, reduced, image.size() / times, 0.0, 0.0, cv::INTER_AREA);
     std::vector<ChessCorner> corners =
         chess_corners({reduced.data, reduced.cols, reduced.rows, static_cast<int>(reduced.step)});
-    for (ChessCorner& corner : corners)  // (0, 0) is the centre of a pixel in both
+    for (ChessCorner& corner : corners)  // (0, 0) is a pixel centre in both images
         corner.pixel = times * (corner.pixel + Eigen::Vector2d::Constant(0.5)) -
                        Eigen::Vector2d::Constant(0.5);
     return grown_chessboard(board, corners, view);
@@ -189,7 +189,7 @@ std::optional<Points> find_grid(const Board& board,
     if (std::ssize(blobs) < board.columns * board.rows || blobs.size() > kMostBlobs)
         return std::nullopt;
     const auto in_order = [&](Points points) {
-        for (Eigen::Vector2d& point : points)  // (0, 0) is the centre of a pixel in both
+        for (Eigen::Vector2d& point : points)  // (0, 0) is a pixel centre in both images
             point = (point + Eigen::Vector2d::Constant(0.5)) / enlarged -
                     Eigen::Vector2d::Constant(0.5);
         return ordered_points(board, points, original);

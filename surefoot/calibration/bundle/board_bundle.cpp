@@ -126,7 +126,7 @@ template <bool kIsFisheye>
 ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
     using Functor = Reprojection<kIsFisheye>;
-    // The cost function takes ownership.
+    // The cost function takes ownership of the functor.
     auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
     if (sight.camera == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
@@ -243,7 +243,7 @@ class Graph {
         return true;
     }
 
-    /// Order that eliminates the boards first. The solver takes ownership.
+    /// Returns the order that eliminates the boards first. The solver takes ownership of the order.
     ceres::ParameterBlockOrdering* boards_first() {
         auto* order = new ceres::ParameterBlockOrdering;
         for (PoseBlock& pose : poses_)

@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 namespace {
 
 /// Focal length divided by the longer image side: 0.1 is an equidistant lens with a field of view
-/// of 570 deg, and 6 is a telephoto lens with 9 deg.
+/// of 570 deg. 6 is a telephoto lens with a field of view of 9 deg.
 constexpr double kShortest = 0.1;
 constexpr double kLongest = 6.0;
 constexpr double kFocalStep = 1.15;

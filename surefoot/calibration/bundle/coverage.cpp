@@ -14,7 +14,7 @@
 namespace surefoot::calibration {
 namespace {
 
-// ASSUMPTION for all four limits and kEnoughTilt_deg: handbooks of calibration tools ask for ten or
+// ASSUMPTION for all four limits and kEnoughTilt_deg. Handbooks of calibration tools ask for ten or
 // more views, tilts of 20 to 45 deg, the whole image and two distances. The covariance of the
 // result says whether the views were enough.
 constexpr int kEnoughViews = 10;

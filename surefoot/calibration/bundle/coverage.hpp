@@ -21,7 +21,7 @@ inline constexpr double kEnoughTilt_deg = 20.0;
 struct ViewShape {
     double spacing_px = 0.0;  ///< distance of neighbouring points in the middle (geometric mean)
     /// Angle between the board and the image plane, from the foreshortening in the middle of the
-    /// view (exact for a small board on the optical axis).
+    /// view. Exact for a small board on the optical axis.
     double tilt_deg = 0.0;
     NearSide near_side = NearSide::left;  ///< meaningful only for a tilted board
 };

@@ -13,8 +13,8 @@ namespace surefoot::calibration {
 /// Error limits. A view or a point beyond a limit does not fit the camera of the others.
 struct RobustLimits {
     int least_views = 3;
-    /// A view is removed if its rms exceeds `view_factor` times the median rms of all views and
-    /// also exceeds the median by `view_sigmas` times the robust scatter of the rms values.
+    /// Removes a view if its rms exceeds `view_factor` times the median rms of all views. The rms
+    /// must also exceed the median by `view_sigmas` times the robust scatter of the rms values.
     double view_factor = 2.0;
     double view_sigmas = 4.0;
     /// Views with an rms below this [px] always stay. Detector errors differ between views with the

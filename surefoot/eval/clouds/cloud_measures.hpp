@@ -21,7 +21,7 @@ struct SortedSurfaces {
 /// Size of the voxels in which sort_surfaces first thins the cloud to one point each. Without this
 /// step the dense part near a scanner would dominate.
 inline constexpr double kSurfaceVoxel_m = 0.01;
-/// Points must be finite, and their bounding box must fit `fits_voxels`.
+/// Points must be finite, and `fits_voxels` must be true for their bounding box.
 [[nodiscard]] SortedSurfaces sort_surfaces(std::span<const Eigen::Vector3f> points_m,
                                            Executor& executor = serial());
 
@@ -80,8 +80,8 @@ struct DoorPlace {
     double yaw_rad = 0.0;  ///< direction of the passage
     double floor_m = 0.0;
 };
-/// Returns the clear width between the nearest points left and right: within 0.1 m of the line
-/// across the passage, 0.3 to 1.8 m above the floor. Returns no value if a side is open for 3 m.
+/// Returns the clear width between the nearest points left and right. Points count within 0.1 m of
+/// the line across the passage, 0.3 to 1.8 m above the floor. No value if a side is open for 3 m.
 [[nodiscard]] std::optional<double> door_width_m(std::span<const Eigen::Vector3f> points_m,
                                                  const DoorPlace& door);
 

@@ -9,7 +9,7 @@
 
 namespace surefoot::eval {
 
-/// Statistical outlier removal (Rusu et al. 2008): a point is an outlier if its mean distance to
+/// Statistical outlier removal (Rusu et al. 2008). A point is an outlier if its mean distance to
 /// its neighbours is above mean + `sigmas` * standard deviation of these means over all points. The
 /// filter passes once over the cloud. The standard deviation uses the divisor n.
 struct OutlierConfig {

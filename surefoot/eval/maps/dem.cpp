@@ -126,7 +126,7 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     }
     // in range: each is at least 1, and their product at most kMostCells
     geometry.nx = static_cast<int>(cells.x());
-    geometry.ny = static_cast<int>(cells.y());  // in range: likewise
+    geometry.ny = static_cast<int>(cells.y());  // in range: see the check above
     return grid;
 }
 

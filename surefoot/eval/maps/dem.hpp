@@ -71,7 +71,7 @@ class DemBuilder {
 
   private:
     struct Part {
-        std::vector<double> value;  ///< highest, lowest [m] or sum [steps]
+        std::vector<double> value;  ///< per cell: highest or lowest height [m], or sum [steps]
         std::vector<std::int64_t> count;
     };
     [[nodiscard]] Part empty() const;

@@ -227,11 +227,11 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "normal_x") return direction_style("Normal, x");
     if (name == "normal_y") return direction_style("Normal, y");
     if (name == "normal_z") return share_style("Normal, z");
-    if (name == "free_above") return height_style("Unknown ground lies lower");
+    if (name == "free_above") return height_style("Height of rays over unknown ground");
     if (name == "rating_confidence") return share_style("Confidence of the rating");
     if (name == "smallest_step") return millimetre_style("Smallest step that can be resolved");
     if (name == "not_resolvable") return share_style("Sill not resolvable");
-    if (name == "reach_step") return millimetre_style("Largest step on the way there");
+    if (name == "reach_step") return millimetre_style("Largest step on the way to the cell");
     LayerStyle rating = traversability_style(safe_threshold);
     if (name == "slope") rating.text.title = "Slope rating";
     if (name == "step") rating.text.title = "Step rating";

@@ -55,7 +55,7 @@ struct MapComparison {
 };
 
 /// Compares the maps without any alignment. `edges` and `floor` use level_floor of the truth.
-/// Errors by distance, range and column leave out edges: at a step, a shift of the map by one cell
+/// Errors by distance, range and column leave out edges. At an edge, a shift of the map by one cell
 /// causes an error of the step height for every camera position.
 [[nodiscard]] MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config);
 

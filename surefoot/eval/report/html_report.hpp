@@ -34,7 +34,7 @@ struct ReportTable {
     bool folded = false;    ///< shows only the title until the reader opens the section
 };
 
-/// A drawing of svg_plot.hpp.
+/// A drawing made by a function of svg_plot.hpp.
 struct ReportPlot {
     std::string title;
     std::string svg;

@@ -131,7 +131,7 @@ std::vector<KeyEntry> confusion_key() {
     };
     return {entry(Call::true_safe, "safe, rightly"),
             entry(Call::true_unsafe, "unsafe, rightly"),
-            entry(Call::false_safe, "called safe, is NOT"),
+            entry(Call::false_safe, "called safe, is NOT safe"),
             entry(Call::false_unsafe, "called unsafe, is safe"),
             {Symbol::square, palette::kFaint, "not in the live map", {}},
             {Symbol::hatch, {}, "no truth", {}}};

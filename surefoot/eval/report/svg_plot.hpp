@@ -48,7 +48,7 @@ struct BinPlot {
     std::string x_label;        ///< label of the x axis with its unit
     std::string unit;           ///< unit of the values
     std::vector<double> edges;  ///< bin edges, ascending; one more than values
-    std::vector<Line> lines;    ///< at most two
+    std::vector<Line> lines;    ///< at most two lines
     double high = 0.0;          ///< upper end of the y axis; 0 = just above the largest value
 };
 /// Returns an empty string if no line has a value.

@@ -8,8 +8,8 @@
 
 namespace surefoot::eval {
 
-/// Limits for a match between a found and a true feature: for the rotation, and for the offset of
-/// the middle along the line and across it (along the path over the feature).
+/// Limits for a match of a found with a true feature: rotation and offset of the middle. The offset
+/// has a part along the line and a part across it (along the path over the feature).
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
