@@ -37,8 +37,8 @@ std::vector<std::size_t> usable_views(const Board& board,
 
 /// Variation of the boards in a bundle.
 struct Variety {
-    double tilt_deg = 0.0;        ///< between the two most different boards
-    double distance_ratio = 1.0;  ///< farthest divided by nearest
+    double tilt_deg = 0.0;        ///< largest angle between two boards
+    double distance_ratio = 1.0;  ///< distance of the farthest board divided by that of the nearest
 };
 
 Variety variety_of(const BoardBundle& bundle) {
@@ -59,7 +59,7 @@ Variety variety_of(const BoardBundle& bundle) {
     return variety;
 }
 
-/// Reason why the result must not be used; empty if it is valid.
+/// Returns the reason why the result must not be used; empty if the result is valid.
 std::string doubt(const MonoCalibration& result,
                   const CalibrationOptions& options,
                   const Variety& variety) {
@@ -77,7 +77,7 @@ std::string doubt(const MonoCalibration& result,
     return result.camera.problem().value_or("");
 }
 
-/// Views that left the bundle, with their reasons.
+/// Adds the views that left the bundle to `rejected`, with their reasons.
 void reject_dropped(const RobustFit& fit,
                     std::span<const std::size_t> kept,
                     std::vector<RejectedView>& rejected) {
@@ -103,8 +103,8 @@ std::vector<ViewFit> view_fits(const BoardBundle& bundle,
     return views;
 }
 
-/// The error to report. If another lens kind explains the views, the error names it: with a wrong
-/// lens, the reasons (tilts, focal length, views that disagree) mislead.
+/// Returns the error to report. If another lens kind explains the views, the error names this kind.
+/// With a wrong lens, the other reasons (tilts, focal length, views that disagree) mislead.
 Error failure(const Board& board,
               std::span<const BoardView> views,
               ImageSize size,
@@ -144,7 +144,8 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     if (!start_bundle(bundle)) return failed(kUnexplained);
     const std::vector<double> start_rms = view_rms_px(bundle);
     for (std::size_t v = 0; v < kept.size(); ++v)
-        if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose fits it");
+        if (std::isnan(start_rms[v]))
+            reject(result.rejected, kept[v], "no pose of the board fits this view");
     const std::optional<RobustFit> fit = solve_robustly(bundle, options.limits);
     if (!fit) return failed(kUnexplained);
     reject_dropped(*fit, kept, result.rejected);
@@ -164,14 +165,15 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
         covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
     if (const std::string found = doubt(result, options, variety); !found.empty()) {
-        return failed(fmt::format(
-            "calibration: {}; the boards differ by {:.1f} deg in tilt (at least {:.0f} are needed) "
-            "and {:.2f} times in distance: show the board tilted by 20 to 40 deg about both axes, "
-            "near and far",
-            found,
-            variety.tilt_deg,
-            options.least_tilt_deg,
-            variety.distance_ratio));
+        return failed(
+            fmt::format("calibration: {}; the views differ by {:.1f} deg in tilt (at least {:.0f} "
+                        "deg are needed) and by a factor of {:.2f} in the distance of the board: "
+                        "show the board tilted by 20 to 40 deg about both axes, "
+                        "near and far",
+                        found,
+                        variety.tilt_deg,
+                        options.least_tilt_deg,
+                        variety.distance_ratio));
     }
     result.rms_px = rms_px(bundle);
     result.sigma_px = fit->sigma_px;

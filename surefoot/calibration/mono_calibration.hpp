@@ -18,14 +18,14 @@
 namespace surefoot::calibration {
 
 struct CalibrationOptions {
-    int least_points = 8;  ///< points per view; a pose needs four, the others check the pose
+    int least_points = 8;  ///< least number of points of a view; four fix a pose, more check it
     RobustLimits limits;
     SelectionLimits selection;
-    /// Largest accepted standard deviation of the focal length, relative to it. ASSUMPTION: 5 %;
-    /// the relative depth error is the same.
+    /// Largest accepted standard deviation of the focal length, divided by the focal length.
+    /// ASSUMPTION: 5 %; the relative depth error is the same.
     double most_focal_sigma = 0.05;
-    /// Smallest tilt between the two most different boards: parallel boards count as one (Zhang
-    /// 2000, section 3.4). ASSUMPTION: 5 deg; users are told to tilt by 20 and more.
+    /// Smallest tilt between the two most different boards: parallel boards count as one board
+    /// (Zhang 2000, section 3.4). ASSUMPTION: 5 deg; messages ask users to tilt by 20 deg and more.
     double least_tilt_deg = 5.0;
 };
 
@@ -38,22 +38,22 @@ struct ViewFit {
 struct MonoCalibration {
     LensKind kind = LensKind::pinhole5;
     camera::Camera camera;
-    Eigen::VectorXd parameters;  ///< order of parameter_names(kind), pixels
+    Eigen::VectorXd parameters;  ///< in the order of parameter_names(kind), unit pixels
     /// Covariance of `parameters`, from the scatter of residuals and views (`stated_sigma_px`).
     Eigen::MatrixXd covariance;
-    double rms_px = 0.0;    ///< root mean square distance of the points used, as in OpenCV
+    double rms_px = 0.0;    ///< rms distance of used points from their prediction, as in OpenCV
     double sigma_px = 0.0;  ///< noise of a coordinate, corrected for degrees of freedom
     /// Noise behind the covariance: `sigma_px`, or the scatter of the cameras between views if that
     /// is larger (`view_scatter.hpp`).
     double stated_sigma_px = 0.0;
-    double disc_radius_m = 0.0;          ///< radius of the board's circles from the views, or 0
-    std::vector<ViewFit> views;          ///< used, ascending
-    std::vector<RejectedView> rejected;  ///< ascending
+    double disc_radius_m = 0.0;          ///< circle radius from the views; 0 without circles
+    std::vector<ViewFit> views;          ///< views used, ascending
+    std::vector<RejectedView> rejected;  ///< views left out, ascending
 };
 
 /// Calibrates a camera from views of a flat board. Tries focal lengths (see start_bundle), refines
-/// with Huber's loss, removes views and points that do not fit, and ends with least squares. An
-/// error if too few views are left or if the views do not determine the camera.
+/// with Huber's loss, removes views and points that do not fit, and ends with least squares.
+/// Returns an error if too few views are left or if the views do not determine the camera.
 [[nodiscard]] Result<MonoCalibration> calibrate_mono(const Board& board,
                                                      std::span<const BoardView> views,
                                                      ImageSize size,

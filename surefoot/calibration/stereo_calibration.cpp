@@ -16,12 +16,11 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr std::array<double, 3> kDistances_m{0.5, 1.0, 2.0};
-/// Gross error of a relative pose, in robust standard deviations. Such a pair would only disturb
-/// the joint solution.
+/// Limit of a gross error of a relative pose, in robust standard deviations. A pair beyond the
+/// limit would only disturb the joint solution.
 constexpr double kGrossSigmas = 8.0;
 constexpr double kMadToSigma = 1.4826;
-/// Scatter that is always accepted, relative to the baseline and in rad: noiseless views scatter
-/// less.
+/// Least limit of the scatter, as a share of the baseline and in rad: noiseless views scatter less.
 constexpr double kLeastScatter = 1e-3;
 
 /// An image pair with the results of the two separate cameras.
@@ -33,9 +32,9 @@ struct Pair {
     double alone_rms_px = 0.0;
 };
 
-/// Expected rms of a pair in the joint solution, from the corner noise of the separate cameras,
-/// over all points of both images. Separately, two board poses fit the noise; jointly, one pose
-/// does. With a board of eight points this raises the rms by a seventh.
+/// Expected rms of a pair in the joint solution, over all points of both images. It follows from
+/// the corner noise of the separate cameras. Separately, two board poses adapt to the noise;
+/// jointly, only one pose does. With a board of eight points this raises the rms by a seventh.
 double alone_rms(const CameraFit& left, const CameraFit& right) {
     constexpr double kPose = 6.0;
     double square = 0.0;
@@ -62,7 +61,7 @@ std::vector<Pair> pairs_of(const MonoCalibration& left, const MonoCalibration& r
     return pairs;
 }
 
-/// Pairs that both cameras can use, without repeated and unnecessary ones.
+/// Returns the pairs that both cameras can use, without repeated and unnecessary pairs.
 std::vector<std::size_t> usable_pairs(const Board& board,
                                       std::span<const BoardView> left,
                                       std::span<const BoardView> right,
@@ -90,7 +89,7 @@ std::vector<BoardView> chosen(std::span<const BoardView> views,
     return result;
 }
 
-/// Calibrates one camera from the views of the pairs. Converts its indices to those of the pairs; a
+/// Calibrates one camera from the views of the pairs. Converts view indices to pair indices. A
 /// removed view removes its pair.
 Result<MonoCalibration> calibrate_camera(const char* name,
                                          const Board& board,
@@ -115,9 +114,11 @@ Result<MonoCalibration> calibrate_camera(const char* name,
 }
 
 std::string scatter_text(const PoseDistance& off) {
-    return fmt::format("its relative pose is {:.4f} m and {:.2f} deg off the median of the pairs",
-                       off.translation_m,
-                       off.rotation_rad * 180.0 / std::numbers::pi);
+    return fmt::format(
+        "the relative pose of the two cameras differs by {:.4f} m and {:.2f} deg from the median "
+        "of the pairs",
+        off.translation_m,
+        off.rotation_rad * 180.0 / std::numbers::pi);
 }
 
 /// Removes pairs whose relative pose is far outside the scatter of the others.
@@ -138,7 +139,8 @@ void drop_gross(std::vector<Pair>& pairs, const Pose& middle, std::vector<Reject
             reject(rejected,
                    pair.index,
                    scatter_text(off) +
-                       "; check that its images are from the same moment and in order");
+                       "; check that both images are from the same moment and that the files are "
+                       "in order");
         }
         return gross;
     });
@@ -155,8 +157,8 @@ void add_sights(std::span<const Eigen::Vector3d> points,
     }
 }
 
-/// Start of the joint bundle: lenses and boards of the separate cameras, and the median relative
-/// pose.
+/// Returns the start of the joint bundle: lenses and boards of the separate cameras, and the median
+/// relative pose.
 BoardBundle bundle_of(const Board& board,
                       std::span<const BoardView> left_views,
                       std::span<const BoardView> right_views,
@@ -201,12 +203,13 @@ void reject_dropped(const RobustFit& fit,
         const Pair& pair = pairs[static_cast<std::size_t>(dropped.view)];
         reject(rejected,
                pair.index,
-               fmt::format("rms {:.2f} px for the pair and {:.2f} px for its single images; the "
-                           "limit is {:.2f} px; {}: check that its images are from the same moment",
-                           dropped.rms_px,
-                           pair.alone_rms_px,
-                           dropped.limit_px,
-                           scatter_text(distance(T_left_right, pair.T_left_right))));
+               fmt::format(
+                   "rms {:.2f} px for the pair and {:.2f} px for its single images; the limit for "
+                   "the pair is {:.2f} px; {}: check that both images are from the same moment",
+                   dropped.rms_px,
+                   pair.alone_rms_px,
+                   dropped.limit_px,
+                   scatter_text(distance(T_left_right, pair.T_left_right))));
     }
 }
 
@@ -232,8 +235,8 @@ void describe(const BoardBundle& bundle,
     result.disc_radius_m = bundle.disc_radius_m;
 }
 
-/// Points of a view that the estimate used. For discs: the images of their centres, from the
-/// solution, plus the residual of the centre of gravity.
+/// Returns the points of a view that the estimate used. For discs: the images of their centres,
+/// from the solution, plus the residuals of the centres of gravity.
 BoardView used_points(const Board& board,
                       const BoardView& view,
                       const CameraFit& fit,

@@ -12,8 +12,8 @@ namespace surefoot::calibration {
 
 struct StereoOptions {
     CalibrationOptions camera;
-    /// Limit for the joint rms of a pair, divided by the rms of its two images alone. Above it the
-    /// two images are from different moments (or the rig bent): most of the error is not noise.
+    /// Largest joint rms of a pair, divided by the rms of its two images alone. Above this limit
+    /// most of the error is not noise: the images are from different moments, or the rig has bent.
     double pair_factor = 1.5;
     int least_pairs = 3;
 };
@@ -35,7 +35,7 @@ struct DepthError {
 
 struct StereoCalibration {
     LensKind kind = LensKind::pinhole5;
-    camera::StereoRig rig;  ///< sets left, right and T_left_right only
+    camera::StereoRig rig;  ///< only left, right and T_left_right are set
     /// Order: left lens, right lens (parameter_names), T_left_right (translation [m], rotation
     /// [rad]; right perturbation).
     Eigen::MatrixXd covariance;
@@ -45,18 +45,18 @@ struct StereoCalibration {
     /// is larger (`view_scatter.hpp`).
     double stated_sigma_px = 0.0;
     /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
-    /// focal length of the two lenses. This unit keeps the size of a corner error. The rectified
-    /// images of `run` may be larger or smaller: the lens model sets their size at the image
-    /// corners, where perhaps no board was. In their pixels a better model with larger images would
-    /// seem worse.
+    /// focal length of the two lenses. In this unit a corner error is as large as in the raw image.
+    /// The rectified images of `run` may be larger or smaller. The lens model sets their size at
+    /// the image corners, where perhaps no board was seen. In their pixels a better model with
+    /// larger images would seem worse.
     double row_rms_px = 0.0;
     double row_focal_px = 0.0;
     double rectified_focal_px = 0.0;  ///< focal length of images from `camera/rectifier`
-    double disc_radius_m = 0.0;       ///< radius of the board's circles from the views, or 0
+    double disc_radius_m = 0.0;       ///< circle radius from the views; 0 without circles
     /// Depth errors of a point straight ahead of the rectified left camera at 0.5, 1 and 2 m.
     std::array<DepthError, 3> depth_errors;
-    std::vector<PairFit> pairs;          ///< used, ascending
-    std::vector<RejectedView> rejected;  ///< ascending
+    std::vector<PairFit> pairs;          ///< pairs used, ascending
+    std::vector<RejectedView> rejected;  ///< pairs left out, ascending
 };
 
 /// Calibrates two cameras and their relative pose from simultaneous views: left[i] and right[i] are

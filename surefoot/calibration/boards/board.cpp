@@ -72,7 +72,7 @@ bool has_squares(BoardKind kind) {
     return kind == BoardKind::chessboard || kind == BoardKind::charuco;
 }
 
-/// Reads "8x5" points, or "8x5squares" with one row and one column of inner corners less.
+/// Reads a size: "8x5" points, or "8x5squares", which has one row and one column of points less.
 bool read_size(std::string text, Board& board) {
     constexpr std::string_view kSquares = "squares";
     const bool squares = text.ends_with(kSquares);

@@ -17,17 +17,17 @@ inline constexpr const char* kBoardKindNames[] = {
 /// z away from the viewer. The first point is the origin.
 struct Board {
     BoardKind kind = BoardKind::chessboard;
-    /// Points per row, and rows: the inner corners of a chessboard or ChArUco board (squares - 1),
-    /// or the circles of a grid. Asymmetric circles: every second row is shifted by half a step.
+    /// Points per row, and number of rows. Points: inner corners of a chessboard or ChArUco board
+    /// (squares - 1), or circles. Asymmetric circles: every second row is shifted by half a step.
     int columns = 9;
     int rows = 6;
     /// Distance of neighbours in a row [m]: side of a square, or distance of circles. Rows of
     /// asymmetric circles are half this distance apart.
     double spacing_m = 0.025;
-    double marker_m = 0.018;                 ///< ChArUco: side of a marker
-    std::string dictionary = "DICT_4X4_50";  ///< ChArUco: as OpenCV names it
+    double marker_m = 0.018;                 ///< ChArUco: side of a marker [m]
+    std::string dictionary = "DICT_4X4_50";  ///< ChArUco: OpenCV's name of the markers
 
-    /// First problem of the board (for example its size), or nullopt.
+    /// Describes the first problem of the board, for example its size; nullopt if it has none.
     [[nodiscard]] std::optional<std::string> problem() const;
     /// Point positions [m], index = row * columns + column.
     [[nodiscard]] std::vector<Eigen::Vector3d> points_m() const;
@@ -36,9 +36,9 @@ struct Board {
 /// Reads "chessboard:9x6:0.025", "circles:6x6:0.02", "asymmetric_circles:4x11:0.04" or
 /// "charuco:8x5:0.03:0.022[:DICT_5X5_100]". Shops and OpenCV count the squares of a ChArUco board:
 /// "charuco:8x5squares:..." and "chessboard:10x7squares:..." mean 7 x 4 and 9 x 6 inner corners.
-/// nullopt for any other text. Does not check sizes: see problem().
+/// Returns nullopt for any other text. Does not check sizes: see problem().
 [[nodiscard]] std::optional<Board> parse_board(const std::string& text);
-/// Text to compare with the board: "8 x 5 squares = 7 x 4 inner corners", or "6 x 6 circles".
+/// Size for the user: "8 x 5 squares = 7 x 4 inner corners", or "6 x 6 circles".
 [[nodiscard]] std::string size_in_words(const Board& board);
 
 /// Points of a board in one image.

@@ -9,9 +9,11 @@
 namespace surefoot::calibration {
 namespace {
 
-/// The second round knows the neighbours to sub-pixels, and with them curvatures and steps.
+/// The first round gives sub-pixel neighbours. From them the second round takes curvatures and
+/// steps.
 constexpr int kRounds = 2;
-/// Share of the step to the next corner. A corner that moved farther is another one or none.
+/// Largest move of a corner, as a share of the step to the next corner. A corner that moved farther
+/// is another corner or no corner.
 constexpr double kMostMove = 0.4;
 
 using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< one per point of the board
@@ -41,7 +43,7 @@ std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
 }
 
 /// Curvature of the parabola through three neighbours; at the end of a line, through the last three
-/// points. 0 if they are unknown.
+/// points. 0 if these points are unknown.
 double bend_per_px(const Line& line, const Found& found) {
     const int middle = std::clamp(line.place, 1, std::max(1, line.length - 2));
     const auto before = line.at(found, middle - 1);
@@ -79,7 +81,7 @@ std::optional<Eigen::Vector2d> fitted(ImageView<const std::uint8_t> image,
     auto pixel = fit_corner(image, guess);
     const double room_px = std::min(guess.along_row_px.norm(), guess.along_column_px.norm());
     if (!pixel || (*pixel - guess.pixel).norm() > kMostMove * room_px) return std::nullopt;
-    // At the image border only half of a corner is visible; its fit may end outside.
+    // At the image border only half of a corner is visible; the fit may end outside the image.
     const bool inside = pixel->x() >= 0.0 && pixel->y() >= 0.0 && pixel->x() <= image.width - 1 &&
                         pixel->y() <= image.height - 1;
     return inside ? pixel : std::nullopt;

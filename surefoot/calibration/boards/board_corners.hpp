@@ -8,8 +8,8 @@
 
 namespace surefoot::calibration {
 
-/// Refines rough corners of a chessboard to sub-pixels (`fit_corner`). Neighbours on the board give
-/// the direction, step and curvature of the lines. Removes points without a neighbour in their row
+/// Refines rough corners of a chessboard to sub-pixel accuracy (`fit_corner`). Neighbouring corners
+/// give direction, step and curvature of the lines. Removes points without a neighbour in their row
 /// or column, and points that do not look like a corner.
 void fit_corners(const Board& board, ImageView<const std::uint8_t> image, BoardView& view);
 

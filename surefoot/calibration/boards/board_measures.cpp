@@ -74,7 +74,8 @@ std::optional<Eigen::VectorXd> errors_px(const Triangulated& seen,
     return errors;
 }
 
-/// Pose of the board from its size alone: least squares in one image, by Gauss and Newton.
+/// Computes the pose of the board from its size alone: least squares in one image with the
+/// Gauss-Newton method.
 std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera& camera) {
     std::vector<Eigen::Vector3d> rays;
     rays.reserve(seen.left_pixels.size());
@@ -101,8 +102,8 @@ std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera&
     return pose;
 }
 
-/// Depths relative to the plane through all points. The noise of a disparity is uniform in 1/z, and
-/// in 1/z the plane is linear.
+/// Returns the depths relative to the plane through all points [m]. The plane is fitted in 1/z:
+/// there the noise of a disparity is uniform and the plane is linear.
 std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -119,7 +120,8 @@ std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     return off_m;
 }
 
-/// Triangulated minus true length from every point to the next one of its row and of its column.
+/// Returns triangulated minus true distance [m] from every point to the next point of its row and
+/// of its column.
 std::vector<double> length_errors_m(const Board& board, const Triangulated& seen) {
     std::vector<double> errors_m;
     errors_m.reserve(2 * seen.ids.size());

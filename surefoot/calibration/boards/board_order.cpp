@@ -14,8 +14,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Share of neighbouring squares of which the white one must be brighter. Light may be weak and
-/// uneven, but glints and shadows do not lie on every square.
+/// Least share of pairs of neighbouring squares in which the white square must be brighter. Light
+/// may be weak and uneven, but glints and shadows do not lie on every square.
 constexpr double kLeastAlternating = 0.8;
 
 std::vector<Eigen::Vector2d> places_of(const Board& board) {
@@ -46,7 +46,7 @@ BoardView whole_view(Points pixels) {
     return view;
 }
 
-/// Possible orders of the points in which a detector walks through the grid.
+/// Orders in which a detector may have walked through the points of the grid.
 std::vector<Points> readings_of(const Board& board, const Points& found) {
     std::vector<Points> readings;
     for (int variant = 0; variant < (board.columns == board.rows ? 8 : 4); ++variant) {
@@ -108,10 +108,10 @@ bool black_where_it_should_be(const Board& board,
     return compared > 0 && right >= kLeastAlternating * compared;
 }
 
-/// True if rows and columns change gently from point to point: no step is more than 2.5 times as
-/// long as the one before, nor rotated by more than 45 deg. Perspective and wide lenses change
-/// steps by up to a half and 30 deg at the image border. A grid with a wrong point jumps back and
-/// forth.
+/// True if rows and columns change gently from point to point. Each step is at most 2.5 times as
+/// long as the step before and rotated by at most 45 deg. Perspective and wide lenses change steps
+/// by up to half their length and by 30 deg at the image border. A grid with a wrong point jumps
+/// back and forth.
 bool is_smooth(const Board& board, const Points& points) {
     constexpr double kMostRatio = 2.5;
     constexpr double kLeastCosine = 0.7;
@@ -186,7 +186,7 @@ std::vector<std::vector<int>> turns_of(const Board& board) {
     for (int quarter = 1; quarter < 4; ++quarter) {
         const bool checked = board.kind == BoardKind::chessboard;
         // A half turn keeps the colours of the squares if both sides are even or both are odd. A
-        // quarter turn of a square board keeps them if the sides are even.
+        // quarter turn of a square board keeps the colours if the sides are even.
         if (checked && quarter == 2 && (board.columns + board.rows) % 2 != 0) continue;
         if (checked && quarter != 2 && board.columns % 2 != 0) continue;
         Eigen::Matrix2d R;
@@ -252,8 +252,8 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
         if (board.kind == BoardKind::chessboard && !black_where_it_should_be(board, points, image))
             continue;
         // With rows shifted in the wrong direction the fit error grows by a quarter of the row
-        // spacing. All correct orders fit equally well, so the one is taken whose rows point
-        // farthest to the right in the image.
+        // spacing. All correct orders fit equally well: choose the order whose rows point farthest
+        // to the right in the image.
         const double tolerance_px = 0.1 * board.spacing_m * std::sqrt(map->J_px_m.determinant());
         const double right = row_direction(board, whole_view(points)).x();
         const bool better = !best || map->rms_px < best_rms_px - tolerance_px ||

@@ -10,8 +10,8 @@
 
 namespace surefoot::calibration {
 
-/// The pixel as a smooth function of the board position x around one point, to second order: pixel
-/// = centre + J x + (x' H_u x, x' H_v x) / 2.
+/// Second-order model of the pixel as a function of the board position x around one point: pixel =
+/// centre + J x + (x' H_u x, x' H_v x) / 2.
 struct LocalMap {
     Eigen::Vector2d pixel;
     Eigen::Matrix2d J_px_m;
@@ -20,13 +20,13 @@ struct LocalMap {
     double rms_px = 0.0;  ///< rms error of the fitted points
 };
 
-/// Least squares over pairs of board position relative to the expansion point [m] and pixel.
-/// nullopt unless at least six pairs determine the map.
+/// Fits the map by least squares to pairs of board position, relative to the expansion point [m],
+/// and pixel. Returns nullopt unless at least six pairs determine the map.
 [[nodiscard]] std::optional<LocalMap> fit_local_map(const std::vector<Eigen::Vector2d>& places_m,
                                                     const std::vector<Eigen::Vector2d>& pixels);
 
-/// Points of a whole grid, sorted from any order along rows and columns into the order of
-/// Board::points_m that detect_board promises. nullopt if they do not look like the board.
+/// Sorts the points of a whole grid along rows and columns, into the order of Board::points_m that
+/// detect_board promises. Returns nullopt if they do not look like the board.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     const Board& board,
     const std::vector<Eigen::Vector2d>& found,

@@ -20,7 +20,7 @@ void add_squares(const Board& board, PrintedSheet& print) {
     }
 }
 
-/// A marker: a black frame of one bit width around the bits; 0 bits are black.
+/// A marker: a black frame of one bit width around the bits; a bit of 0 is black.
 void add_marker(const cv::aruco::Dictionary& dictionary,
                 int id,
                 double left_m,

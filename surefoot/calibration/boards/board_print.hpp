@@ -7,10 +7,10 @@
 
 namespace surefoot::calibration {
 
-/// Black shapes of a printed board, in the board's frame. Squares: the top left square and the
-/// one between the first four points are black. ChArUco: a marker in the middle of each white
-/// square, numbered row by row (OpenCV since 4.6). Circles: `circle_share` is their diameter
-/// divided by the distance of nearest neighbours. An error if the board is invalid (sizes,
+/// Returns the black shapes of a printed board, in the board's frame. The top left square and the
+/// square between the first four points are black. A ChArUco board has a marker in each white
+/// square, numbered row by row (OpenCV since 4.6). `circle_share` is the diameter of the circles
+/// divided by the distance of nearest neighbours. Returns an error if the board is invalid (sizes,
 /// dictionary).
 [[nodiscard]] Result<PrintedSheet> print_of(const Board& board, double circle_share = 0.5);
 

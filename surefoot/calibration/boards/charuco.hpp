@@ -14,8 +14,8 @@ namespace surefoot::calibration {
     return corners + 1;
 }
 
-/// The dictionary of a ChArUco board. An error if OpenCV has no dictionary of that name, or if it
-/// has too few markers for the board.
+/// Returns the dictionary of a ChArUco board. Returns an error if OpenCV has no dictionary of this
+/// name, or if the dictionary has too few markers for the board.
 [[nodiscard]] Result<cv::Ptr<cv::aruco::Dictionary>> dictionary_of(const Board& board);
 
 }  // namespace surefoot::calibration

@@ -57,7 +57,7 @@ Curvature curvature_at(const cv::Mat& light, int u, int v) {
     return c;
 }
 
-/// Interpolated grey value; outside the image the value of its border.
+/// Returns the interpolated grey value; outside the image, the value of the nearest border pixel.
 double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
     const Eigen::Vector2d p(std::clamp(place.x(), 0.0, light.cols - 1.0),
                             std::clamp(place.y(), 0.0, light.rows - 1.0));
@@ -72,10 +72,10 @@ double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
            t * ((1.0 - s) * static_cast<double>(lower[u]) + s * static_cast<double>(lower[u + 1]));
 }
 
-/// Positions where a ring changes between black and white, with their grey values.
+/// Angles at which a ring changes between black and white, and the contrast of the ring.
 struct Crossings {
     std::vector<double> at_rad;
-    bool white_first = false;  ///< white before the first crossing
+    bool white_first = false;  ///< true if the ring is white before the first crossing
     double contrast_dn = 0.0;
 };
 
@@ -88,7 +88,7 @@ Crossings crossings_of(const cv::Mat& light, const Eigen::Vector2d& centre, doub
     }
     std::array<double, kRing> sorted = values;
     std::sort(sorted.begin(), sorted.end());
-    // In narrow squares few positions of the ring lie: use the mean of three at both ends.
+    // Narrow squares contain few positions of the ring: use the mean of three values at both ends.
     const double dark = (sorted[0] + sorted[1] + sorted[2]) / 3.0;
     const double bright = (sorted[kRing - 1] + sorted[kRing - 2] + sorted[kRing - 3]) / 3.0;
     const double middle = 0.5 * (dark + bright);
@@ -110,7 +110,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
                                      double radius_px) {
     const Crossings ring = crossings_of(light, centre, radius_px);
     if (ring.at_rad.size() != 4 || ring.contrast_dn < kLeastContrast_dn) return std::nullopt;
-    // The first edge is followed by black.
+    // The colour after the first edge is black.
     const std::size_t first = ring.white_first ? 0 : 1;
     std::array<double, 4> angles{};
     for (std::size_t i = 0; i < 4; ++i)
@@ -130,7 +130,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
     return corner;
 }
 
-/// True if no pixel within two has a stronger saddle; of equal pixels the first one is the peak.
+/// True if no pixel within two pixels has a stronger saddle. Of equal pixels the first is the peak.
 bool is_peak(const cv::Mat& saddles, int u, int v) {
     const float here = saddles.at<float>(v, u);
     for (int dv = -2; dv <= 2; ++dv) {
@@ -153,7 +153,7 @@ cv::Mat saddles_of(const cv::Mat& light) {
     return saddles;
 }
 
-/// Position of zero gradient near the strongest saddle.
+/// Returns the position of zero gradient near the strongest saddle [px].
 Eigen::Vector2d place_of(const cv::Mat& light, int u, int v) {
     const Curvature c = curvature_at(light, u, v);
     const Eigen::Vector2d beside = -c.H.inverse() * c.gradient;
@@ -169,8 +169,8 @@ std::vector<ChessCorner> chess_corners(ImageView<const std::uint8_t> image) {
     if (image.width <= 2 * kBorder_px || image.height <= 2 * kBorder_px) return corners;
     const cv::Mat light = blurred(image);
     const cv::Mat saddles = saddles_of(light);
-    // Two perpendicular edges of contrast c have the saddle (c / (pi blur^2))^2; slanted edges have
-    // less.
+    // Two perpendicular edges of contrast c have the saddle (c / (pi blur^2))^2. Slanted edges have
+    // a smaller saddle.
     constexpr double kSlant = 0.3;
     const double least =
         std::pow(kSlant * kLeastContrast_dn / (std::numbers::pi * kBlur_px * kBlur_px), 2);

@@ -12,9 +12,10 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Least share of the board's points that must be clear, at the start and at the end.
+/// Least share of the board's points that the lattice must contain.
 constexpr double kLeastShare = 0.75;
-/// Least share of each border line: without border corners the position of the board is open.
+/// Least filled share of each border line: without border corners the position of the board is
+/// ambiguous.
 constexpr double kLeastOfBorder = 0.5;
 
 /// Smallest group of corners from which a board can grow.
@@ -60,7 +61,7 @@ std::pair<double, double> border_shares(const Lattice& lattice, const Window& w,
     return {least, most};
 }
 
-/// All positions of the board on the lattice, the most filled first.
+/// Returns all positions of the board on the lattice, the position with the most corners first.
 std::vector<Window> windows_of(const Board& board, const Lattice& lattice) {
     const auto [low, high] = bounds_of(lattice);
     std::vector<Window> windows;
@@ -81,7 +82,7 @@ std::vector<Window> windows_of(const Board& board, const Lattice& lattice) {
 
 std::vector<Eigen::Vector2d> points_of(const Board& board, const Lattice& lattice, Window window) {
     std::vector<Eigen::Vector2d> points;
-    Lattice whole;  // without corners outside, which belong to another object
+    Lattice whole;  // omits corners outside the window: they belong to another object
     for (const auto& [node, pixel] : lattice)
         if (corners_in({{node, pixel}}, window.low, window.columns, window.rows) > 0)
             whole.emplace(node, pixel);
@@ -120,23 +121,27 @@ GrownChessboard board_in(const Board& board, const Lattice& lattice) {
         fmt::format("{} x {}", high.first - low.first + 1, high.second - low.second + 1);
     const bool larger = border_shares(lattice, best, true).second > kLeastOfBorder;
     if (larger) {
-        grown.problem = fmt::format("a chessboard of {} inner corners, more than {} x {}",
-                                    size_text,
-                                    board.columns,
-                                    board.rows);
+        grown.problem = fmt::format(
+            "the chessboard in the image has {} inner corners, more than the {} x {} of the given "
+            "board; give the size of the board in the image",
+            size_text,
+            board.columns,
+            board.rows);
     } else if (border_shares(lattice, best, false).first < kLeastOfBorder ||
                (windows.size() > 1 && windows[1].corners == best.corners)) {
-        grown.problem = fmt::format("a part of {} inner corners of a chessboard of {} x {}",
-                                    size_text,
-                                    board.columns,
-                                    board.rows);
+        grown.problem = fmt::format(
+            "the image shows only a part of the chessboard, {} of {} x {} inner corners; show the "
+            "whole board",
+            size_text,
+            board.columns,
+            board.rows);
     } else {
         grown.points = points_of(board, lattice, best);
     }
     return grown;
 }
 
-/// Area of the bounding box of points in the image.
+/// Returns the area of the bounding box of points in the image [px^2].
 double area_of(const std::vector<Eigen::Vector2d>& points) {
     if (points.empty()) return 0.0;
     Eigen::Vector2d low = points.front();
@@ -156,7 +161,7 @@ GrownChessboard grown_chessboard(const Board& board,
     GrownChessboard best;
     double best_area_px2 = 0.0;
     for (const JoinedCorners& joined : joined_corners(corners, image)) {
-        // Even a board with a broken group of corners keeps a part with some squares.
+        // If the corners of a board fall into several groups, one group still has several squares.
         if (joined.lattice.size() < kFewestJoined) break;
         const int most = std::max(board.columns, board.rows) + 2;
         const Lattice lattice = grown_lattice(joined, corners, image, most);

@@ -15,19 +15,19 @@ namespace surefoot::calibration {
 
 /// Result of growing a chessboard from single corners.
 struct GrownChessboard {
-    /// All points of the board, roughly, in order along rows and columns. Hidden points lie where
-    /// their neighbours predict them. Empty if the board was not found.
+    /// Rough positions of all points of the board [px], in order along rows and columns. Hidden
+    /// points lie where their neighbours predict them. Empty if the board was not found.
     std::vector<Eigen::Vector2d> points;
     std::string problem;  ///< description of a board that does not match; may be empty
 };
 
 /// Joins corners whose edges lead to each other and whose black squares alternate, and finds the
-/// corners of `board` among them. Looks in `image` for missing corners, where neighbours predict
-/// them. Needs no lens model: only that neighbouring squares look similar.
+/// corners of `board` among them. Searches `image` for missing corners where neighbours predict
+/// them. Needs no lens model; neighbouring squares only have to look similar.
 ///
-/// Of several such boards, returns the one that fills the largest part of the image: the others may
-/// be reflections or pictures on screens. A board that is partly outside, or part of a larger one,
-/// is not found: its points have no certain numbers.
+/// Of several such boards, returns the board that fills the largest part of the image: others may
+/// be reflections or pictures on screens. Does not find a board that is partly outside the image or
+/// part of a larger board: the numbers of its points would be uncertain.
 [[nodiscard]] GrownChessboard grown_chessboard(const Board& board,
                                                std::span<const ChessCorner> corners,
                                                ImageView<const std::uint8_t> image);

@@ -15,17 +15,20 @@ constexpr int kNobody = -1;
 /// Cosine of the largest angle between a corner's edge and the step to the next corner: 25 deg. A
 /// ring of some pixels gives the edge direction to about 5 deg; lenses bend the edge.
 constexpr double kLeastCosine = 0.906;
-/// Number of nearest corners that are tried as the next one.
+/// Number of nearest corners that may be the next corner.
 constexpr std::size_t kTried = 4;
-/// Positions along an edge where black must be on one side and white on the other.
+/// Positions along an edge, as shares of its length, where black must be on one side and white on
+/// the other.
 constexpr std::array kAlong{0.2, 0.35, 0.5, 0.65, 0.8};
-/// Share of the contrast of the two end corners.
+/// Least mean contrast of an edge, as a share of the smaller contrast of its two end corners.
 constexpr double kLeastEdge = 0.25;
-/// Share of the step: a corner farther from its predicted position is another corner.
+/// Largest distance from the predicted position, as a share of the step. A corner farther away is
+/// another corner.
 constexpr double kCapture = 0.3;
 /// Offset from a corner into the squares for their brightness, as a share of the step.
 constexpr double kIntoSquare = 0.3;
-/// Like kCapture, for existing corners, whose neighbours may be at either end of a step.
+/// Like kCapture, for existing corners. The limit is larger: the neighbours that give the
+/// prediction may be at either end of a step.
 constexpr double kMostMisfit = 0.4;
 /// Least contrast of an added corner, as a share of the contrast of its neighbours.
 constexpr double kLeastClear = 0.4;
@@ -40,12 +43,12 @@ Node operator*(int n, const Node& a) {
     return {n * a.first, n * a.second};
 }
 
-/// Interpolated grey value; nullopt outside the image.
+/// Returns the interpolated grey value; nullopt outside the image.
 std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::Vector2d& p) {
     if (!(p.x() >= 0.0 && p.y() >= 0.0 && p.x() < image.width - 1 && p.y() < image.height - 1))
         return std::nullopt;
     const int u = static_cast<int>(p.x());  // in range: inside the image, see above
-    const int v = static_cast<int>(p.y());  // in range: likewise
+    const int v = static_cast<int>(p.y());  // in range: inside the image, see above
     const double s = p.x() - u;
     const double t = p.y() - v;
     const std::uint8_t* upper = image.row(v) + u;
@@ -54,7 +57,7 @@ std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::
            t * ((1.0 - s) * lower[0] + s * lower[1]);
 }
 
-/// True if an edge runs from one corner to the other, with black on the side onwards
+/// True if an edge runs from one corner to the other. Black must be on the onwards side of the edge
 /// (`black_onwards`) or on the other side. Onwards means rotated from x (right) to y (down).
 bool is_edge(ImageView<const std::uint8_t> image,
              const ChessCorner& from,
@@ -80,14 +83,14 @@ bool is_edge(ImageView<const std::uint8_t> image,
     return right + 1 >= places && sum > kLeastEdge * contrast_dn * places;
 }
 
-/// The next corner along an edge, and its own edge that leads back.
+/// The next corner along an edge, and the number of the edge of that corner that leads back.
 struct Link {
     int to = kNobody;
     int back = 0;
 };
 using Links = std::array<Link, 4>;
 
-/// The edge of a corner in a direction (unit vector); nullopt if it has none.
+/// Returns the edge of a corner in a direction (unit vector); nullopt if the corner has none.
 std::optional<int> edge_towards(const ChessCorner& corner, const Eigen::Vector2d& direction) {
     for (int k = 0; k < 4; ++k)
         if (corner.edges[static_cast<std::size_t>(k)].dot(direction) > kLeastCosine) return k;
@@ -111,7 +114,8 @@ Links links_of(std::span<const ChessCorner> corners,
         const auto edge = edge_towards(corners[from], direction);
         if (!edge) continue;
         const auto back = edge_towards(corners[to], -direction);
-        // Black lies on one side: onwards on the way there, so not onwards on the way back.
+        // Black lies on one side of the edge: onwards on the way there, so not onwards on the way
+        // back.
         if (!back || (*edge + *back) % 2 == 0) continue;
         auto& mine = all[static_cast<std::size_t>(*edge)];
         const Candidate candidate{distance_px, {static_cast<int>(to), *back}};
@@ -154,7 +158,8 @@ std::vector<Links> mutual_links(std::span<const ChessCorner> corners,
     return mutual;
 }
 
-/// Links that are a side of a closed square of four corners. Links into clutter close no square.
+/// Links that are a side of a closed square of four corners. Links into clutter do not close a
+/// square.
 std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
     std::vector<Links> sides(links.size());
     const auto link = [&](int corner, int edge) -> const Link& {
@@ -171,7 +176,7 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
             const Link& ahead = link(corner, edge);
             const Link& aside = link(corner, edge + 1);
             if (ahead.to == kNobody || aside.to == kNobody) continue;
-            // The sideways step at the corner ahead, and the step ahead at the corner beside.
+            // Takes the sideways step at the corner ahead, and the step ahead at the corner aside.
             const Link& first = link(ahead.to, ahead.back + 3);
             const Link& second = link(aside.to, aside.back + 1);
             if (first.to == kNobody || first.to != second.to) continue;
@@ -184,8 +189,8 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
     return sides;
 }
 
-/// Walks from one corner to all connected corners. Direction `w` of the lattice leaves a corner
-/// along its edge w - turn.
+/// Walks from one corner to all connected corners. Direction number w of the lattice leaves a
+/// corner along the corner's edge number w - turn.
 JoinedCorners walked_from(std::span<const ChessCorner> corners,
                           const std::vector<Links>& links,
                           std::size_t start,
@@ -232,7 +237,8 @@ Lattice in_squares(const Lattice& lattice) {
     return kept;
 }
 
-/// Step to the next node along an axis: of the node itself, or of a neighbour across.
+/// Returns the step to the next node along an axis [px]: of the node itself, or of the neighbour
+/// beside the node.
 std::optional<Eigen::Vector2d> step_px(const Lattice& lattice,
                                        const Node& node,
                                        const Eigen::Vector2d& pixel,
@@ -277,8 +283,8 @@ void drop_misfits(Lattice& lattice) {
     }
 }
 
-/// Darkest white square around a corner minus the brightest black one; nullopt at the border of the
-/// image.
+/// Darkest white square around a corner minus the brightest black square [grey values]; nullopt at
+/// the border of the image.
 std::optional<double> contrast_dn(ImageView<const std::uint8_t> image,
                                   const Eigen::Vector2d& pixel,
                                   const Eigen::Vector2d& first_px,

@@ -27,8 +27,8 @@ struct JoinedCorners {
     bool black_first = true;
 };
 
-/// Groups of corners whose edges lead to each other, with black on one side and white on the other.
-/// Every corner belongs to a square of four. The largest group comes first.
+/// Returns groups of corners whose edges lead to each other, with black on one side and white on
+/// the other side. Every corner is part of a square of four corners. The largest group comes first.
 [[nodiscard]] std::vector<JoinedCorners> joined_corners(std::span<const ChessCorner> corners,
                                                         ImageView<const std::uint8_t> image);
 
@@ -39,12 +39,12 @@ struct JoinedCorners {
                                     ImageView<const std::uint8_t> image,
                                     int most);
 
-/// Position predicted by the neighbours of a node: between them, or on the extension of the lines
-/// through them. nullopt with too few neighbours.
+/// Predicts the position of a node [px]: between its neighbours, or on the extension of the lines
+/// through them. Returns nullopt with too few neighbours.
 [[nodiscard]] std::optional<Eigen::Vector2d> expected_place(const Lattice& lattice,
                                                             const Node& node);
 
-/// Smallest and largest coordinates; (0, 0) twice for an empty lattice.
+/// Returns the smallest and the largest coordinates; both are (0, 0) for an empty lattice.
 [[nodiscard]] std::pair<Node, Node> bounds_of(const Lattice& lattice);
 
 }  // namespace surefoot::calibration

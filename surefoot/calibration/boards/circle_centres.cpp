@@ -17,16 +17,18 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Number of circles behind a local map: one circle and the ring around it. With a second ring the
-/// map is too flat: with a fisheye lens the radius is 0.4 % too large instead of 0.27 %.
+/// Number of circles from which a local map is fitted: one circle and the ring around it. With a
+/// second ring the map is too flat: in a fisheye image the radius is then 0.4 % too large instead
+/// of 0.27 %.
 constexpr std::size_t kNeighbours = 9;
 /// Reach of the dark area beyond the rim: three sigma of a blur of 0.8 px. Farther pixels only add
 /// noise, and far noise has the largest weight.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 
-/// Derivative of the map from board to image, in the middle of some pairs. First fits a perspective
-/// map, because a parabola fits a tilted board badly; then the remaining effect of the lens.
+/// Returns the derivative of the map from board to image [px/m], in the middle of some pairs. First
+/// fits a perspective map, because a parabola fits a tilted board badly. Then fits the remaining
+/// effect of the lens.
 std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& places_m,
                                            const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<cv::Point2d> from;
@@ -57,7 +59,7 @@ std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& p
     return J_px_m;
 }
 
-/// This derivative around each point of the board.
+/// Returns the derivatives (see `local_slope`) around each point of the board.
 std::vector<std::optional<Eigen::Matrix2d>> local_slopes(
     const std::vector<Eigen::Vector3d>& board_m, const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<std::optional<Eigen::Matrix2d>> slopes;
@@ -107,15 +109,15 @@ void for_pixels_around(const Eigen::Vector2d& centre,
     }
 }
 
-/// Dark area around a rough centre: its centre of gravity within `ink_m`, and its size within
-/// `reach_m`, up to the paper.
+/// Measures the dark area around a rough centre. The centre of gravity counts pixels within
+/// `ink_m`. The size counts pixels within `reach_m`, which includes some paper.
 std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
                             const Eigen::Matrix2d& J_px_m,
                             double reach_m,
                             double ink_m,
                             ImageView<const std::uint8_t> image) {
-    constexpr double kRing = 0.9;    // paper lies beyond this share
-    constexpr double kHeart = 0.25;  // ink lies within this share
+    constexpr double kRing = 0.9;    // pixels beyond this share of reach_m are paper
+    constexpr double kHeart = 0.25;  // pixels within this share of reach_m are ink
     std::vector<double> paper_dn;
     std::vector<double> ink_dn;
     for_pixels_around(centre, J_px_m, reach_m, image, [&](const auto&, double distance, double dn) {
@@ -142,7 +144,8 @@ std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
     return blob;
 }
 
-/// `kSoftRim_px` on the board, in the direction of the strongest foreshortening.
+/// Returns the length of `kSoftRim_px` on the board [m], in the direction of the strongest
+/// foreshortening.
 double soft_rim_m(const Eigen::Matrix2d& J_px_m) {
     return kSoftRim_px * J_px_m.inverse().operatorNorm();
 }
@@ -158,7 +161,7 @@ DiscImages measured_discs(const Board& board,
     const double reach_m = 0.48 * nearest_m;
     DiscImages discs{rough, 0.0};
     std::vector<double> radii_sq_m2;
-    constexpr int kRounds = 3;  // each round uses the centres and radius of the previous one
+    constexpr int kRounds = 3;  // each round uses the centres and radius of the previous round
     for (int round = 0; round < kRounds; ++round) {
         const auto slopes = local_slopes(board_m, discs.centroids);
         radii_sq_m2.clear();

@@ -10,13 +10,13 @@ namespace surefoot::calibration {
 
 /// The circles of a grid as seen in one image.
 struct DiscImages {
-    std::vector<Eigen::Vector2d> centroids;  ///< centres of gravity of their dark areas [px]
+    std::vector<Eigen::Vector2d> centroids;  ///< centres of gravity of the dark areas [px]
     /// Radius of the circles on the board, measured from their area: the board does not state it.
     double radius_m = 0.0;
 };
 
-/// Measures centres of gravity and common radius, from rough centres. A circle with low contrast
-/// keeps its rough centre. The result is not the image of the centre (see disc_image.hpp).
+/// Measures the centres of gravity and the common radius, from rough centres. A circle with low
+/// contrast keeps its rough centre. The result is not the image of the centre (see disc_image.hpp).
 [[nodiscard]] DiscImages measured_discs(const Board& board,
                                         const std::vector<Eigen::Vector2d>& rough,
                                         ImageView<const std::uint8_t> image);

@@ -14,10 +14,12 @@ using Spots = std::vector<Eigen::Vector2d>;
 /// Position in the lattice of nearest neighbours.
 using Node = std::pair<int, int>;
 
-/// Share of the step: a spot farther from its predicted position is another spot.
+/// Largest distance from the predicted position, as a share of the step. A spot farther away is
+/// another spot.
 constexpr double kCapture = 0.35;
 
-/// Nodes of the board's points. Rows of staggered circles run along the lattice diagonals.
+/// Returns the nodes of the board's points. Rows of staggered circles run along the lattice
+/// diagonals.
 std::vector<Node> nodes_of(const Board& board) {
     std::vector<Node> nodes;
     for (int row = 0; row < board.rows; ++row) {
@@ -58,7 +60,7 @@ struct Placed {
     Eigen::Vector2d steps_px[2];
 };
 
-/// The spot nearest to the middle of all spots, and its two nearest neighbours in different
+/// Finds the spot nearest to the middle of all spots, and its two nearest neighbours in different
 /// directions.
 std::optional<Placed> seed_of(const Spots& spots) {
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();

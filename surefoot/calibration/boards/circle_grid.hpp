@@ -9,9 +9,9 @@
 
 namespace surefoot::calibration {
 
-/// Selects the spots that form a circle grid. Grows from the middle; each step is predicted from
-/// the previous one, so the lens may bend the grid. Returns the order of Board::points_m, up to a
-/// rotation or mirror image of the board; nullopt if the spots do not form it.
+/// Selects the spots that form a circle grid. The grid grows from the middle and predicts each step
+/// from the previous step, so the lens may bend the grid. Returns nullopt without such a grid. The
+/// order is that of Board::points_m, up to a rotation or mirror image of the board.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> grown_grid(
     const Board& board, const std::vector<Eigen::Vector2d>& spots);
 

@@ -13,31 +13,33 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Share of the step to the next corner. The next edge is one step away.
+/// Half size of the window, as a share of the step to the next corner. The next edge is one step
+/// away.
 constexpr double kWindow = 0.5;
-/// Farther away light and curvature change, and the noise is small enough.
+/// Largest distance of a pixel from the corner. Farther away, brightness and curvature change; the
+/// pixels within this distance average the noise well enough.
 constexpr double kMostRadius_px = 8.0;
 constexpr double kFirstBlur_px = 0.8;
-constexpr double kLeastBlur_px = 0.3;  ///< blur of a pixel's own area
+constexpr double kLeastBlur_px = 0.3;  ///< blur by the area of a pixel itself
 constexpr double kMostBlur_px = 5.0;
 constexpr int kParameters = 7;
 constexpr int kMostSteps = 30;
 constexpr double kRefined_px = 1e-4;
-/// Half of black minus white. Pure noise has less.
+/// Least contrast: half the difference between black and white. Pure noise has less contrast.
 constexpr double kLeastContrast_dn = 4.0;
-/// Largest rms of the unexplained grey values, relative to the contrast. A single edge, half a spot
-/// or a bright reflection leave more. Sharpened or noisy images of corners leave a tenth.
+/// Largest rms of the unexplained grey values, divided by the contrast. A single edge, half a spot
+/// or a bright reflection has a larger rms. Sharpened or noisy images of corners have about 0.1.
 constexpr double kMostMisfit = 0.3;
 /// Largest standard deviation of a corner. A board that moves by several square widths during the
-/// exposure still shows edges along its motion, and apparent corners anywhere on them. Corners with
-/// noise of half their contrast are still more certain.
+/// exposure still shows edges along its motion, and apparent corners anywhere on them. Corners
+/// whose noise is half their contrast still have a smaller deviation than this limit.
 constexpr double kMostSpread_px = 0.2;
 
 using Vector7 = Eigen::Matrix<double, kParameters, 1>;
 using Matrix7 = Eigen::Matrix<double, kParameters, kParameters>;
 
-/// Order of the parameters.
-constexpr int kRowAngle = 2;  // after the position
+/// Indices of the parameters. Indices 0 and 1 are the position.
+constexpr int kRowAngle = 2;
 constexpr int kColumnAngle = 3;
 constexpr int kLogBlur = 4;
 constexpr int kMean = 5;
@@ -58,7 +60,7 @@ std::vector<Sample> samples_of(ImageView<const std::uint8_t> image, const Corner
     static_assert(kReach > kMostRadius_px);
     const auto near =
         nearest_pixel(guess.pixel.x(), guess.pixel.y(), image.width, image.height, -kReach);
-    if (!near) return samples;  // no pixel of the image is within reach
+    if (!near) return samples;  // no image pixel is near enough
     const int v_end = std::min(image.height, near->v + kReach + 1);
     const int u_end = std::min(image.width, near->u + kReach + 1);
     samples.reserve(static_cast<std::size_t>((2 * kReach + 1) * (2 * kReach + 1)));
@@ -74,11 +76,11 @@ std::vector<Sample> samples_of(ImageView<const std::uint8_t> image, const Corner
     return samples;
 }
 
-/// Values of one edge through the corner, at a sample.
+/// Values of one edge through the corner, at one sample pixel.
 struct Edge {
-    double step = 0.0;          ///< -1 on one side, 1 on the other
+    double step = 0.0;          ///< brightness: -1 on one side of the edge, 1 on the other
     double per_px = 0.0;        ///< derivative of `step` by the distance from the line
-    double distance_px = 0.0;   ///< from the line
+    double distance_px = 0.0;   ///< signed distance of the sample from the line
     double per_rad = 0.0;       ///< derivative of the distance by the rotation of the line
     Eigen::Vector2d per_place;  ///< derivative of the distance by the corner position
 };
@@ -129,7 +131,7 @@ System system_at(const std::vector<Sample>& samples, const CornerGuess& guess, c
     return system;
 }
 
-/// Mean and contrast are linear: solves for them with the guessed edges.
+/// The model is linear in mean and contrast: solves for both with the guessed edges.
 void start_light(const std::vector<Sample>& samples, const CornerGuess& guess, Vector7& p) {
     p[kMean] = 0.0;
     p[kContrast] = 0.0;
@@ -141,7 +143,8 @@ double angle_of(const Eigen::Vector2d& direction) {
     return std::atan2(direction.y(), direction.x());
 }
 
-/// Fixes the blur at its limit if it would leave it: the other parameters converge without it.
+/// Fixes the blur at its limit if the next step would exceed the limit. The other parameters then
+/// converge with a fixed blur.
 void hold_blur_at_limit(const Vector7& p, System& system) {
     const double pull = system.Jtr[kLogBlur];
     const bool held =
@@ -153,7 +156,7 @@ void hold_blur_at_limit(const Vector7& p, System& system) {
     system.Jtr[kLogBlur] = 0.0;
 }
 
-/// Levenberg and Marquardt. Returns the final equations; nullopt without convergence.
+/// Runs the Levenberg-Marquardt method. Returns the final equations; nullopt without convergence.
 std::optional<System> settle(const std::vector<Sample>& samples,
                              const CornerGuess& guess,
                              Vector7& p) {
@@ -174,14 +177,14 @@ std::optional<System> settle(const std::vector<Sample>& samples,
             system = there;
             damping *= 0.1;
         } else {
-            damping *= 10.0;  // shorter steps; ends if no step improves
+            damping *= 10.0;  // shorter steps; the loop ends if no step improves the cost
         }
         if (settled) return system;
     }
     return std::nullopt;
 }
 
-/// Standard deviation of the position in its most uncertain direction.
+/// Returns the standard deviation of the position in its most uncertain direction [px].
 double spread_px(const System& system, double misfit_dn) {
     Matrix7 damped = system.JtJ;
     damped.diagonal() *= 1.0 + 1e-9;

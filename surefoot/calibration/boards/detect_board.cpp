@@ -25,17 +25,19 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Least number of pixels between neighbouring points; the board is not searched for with fewer.
+/// Least number of pixels between neighbouring points. With fewer pixels the board is not searched.
 constexpr int kFewestPixelsPerPoint = 4;
 /// Half the window of the corner refinement, as in OpenCV's samples and in the published figures
 /// that we compare with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
-/// Least share of clear corners. Reflections may hide single ones; with fewer it is another object.
+/// Least percentage of clear corners. Reflections may hide single corners. An object with fewer
+/// clear corners is not this board.
 constexpr int kLeastPercent = 75;
-/// Searches boards with a blur above 2 px in images reduced to a half and to a quarter.
+/// Number of halvings of the image: boards with a blur above 2 px are found at half or a quarter of
+/// the size.
 constexpr int kMostHalvings = 2;
-/// With more dark spots the search for the grid would take minutes.
+/// Largest number of dark spots. With more spots the search for the grid would take minutes.
 constexpr std::size_t kMostBlobs = 600;
 /// Larger images are not enlarged to find small circles: this would take seconds.
 constexpr std::size_t kMostPixelsEnlarged = 1280 * 1024;
@@ -59,7 +61,8 @@ BoardSighting whole_board(const Points& points) {
     return sighting;
 }
 
-/// Distance of a point to its nearest neighbour in row and column; infinity without neighbours.
+/// Returns the distance of a point to its nearest neighbour in row and column [px]; infinity
+/// without neighbours.
 double nearest_px(const Board& board, const BoardView& view, std::size_t index) {
     double nearest = std::numeric_limits<double>::infinity();
     const int id = view.ids[index];
@@ -73,7 +76,7 @@ double nearest_px(const Board& board, const BoardView& view, std::size_t index) 
 }
 
 /// Moves corners to the point where the surrounding gradients meet. The half window is `reach` of
-/// the distance to the next corner. False if a corner moved too far.
+/// the distance to the next corner. Returns false if a corner moved too far.
 bool refine_corners(const Board& board, const cv::Mat& image, double reach, BoardView& view) {
     const BoardView rough = view;
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
@@ -100,7 +103,7 @@ Points sector_corners(const Board& board, const cv::Mat& image, int more) {
     return points_of(corners);
 }
 
-/// Boards grown from single corners, in an image whose sides are halved `halvings` times.
+/// Grows boards from single corners, in an image whose sides are halved `halvings` times.
 GrownChessboard grown_corners(const Board& board,
                               const cv::Mat& image,
                               ImageView<const std::uint8_t> view,
@@ -110,22 +113,27 @@ GrownChessboard grown_corners(const Board& board,
     if (times > 1) cv::resize(image, reduced, image.size() / times, 0.0, 0.0, cv::INTER_AREA);
     std::vector<ChessCorner> corners =
         chess_corners({reduced.data, reduced.cols, reduced.rows, static_cast<int>(reduced.step)});
-    for (ChessCorner& corner : corners)  // (0, 0) is the centre of a pixel in both
+    for (ChessCorner& corner : corners)  // (0, 0) is a pixel centre in both images
         corner.pixel = times * (corner.pixel + Eigen::Vector2d::Constant(0.5)) -
                        Eigen::Vector2d::Constant(0.5);
     return grown_chessboard(board, corners, view);
 }
 
-/// The board from rough corner positions.
+/// Finds the board from rough corner positions.
 BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
     const auto points = ordered_points(board, corners, view);
-    if (!points) return not_found("corners that do not form this chessboard");
+    if (!points)
+        return not_found(
+            "the corners in the image do not form this chessboard; check its size and show the "
+            "whole board");
     BoardSighting sighting = whole_board(*points);
     fit_corners(board, view, sighting.view);
     if (100 * std::ssize(sighting.view.ids) < kLeastPercent * board.columns * board.rows)
-        return not_found("a chessboard without clear corners (blurred?)");
+        return not_found(
+            "the corners of the chessboard are not clear, perhaps the image is blurred; hold the "
+            "board still");
     return sighting;
 }
 
@@ -152,22 +160,25 @@ BoardSighting find_chessboard(const Board& board,
         if (BoardSighting sighting = tried(corners); sighting.found()) return sighting;
     }
     if (!problem.empty()) return not_found(problem);
-    return not_found(fmt::format(
-        "no chessboard of {} x {} inner corners is fully visible", board.columns, board.rows));
+    return not_found(
+        fmt::format("no chessboard of {} x {} inner corners is fully visible; show the whole "
+                    "board, or correct its size",
+                    board.columns,
+                    board.rows));
 }
 
 cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& image) {
     cv::SimpleBlobDetector::Params params;
     params.minArea = 12.0F;  // radius 2 px
-                             // A board that fills the image has circles no larger than their cells.
+    // A board that fills the image has circles no larger than the cells of the grid.
     params.maxArea =
         0.7F * static_cast<float>(image.total()) / static_cast<float>(board.columns * board.rows);
     params.minDistBetweenBlobs = kFewestPixelsPerPoint;
     return params;
 }
 
-/// Centres of the grid from an image that is `enlarged` times the original, in pixels of the
-/// original and in the order of the board.
+/// Finds the centres of the grid in an image that is `enlarged` times the original. Returns the
+/// centres in pixels of the original and in the order of the board.
 std::optional<Points> find_grid(const Board& board,
                                 const cv::Mat& image,
                                 double enlarged,
@@ -178,7 +189,7 @@ std::optional<Points> find_grid(const Board& board,
     if (std::ssize(blobs) < board.columns * board.rows || blobs.size() > kMostBlobs)
         return std::nullopt;
     const auto in_order = [&](Points points) {
-        for (Eigen::Vector2d& point : points)  // (0, 0) is the centre of a pixel in both
+        for (Eigen::Vector2d& point : points)  // (0, 0) is a pixel centre in both images
             point = (point + Eigen::Vector2d::Constant(0.5)) / enlarged -
                     Eigen::Vector2d::Constant(0.5);
         return ordered_points(board, points, original);
@@ -189,7 +200,7 @@ std::optional<Points> find_grid(const Board& board,
     if (const auto grid = grown_grid(board, spots)) {
         if (auto points = in_order(*grid)) return points;
     }
-    // OpenCV's search tolerates spots beside the board better.
+    // OpenCV's search is more tolerant of spots beside the board than grown_grid.
     const int kind = board.kind == BoardKind::circles ? cv::CALIB_CB_SYMMETRIC_GRID
                                                       : cv::CALIB_CB_ASYMMETRIC_GRID;
     const cv::Size size(board.columns, board.rows);
@@ -217,13 +228,15 @@ BoardSighting find_circles(const Board& board,
         sighting.view.disc_radius_m = discs.radius_m;
         return sighting;
     }
-    return not_found(fmt::format("no {} of {} x {} dark circles on white is fully visible",
-                                 board.kind == BoardKind::circles ? "grid" : "staggered grid",
-                                 board.columns,
-                                 board.rows));
+    return not_found(
+        fmt::format("no {} of {} x {} dark circles on white is fully visible; show the whole "
+                    "board, or correct its size",
+                    board.kind == BoardKind::circles ? "grid" : "staggered grid",
+                    board.columns,
+                    board.rows));
 }
 
-/// True if all points lie on one line of the board: they then do not fix the plane.
+/// True if all points lie on one line of the board: these points do not determine the plane.
 bool on_one_line(const Board& board, const std::vector<int>& ids) {
     const int first_row = ids.front() / board.columns;
     const int first_column = ids.front() % board.columns;
@@ -252,21 +265,26 @@ BoardSighting find_charuco(const Board& board, const cv::Mat& image) {
     if (!marker_ids.empty())
         cv::aruco::interpolateCornersCharuco(markers, marker_ids, image, charuco, corners, ids);
     if (static_cast<int>(ids.size()) < kFewestCharucoPoints) {
-        return not_found(fmt::format("{} markers of {} and {} corners between them; {} are needed",
-                                     marker_ids.size(),
-                                     board.dictionary,
-                                     ids.size(),
-                                     kFewestCharucoPoints));
+        return not_found(
+            fmt::format("the image shows {} markers of {} and {} corners between them; at least {} "
+                        "corners are needed: show more of the board",
+                        marker_ids.size(),
+                        board.dictionary,
+                        ids.size(),
+                        kFewestCharucoPoints));
     }
     if (on_one_line(board, ids))
-        return not_found("only corners on one line of the board; show more of it");
+        return not_found(
+            "all corners in the image lie on one line of the board; show more of the board");
     BoardSighting sighting;
     sighting.view.ids = ids;
     sighting.view.pixels = points_of(corners);
     // The window ends before the marker beside the corner.
     const double margin = 0.5 * (board.spacing_m - board.marker_m) / board.spacing_m;
     if (!refine_corners(board, image, margin, sighting.view))
-        return not_found("a ChArUco board without clear corners (blurred?)");
+        return not_found(
+            "the corners of the ChArUco board are not clear, perhaps the image is blurred; hold "
+            "the board still");
     return sighting;
 }
 
@@ -285,15 +303,18 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
     const int shorter = std::min(image.width, image.height);
     const int needed = kFewestPixelsPerPoint * std::min(board.columns, board.rows);
     if (shorter < needed && board.kind != BoardKind::charuco) {
-        return not_found(fmt::format("an image of {} x {} px is too small for {} x {} points",
-                                     image.width,
-                                     image.height,
-                                     board.columns,
-                                     board.rows));
+        return not_found(fmt::format(
+            "the image of {} x {} px is too small for a board of {} x {} points; use larger images",
+            image.width,
+            image.height,
+            board.columns,
+            board.rows));
     }
     if (shorter < kFewestPixelsPerPoint * 2)
         return not_found(
-            fmt::format("an image of {} x {} px is too small", image.width, image.height));
+            fmt::format("the image of {} x {} px is too small to show a board; use larger images",
+                        image.width,
+                        image.height));
     const cv::Mat pixels(image.height,
                          image.width,
                          CV_8UC1,
@@ -309,7 +330,8 @@ BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> ima
     } catch (const cv::Exception& error) {
         return not_found(fmt::format("OpenCV failed: {}", error.err));
     }
-    return not_found("unknown kind of board");
+    return not_found(
+        "the kind of board is unknown; use chessboard, circles, asymmetric_circles or charuco");
 }
 
 }  // namespace surefoot::calibration

@@ -17,29 +17,29 @@ struct BoardSighting {
     [[nodiscard]] bool found() const noexcept { return problem.empty(); }
 };
 
-/// Error if boards of this kind cannot be detected: wrong sizes or ChArUco dictionary.
+/// Returns an error if the board cannot be detected: wrong sizes or wrong ChArUco dictionary.
 [[nodiscard]] Status check_detectable(const Board& board);
 
-/// Detects the board in an image, to sub-pixels. Grids and chessboards must be fully visible; a
-/// ChArUco board needs `kFewestCharucoPoints` points that do not lie on one line.
+/// Detects the board in an image, to sub-pixel accuracy. Grids and chessboards must be fully
+/// visible; a ChArUco board needs `kFewestCharucoPoints` points that do not lie on one line.
 ///
 /// Order of the points, seen from the front: x of the board points right and y down. The square
 /// between the first four points of a chessboard is black. If a board looks the same after a
 /// rotation (see `turns_of`), its rows run to the right in the image. `turned_like` makes the
 /// second camera of a pair agree with the first.
 ///
-/// Circles: centre of gravity of the dark area, and the radius from its size. On a near, tilted
-/// board the image of a circle's centre lies up to half a pixel beside it. Computing that offset
-/// needs the lens model.
+/// Circles: gives the centre of gravity of each dark area, and the radius from its size. On a near,
+/// tilted board the image of a circle's centre lies up to half a pixel beside it. Computing that
+/// offset needs the lens model.
 inline constexpr int kFewestCharucoPoints = 6;
 [[nodiscard]] BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> image);
 
-/// All renumberings of the points after which the board looks the same, as the new id of each
-/// point. First the identity, then rotations by a quarter, half and three quarters if valid.
+/// Returns all renumberings after which the board looks the same, each as new ids of all points.
+/// The identity comes first, then valid rotations by a quarter, half and three quarters turn.
 [[nodiscard]] std::vector<std::vector<int>> turns_of(const Board& board);
 
-/// The view, renumbered by the rotation of the board whose rows are most parallel to those of
-/// `reference`. Valid for the two cameras of a rig, which differ by less than 45 deg.
+/// Renumbers the view by the rotation of the board whose rows are most parallel to the rows of
+/// `reference`. Valid for the two cameras of a rig if their rotations differ by less than 45 deg.
 [[nodiscard]] BoardView turned_like(const Board& board,
                                     const BoardView& reference,
                                     const BoardView& view);

@@ -11,13 +11,13 @@ namespace surefoot::calibration {
 /// px for discs that fill half of their cells on a board that fills the image.
 inline constexpr int kRimPoints = 8;
 
-/// Rim points of a disc of radius 1, and weights for the derivative by the angle: those of a
-/// trigonometric polynomial through values at equal angles (Trefethen, *Spectral methods in
-/// MATLAB*, 2000, chapter 3). The weights repeat around the rim.
+/// Rim points of a disc of radius 1, and weights for the derivative by the angle. The weights are
+/// those of a trigonometric polynomial through values at equal angles (Trefethen, *Spectral methods
+/// in MATLAB*, 2000, chapter 3). They repeat around the rim.
 struct Rim {
     std::array<double, kRimPoints> x{};
     std::array<double, kRimPoints> y{};
-    std::array<double, kRimPoints> slope{};  ///< weight of the value so many positions ahead
+    std::array<double, kRimPoints> slope{};  ///< [k]: weight of the value k positions ahead
 
     Rim() {
         constexpr double kStep_rad = 2.0 * std::numbers::pi / kRimPoints;
@@ -32,12 +32,12 @@ struct Rim {
     }
 };
 
-/// Centre of gravity of the image of a disc, the quantity that an image shows. Where the map bends
-/// (perspective, lens), the image of the centre lies elsewhere. Green's theorem turns area and
+/// Computes the centre of gravity of the image of a disc; detectors measure this point. Perspective
+/// and lens move it away from the image of the disc's centre. Green's theorem turns area and
 /// moments into rim integrals: of u dv - v du (twice the area), u^2 dv and -v^2 du.
 ///
-/// `project(x, y, pixel)` maps a position relative to the centre of a disc of radius 1 into the
-/// image; returns false without an image. The result is then false, as for a disc seen edge on.
+/// `project(x, y, pixel)` maps a position on a disc of radius 1 into the image, or returns false if
+/// it has no image. disc_image then returns false, also for a disc seen edge on.
 template <typename T, typename Project>
 bool disc_image(const Project& project, T* pixel) {
     static const Rim rim;

@@ -8,13 +8,13 @@
 
 namespace surefoot::calibration {
 
-/// Keeps a lens model plausible where no board was. There only the formula counts, and its image
-/// can fold back before the corners, while every pixel of a real lens sees something. A profile
-/// gives the growth of its image at a `place`, relative to the centre, and the least growth of real
-/// lenses. The limit is half of that growth.
+/// Keeps a lens model plausible where no board was seen. There only the formula counts. Its image
+/// can fold back before the corners, although every pixel of a real lens shows something. A profile
+/// gives the growth of the image at a `place`, relative to the centre. `kLeastGrowth` is the limit,
+/// as a share of the least growth of real lenses.
 inline constexpr double kLeastGrowth = 0.5;
-inline constexpr double kGrowthStep = 0.05;  ///< step of tan(angle); fisheyes: of the angle [rad]
-inline constexpr int kGrowthPlaces = 60;     ///< up to 72 deg from the axis, for a fisheye 172 deg
+inline constexpr double kGrowthStep = 0.05;  ///< step of tan(angle); fisheye: of the angle [rad]
+inline constexpr int kGrowthPlaces = 60;     ///< pinhole: up to 72 deg; fisheye: up to 172 deg
 
 inline double growth_place(int i) {
     return kGrowthStep * (i + 0.5);
@@ -24,11 +24,11 @@ inline double growth_place(int i) {
 struct PinholeGrowth {
     static constexpr int kParameters = 12;
 
-    /// Limit from an orthographic lens, which grows less than real fisheye lenses.
+    /// Half the growth of an orthographic lens, which grows less than real fisheye lenses.
     static double least(double r) { return kLeastGrowth * std::pow(1.0 + r * r, -1.5); }
 
-    /// d image / d r of the radial profile at distance `r` on the plane z = 1. False beyond a
-    /// pole.
+    /// Computes d image / d r of the radial profile at distance `r` on the plane z = 1. Returns
+    /// false beyond a pole of the profile.
     template <typename T>
     static bool at(const T* lens, double r, T* growth) {
         const double s = r * r;
@@ -46,10 +46,10 @@ struct PinholeGrowth {
 struct FisheyeGrowth {
     static constexpr int kParameters = 8;
 
-    /// Limit of an equisolid lens, 2 sin(angle / 2): an orthographic image ends before 90 deg.
+    /// Half the growth of an equisolid lens: the image of an orthographic lens ends before 90 deg.
     static double least(double theta) { return kLeastGrowth * std::cos(0.5 * theta); }
 
-    /// d image / d theta.
+    /// Computes d image / d theta. Always returns true.
     template <typename T>
     static bool at(const T* lens, double theta, T* growth) {
         const double s = theta * theta;
@@ -59,8 +59,8 @@ struct FisheyeGrowth {
     }
 };
 
-/// Number of places until a profile with the least growth reaches the farthest image corner, and
-/// whether the profile folds back before.
+/// Number of places until the profile reaches the farthest image corner, and whether the profile
+/// folds back before. A growth below the limit counts as the limit.
 struct GrowthCheck {
     int places = 0;
     bool turns_back = false;
@@ -83,7 +83,7 @@ GrowthCheck check_growth(const double* lens, ImageSize size) {
     return check;
 }
 
-/// Missing growth of an image up to its corners, as residuals for a least-squares solver.
+/// Residuals for a least-squares solver: how far the image growth is below the limit.
 template <typename Profile>
 struct GrowthLack {
     int places = 0;

@@ -19,22 +19,22 @@ namespace {
 constexpr int kPinhole = 12;  ///< block size of all pinhole kinds; unused parameters stay 0
 constexpr int kFisheye = 8;
 
-/// The denominator of the rational model can cancel its numerator: along that direction views do
-/// not determine the coefficients. This prior keeps them near zero. Relative to corner noise of
-/// 0.15 px it has standard deviation 3, the size in real lenses (Azure Kinect: 0.5 -2.6 1.5 / 0.4
-/// -2.5 1.4).
+/// The denominator of the rational model can cancel its numerator. Views do not determine the
+/// coefficients along that direction, so this prior keeps the coefficients near zero. For corner
+/// noise of 0.15 px the prior has standard deviation 3. Coefficients of real lenses have this size
+/// (Azure Kinect: numerator 0.5 -2.6 1.5, denominator 0.4 -2.5 1.4).
 constexpr double kPriorWeight_px = 0.05;
 constexpr double kRationalBound = 20.0;
-/// Weight of missing image growth, in units of the growth at the centre: a limit of 0.01 relative
-/// to errors of 0.05 px.
+/// Weight of missing image growth [px per unit of the growth at the centre]. A lack of 0.01 then
+/// weighs as much as a residual of 0.05 px.
 constexpr double kGrowthWeight_px = 5.0;
 constexpr int kGrowthRounds = 4;
-/// Largest cost of holding the growth, in variances of a coordinate: two sigma. A larger cost means
-/// that boards were in that image part and contradict.
+/// Largest cost of holding the growth, as a multiple of the variance of a coordinate: two sigma. A
+/// larger cost means that boards in that image part contradict the limit.
 constexpr double kMostObjection = 4.0;
 constexpr std::array<int, 6> kRadial{4, 5, 8, 9, 10, 11};  ///< k1 k2 k3 k4 k5 k6
 
-using PoseBlock = std::array<double, 6>;  ///< rotation vector, translation
+using PoseBlock = std::array<double, 6>;  ///< rotation vector [rad], translation [m]
 
 PoseBlock block_of(const Pose& T) {
     const Eigen::Vector3d w = log_so3(T.rotation);
@@ -59,7 +59,7 @@ void transform_inverse(const T* pose, const T* p, T* result) {
     ceres::AngleAxisRotatePoint(back, shifted, result);
 }
 
-/// Reprojection of one sight, left or right: of a point, or of a disc with radius.
+/// Reprojection of one sight in the left or right image: of a point, or of a disc with a radius.
 template <bool kIsFisheye>
 struct Reprojection {
     Eigen::Vector3d point;
@@ -126,7 +126,7 @@ template <bool kIsFisheye>
 ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
     using Functor = Reprojection<kIsFisheye>;
-    // The cost function takes ownership.
+    // The cost function takes ownership of the functor.
     auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
     if (sight.camera == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
@@ -168,7 +168,7 @@ class Graph {
         for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
     }
 
-    /// Makes the lens images reach their corners. False if they already do.
+    /// Makes the lens images reach their corners. Returns false if they already do.
     bool hold_growth() {
         bool turns_back = false;
         for (Lens& lens : lenses_) {
@@ -180,7 +180,7 @@ class Graph {
         return turns_back;
     }
 
-    /// Removes the distortion of the lenses, to restart a run.
+    /// Removes the distortion of the lenses, for a new start of `run`.
     void straighten() {
         for (Lens& lens : lenses_) std::fill(lens.begin() + 4, lens.end(), 0.0);
     }
@@ -243,7 +243,7 @@ class Graph {
         return true;
     }
 
-    /// Order that eliminates the boards first. The solver takes ownership.
+    /// Returns the order that eliminates the boards first. The solver takes ownership of the order.
     ceres::ParameterBlockOrdering* boards_first() {
         auto* order = new ceres::ParameterBlockOrdering;
         for (PoseBlock& pose : poses_)
@@ -295,8 +295,8 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     return Eigen::Matrix3d::Identity() - a * W + b * W * W;
 }
 
-/// Cost with images that reach their corners; nullopt if they do so without the limit, or if the
-/// solver finds no step.
+/// Runs the solver until the images reach their corners and returns the cost. Returns nullopt if
+/// the images reach them without the limit, or if the solver finds no step.
 std::optional<double> run_held(Graph& graph, const BundleOptions& options) {
     std::optional<double> held;
     for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
@@ -314,11 +314,11 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     if (!cost) return cost;
     graph.store(bundle);
     if (!options.hold_growth) return cost;
-    // The cost is half of two residuals per sight, each with this variance.
+    // The cost is half the sum of squares of two residuals per sight, each with this variance.
     const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
     const double most = *cost + 0.5 * kMostObjection * variance_px2;
     std::optional<double> held = run_held(graph, options);
-    // An image that folded back may lie behind a pole; no step leads from there to a growing lens.
+    // An image that folded back may lie behind a pole. No step leads from there to a growing lens.
     if (held && *held > most) {
         graph.straighten();
         held = graph.run(options);

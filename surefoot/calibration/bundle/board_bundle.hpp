@@ -23,8 +23,8 @@ struct Sight {
 struct BoardBundle {
     LensKind kind = LensKind::pinhole5;
     ImageSize size;
-    std::vector<Eigen::VectorXd> lenses;  ///< one or two, order of parameter_names
-    Pose T_left_right;                    ///< used with two lenses
+    std::vector<Eigen::VectorXd> lenses;  ///< one per camera; order of parameter_names
+    Pose T_left_right;                    ///< used with two cameras only
     std::vector<Pose> T_left_board;       ///< one per view
     std::vector<Sight> sights;
     /// If 0, sights are images of points; otherwise centres of gravity of disc images.
@@ -43,10 +43,10 @@ struct BundleOptions {
     Freedom freedom = Freedom::everything;
     double huber_px = 0.0;  ///< larger residuals count linearly; 0 = least squares
     int max_iterations = 100;
-    /// The solver stops below this relative change of the cost. Intermediate steps need less.
+    /// The solver stops below this relative change of the cost. First steps allow a larger change.
     double tolerance = 1e-12;
     /// True: prevents a lens image from folding back before the image corners (growing_image.hpp),
-    /// unless the sights contradict.
+    /// unless the sights contradict this.
     bool hold_growth = false;
 };
 
@@ -55,13 +55,13 @@ struct BundleOptions {
 /// solver finds no step.
 [[nodiscard]] std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options);
 
-/// Measured minus predicted [px], one per sight; NaN if the model has no image of the point.
+/// Returns measured minus predicted pixels, one per sight; NaN if a point has no image.
 [[nodiscard]] std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle);
 
-/// Covariance of all lens parameters (one lens after the other) and, with two lenses, of
-/// T_left_right (translation, rotation; right perturbation), for pixel noise of `sigma_px` per
-/// coordinate. Board poses are marginalised. The growth limit is left out: it bounds the truth on
-/// one side only. nullopt if the views do not determine the parameters.
+/// Covariance of all lens parameters, one lens after the other, for pixel noise of `sigma_px` per
+/// coordinate. With two lenses T_left_right follows (translation, rotation; right perturbation).
+/// Board poses are marginalised. The growth limit is left out: it bounds the truth on one side
+/// only. Returns nullopt if the views do not determine the parameters.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px);
 
 }  // namespace surefoot::calibration

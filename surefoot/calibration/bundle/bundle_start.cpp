@@ -13,15 +13,17 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Focal length divided by the longer image side: 0.1 is an equidistant lens of 570 deg, 6 a
-/// telephoto lens of 9 deg.
+/// Focal length divided by the longer image side: 0.1 is an equidistant lens with a field of view
+/// of 570 deg. 6 is a telephoto lens with a field of view of 9 deg.
 constexpr double kShortest = 0.1;
 constexpr double kLongest = 6.0;
 constexpr double kFocalStep = 1.15;
 constexpr std::size_t kRefined = 3;
-/// Largest error of a view [px], so that a view with wrong ids cannot determine the focal length.
+/// Largest error of a view [px]. This limit prevents a view with wrong ids from determining the
+/// focal length.
 constexpr double kSaturation_px = 20.0;
-/// Without known distortion, errors of this size are normal [px].
+/// Residuals above this count linearly [px]. Residuals of this size are normal before the
+/// distortion is known.
 constexpr double kStartHuber_px = 5.0;
 constexpr int kStageIterations = 30;
 constexpr double kStageTolerance = 1e-6;
@@ -54,7 +56,7 @@ void set_focal(BoardBundle& bundle, double focal_px) {
         0.5 * (bundle.size.height - 1);
 }
 
-/// Computes the board poses for the current lens; returns their error.
+/// Computes the board poses for the current lens; returns the error of the views.
 double score(BoardBundle& bundle) {
     const std::vector<ViewRays> views = rays_of(bundle);
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -134,12 +136,13 @@ struct Start {
     double cost = 0.0;
 };
 
-/// Infinite without a start: an invalid cost never wins.
+/// Returns the cost of a start; infinite without a start, so that an existing start wins.
 double cost_of(const std::optional<Start>& start) {
     return start ? start->cost : std::numeric_limits<double>::infinity();
 }
 
-/// Cost of the views that a start cannot explain, so that it does not look better without them.
+/// Returns a cost for the views that a start cannot explain. Otherwise the start would look better
+/// because it leaves them out.
 double cost_of_missing(const BoardBundle& all, const BoardBundle& start) {
     const auto missing = static_cast<double>(all.sights.size() - start.sights.size());
     return missing * kStartHuber_px * kSaturation_px;
@@ -161,9 +164,9 @@ std::optional<Start> best_start(const BoardBundle& bundle) {
     return best;
 }
 
-/// The rational lens that is nearest to Kannala and Brandt's radius r of the angle t: tan t (1 + k1
-/// tan^2 t + k2 tan^4 t) = r (1 + k4 tan^2 t + k5 tan^4 t) is linear in the coefficients. The
-/// highest ones stay 0: with them the quotient may have a pole.
+/// Returns the rational lens that is nearest to Kannala and Brandt's radius r of the angle t. The
+/// equation tan t (1 + k1 tan^2 t + k2 tan^4 t) = r (1 + k4 tan^2 t + k5 tan^4 t) is linear in the
+/// coefficients. The highest coefficients k3 and k6 stay 0: with them the quotient may have a pole.
 Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad) {
     constexpr int kAngles = 60;
     const camera::CameraModel model = model_of(LensKind::fisheye, fisheye);
@@ -172,7 +175,7 @@ Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad)
     for (int i = 0; i < kAngles; ++i) {
         const double t = widest_rad * (i + 1) / kAngles;
         const auto pixel = camera::project(model, {std::sin(t), 0.0, std::cos(t)});
-        if (!pixel) break;  // outside the lens
+        if (!pixel) break;  // the direction has no image
         const double r = (pixel->x() - fisheye[2]) / fisheye[0];
         const double x = std::tan(t);
         const double x2 = x * x;
@@ -190,7 +193,7 @@ Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad)
 void become_rational(BoardBundle& bundle) {
     const camera::CameraModel model = model_of(bundle.kind, bundle.lenses[0]);
     if (bundle.kind == LensKind::fisheye) {
-        constexpr double kWidest_rad = 1.4;  // the tangent grows without limit
+        constexpr double kWidest_rad = 1.4;  // at wider angles the tangent grows without limit
         double least_z = 1.0;
         for (const Sight& sight : bundle.sights)
             if (const auto ray = camera::unproject(model, sight.pixel))
@@ -204,8 +207,9 @@ void become_rational(BoardBundle& bundle) {
     drop_invisible(bundle);
 }
 
-/// Neither a pinhole camera nor a fisheye is near every rational lens. From 100 deg on the
-/// polynomial of the pinhole sometimes ends in a false minimum.
+/// Starts a rational lens from a pinhole camera and from a fisheye: neither is near every rational
+/// lens. From a field of view of 100 deg on, the polynomial of the pinhole sometimes ends in a
+/// false minimum.
 std::optional<Start> best_rational_start(const BoardBundle& bundle) {
     std::optional<Start> best;
     for (const LensKind near : {LensKind::pinhole5, LensKind::fisheye}) {

@@ -16,7 +16,7 @@ struct CameraFit {
     double rms_px = 0.0;        ///< root of the mean squared distance of the points used
 };
 
-/// One per view of `solved`, for camera 0 or 1. `all`: the sights before outliers were removed.
+/// Returns one fit per view of `solved`, for camera 0 or 1. `all`: sights before outlier removal.
 [[nodiscard]] std::vector<CameraFit> camera_fits(const BoardBundle& solved,
                                                  std::span<const Sight> all,
                                                  std::span<const Sight> outliers,

@@ -14,13 +14,13 @@
 namespace surefoot::calibration {
 namespace {
 
-// ASSUMPTION for all four limits and kEnoughTilt_deg: handbooks of calibration tools ask for ten or
+// ASSUMPTION for all four limits and kEnoughTilt_deg. Handbooks of calibration tools ask for ten or
 // more views, tilts of 20 to 45 deg, the whole image and two distances. The covariance of the
-// result says whether that was enough.
+// result says whether the views were enough.
 constexpr int kEnoughViews = 10;
 constexpr double kEnoughDistances =
-    1.5;                              ///< largest / smallest spacing of board points in the images
-constexpr double kFilledShare = 0.5;  ///< share of the parts of a region
+    1.5;                              ///< least ratio of the largest to the smallest point spacing
+constexpr double kFilledShare = 0.5;  ///< least share of the parts of a region that contain points
 constexpr double kNearView = 0.4;     ///< share of the image that a near view fills
 
 constexpr const char* kRegionNames[3][3] = {{"top left", "top", "top right"},

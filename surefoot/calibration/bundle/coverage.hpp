@@ -19,9 +19,9 @@ inline constexpr double kEnoughTilt_deg = 20.0;
 
 /// Pose of a board, estimated from the image alone.
 struct ViewShape {
-    double spacing_px = 0.0;  ///< geometric mean for neighbouring points in the middle of the view
+    double spacing_px = 0.0;  ///< distance of neighbouring points in the middle (geometric mean)
     /// Angle between the board and the image plane, from the foreshortening in the middle of the
-    /// view (exact for a small board on the optical axis).
+    /// view. Exact for a small board on the optical axis.
     double tilt_deg = 0.0;
     NearSide near_side = NearSide::left;  ///< meaningful only for a tilted board
 };
@@ -32,11 +32,11 @@ struct Coverage {
     static constexpr int kRows = 9;
     Image<int> points{kColumns, kRows};  ///< board points seen in each part of the image
     std::vector<ViewShape> views;        ///< one per view; all zero for a view with too few points
-    double seen_share = 0.0;             ///< share of parts with a point
+    double seen_share = 0.0;             ///< share of image parts with a point, 0 to 1
     std::vector<std::string> advice;     ///< sentences, most important first; empty = enough
 };
 
-/// Views need no previous check. Points outside the image are ignored.
+/// Rates the coverage of views, also of unchecked views. Ignores points outside the image.
 [[nodiscard]] Coverage coverage_of(const Board& board,
                                    std::span<const BoardView> views,
                                    int width,

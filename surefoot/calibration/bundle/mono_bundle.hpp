@@ -8,8 +8,8 @@
 
 namespace surefoot::calibration {
 
-/// The views `kept` (indices into `views`, which must be usable) as a bundle of one camera with
-/// unknown lens and unknown poses. Sights are ordered by view.
+/// Returns the views `kept` (indices into `views`, which must be usable) as a bundle of one camera
+/// with unknown lens and unknown poses. Sights are ordered by view.
 [[nodiscard]] BoardBundle mono_bundle(const Board& board,
                                       std::span<const BoardView> views,
                                       std::span<const std::size_t> kept,

@@ -10,7 +10,8 @@ namespace {
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// Points count as a line if shortest over longest axis of their scatter is below this.
+/// Points count as collinear if the shortest axis of their scatter divided by the longest is below
+/// this.
 constexpr double kLine = 1e-3;
 
 Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
@@ -19,7 +20,8 @@ Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Maps board coordinates to mean 0 and mean square 2; this keeps the system well conditioned.
+/// Maps board coordinates to mean 0 and mean square 2; this scaling keeps the system well
+/// conditioned.
 Eigen::Matrix3d normaliser(std::span<const Eigen::Vector3d> points) {
     const Eigen::Vector3d centre = mean(points);
     double square = 0.0;
@@ -31,14 +33,14 @@ Eigen::Matrix3d normaliser(std::span<const Eigen::Vector3d> points) {
     return N;
 }
 
-/// H such that the rays are parallel to H (x, y, 1), up to scale.
+/// Returns H such that the rays are parallel to H (x, y, 1); H is known up to scale.
 Eigen::Matrix3d homography(std::span<const Eigen::Vector3d> points,
                            std::span<const Eigen::Vector3d> rays) {
     const Eigen::Matrix3d N = normaliser(points);
     Matrix9 normal = Matrix9::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d m = N * Eigen::Vector3d(points[i].x(), points[i].y(), 1.0);
-        const Eigen::Matrix3d S = skew(rays[i]);  // ray x (H m) = 0, H column by column
+        const Eigen::Matrix3d S = skew(rays[i]);  // ray x (H m) = 0 is linear in H
         Eigen::Matrix<double, 3, 9> rows;
         rows << m.x() * S, m.y() * S, m.z() * S;
         normal += rows.transpose() * rows;

@@ -9,9 +9,9 @@
 namespace surefoot::calibration {
 
 /// Pose of a flat board whose points (z = 0) appear along `rays`. Uses the direct linear transform
-/// between the plane and the rays (Hartley and Zisserman 2004, section 4.1), orthonormalised. Rays
-/// may point anywhere, also beyond 90 deg. A start value, not an optimum. nullopt for fewer than
-/// four points, for points on a line, or if no plane in front explains the rays.
+/// between the plane and the rays (Hartley and Zisserman 2004, section 4.1), orthonormalised. A ray
+/// may be more than 90 deg off the axis. The result is only a start value. Returns nullopt for
+/// fewer than four points, for points on a line, or if no plane in front explains the rays.
 [[nodiscard]] std::optional<Pose> planar_pose(std::span<const Eigen::Vector3d> points_board_m,
                                               std::span<const Eigen::Vector3d> rays_camera);
 

@@ -7,8 +7,8 @@
 
 namespace surefoot::calibration {
 
-/// Median of repeated estimates of one pose: per coordinate of the position, and per coordinate of
-/// the rotation vector relative to the median itself. Needs at least one pose.
+/// Returns the median of repeated estimates of one pose, per coordinate of the position and of the
+/// rotation vector relative to the median itself. Needs at least one pose.
 [[nodiscard]] Pose median_pose(std::span<const Pose> poses);
 
 /// Difference between two poses.

@@ -11,17 +11,19 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr double kHuberSigmas = 2.5;
-/// Limit of a single corner's error in the rms of its view: such a corner can be removed alone.
+/// Limit of a single corner's error [sigma] in the rms of its view: such a corner can be removed
+/// alone.
 constexpr double kClipSigmas = 10.0;
-/// Enough to detect a view that does not fit: its rms is then known to a thousandth.
+/// Tolerance of the solver while views are removed: the rms of each view is then known to a
+/// thousandth.
 constexpr double kRoughTolerance = 1e-5;
 /// Least sigma [px]: noiseless input must not shrink the loss to zero.
 constexpr double kLeastSigma_px = 1e-3;
 /// Median length of a two-dimensional normal error, in standard deviations: sqrt(2 ln 2).
 constexpr double kMedianLength = 1.17741;
-constexpr double kMadToSigma = 1.4826;  ///< factor for one-dimensional normal values
+constexpr double kMadToSigma = 1.4826;  ///< median absolute deviation to sigma, for normal values
 
-/// Standard deviation of a coordinate, robust against a minority of outliers.
+/// Returns the standard deviation of a coordinate [px], robust against a minority of outliers.
 double robust_sigma_px(const BoardBundle& bundle) {
     std::vector<double> lengths;
     for (const Eigen::Vector2d& r : residuals_px(bundle)) lengths.push_back(r.norm());
@@ -40,7 +42,7 @@ double common_limit_px(const std::vector<double>& all, const RobustLimits& limit
                      limits.least_px});
 }
 
-/// The view that exceeds its limit most, or comes nearest to it.
+/// Finds the view with the largest ratio of rms to limit.
 DroppedView worst_view(const BoardBundle& bundle, const RobustLimits& limits, double sigma_px) {
     const std::vector<double> all = view_rms_px(bundle, kClipSigmas * sigma_px);
     const double common_px = common_limit_px(all, limits);
@@ -65,7 +67,7 @@ std::vector<Sight> take_outliers(BoardBundle& bundle, double limit_px) {
     return outliers;
 }
 
-/// Uses the degrees of freedom, so that few views do not look better than they are.
+/// Divides by the degrees of freedom, so that a few views do not look better than they are.
 double unbiased_sigma_px(const BoardBundle& bundle) {
     double square = 0.0;
     for (const Eigen::Vector2d& r : residuals_px(bundle)) square += r.squaredNorm();
@@ -84,7 +86,7 @@ std::vector<double> view_rms_px(const BoardBundle& bundle, double clip_px) {
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         const auto view = static_cast<std::size_t>(bundle.sights[i].view);
-        // std::min would lose NaN.
+        // std::min would discard NaN
         const double length_px = residuals[i].norm();
         const double counted_px = length_px > clip_px ? clip_px : length_px;
         square[view] += counted_px * counted_px;

@@ -10,17 +10,17 @@
 
 namespace surefoot::calibration {
 
-/// Limits beyond which a view or a point does not fit the same camera plus noise.
+/// Error limits. A view or a point beyond a limit does not fit the camera of the others.
 struct RobustLimits {
     int least_views = 3;
-    /// A view is removed if its rms exceeds `view_factor` times the median rms of all views and
-    /// also exceeds the median by `view_sigmas` of the robust scatter of the rms values.
+    /// Removes a view if its rms exceeds `view_factor` times the median rms of all views. The rms
+    /// must also exceed the median by `view_sigmas` times the robust scatter of the rms values.
     double view_factor = 2.0;
     double view_sigmas = 4.0;
-    /// Views with a smaller rms than this stay [px]. Detector errors differ between views with the
-    /// size of squares, blur, noise and slant of edges. Rendered chessboards: 0.015 to 0.03 px rms
-    /// with a median of 0.02; with little light and noise 0.06 to 0.08 px; single corners 0.1 px.
-    /// The better the detector, the less the ratio says.
+    /// Views with an rms below this [px] always stay. Detector errors differ between views with the
+    /// size of squares, blur, noise and slant of edges. Rms of rendered chessboards: 0.015 to 0.03
+    /// px (median 0.02 px); with little light and noise 0.06 to 0.08 px. Single corners: 0.1 px.
+    /// With an exact detector the ratio of two rms values says little.
     double least_px = 0.1;
     /// Limit per view [px], or empty. Replaces the limits of the rms above.
     std::vector<double> view_limits_px;
@@ -43,11 +43,11 @@ struct RobustFit {
     double sigma_px = 0.0;  ///< standard deviation of a coordinate, unbiased
 };
 
-/// Root mean square distance of the sights of each view; NaN without sights. Limits each distance
-/// to `clip_px`.
+/// Rms distance of measured from predicted pixels for each view; NaN for a view without sights.
+/// Each distance is limited to `clip_px`.
 [[nodiscard]] std::vector<double> view_rms_px(
     const BoardBundle& bundle, double clip_px = std::numeric_limits<double>::infinity());
-/// Root mean square distance over all sights, as in OpenCV.
+/// Rms distance of measured from predicted pixels over all sights, as in OpenCV.
 [[nodiscard]] double rms_px(const BoardBundle& bundle);
 
 void drop_view(BoardBundle& bundle, int view);
@@ -55,7 +55,7 @@ void drop_view(BoardBundle& bundle, int view);
 
 /// Minimises Huber's loss and removes views and points that do not fit, the worst view first. Ends
 /// with plain least squares over the rest, the most accurate estimate for normal noise. Removed
-/// sights leave the bundle. nullopt if the solver fails.
+/// sights leave the bundle. Returns nullopt if the solver fails.
 [[nodiscard]] std::optional<RobustFit> solve_robustly(BoardBundle& bundle,
                                                       const RobustLimits& limits);
 

@@ -14,7 +14,8 @@ namespace surefoot::calibration {
 namespace {
 
 std::optional<std::string> point_problem(int id, const Eigen::Vector2d& pixel, ImageSize size) {
-    if (!pixel.allFinite()) return fmt::format("point {} has a pixel that is not finite", id);
+    if (!pixel.allFinite())
+        return fmt::format("the pixel position of point {} is not a finite number", id);
     // A pixel extends half a pixel beyond its centre.
     if (pixel.x() < -0.5 || pixel.y() < -0.5 || pixel.x() > size.width - 0.5 ||
         pixel.y() > size.height - 0.5) {
@@ -46,12 +47,14 @@ std::optional<std::string> view_problem(const Board& board,
                                         ImageSize size,
                                         int least_points) {
     if (view.ids.size() != view.pixels.size()) {
-        return fmt::format("it has {} ids but {} pixels", view.ids.size(), view.pixels.size());
+        return fmt::format("the view has {} ids but {} pixels; give one pixel for each id",
+                           view.ids.size(),
+                           view.pixels.size());
     }
     if (!(view.disc_radius_m >= 0.0 && view.disc_radius_m <= board.spacing_m))
         return fmt::format(
-            "its circles have radius {} m and are {} m apart; the radius must be from 0 to this "
-            "distance",
+            "the circles have a radius of {} m and are {} m apart; the radius must be from 0 to "
+            "this distance",
             view.disc_radius_m,
             board.spacing_m);
     if (view.ids.empty()) return "the board was not found";
@@ -71,7 +74,7 @@ std::optional<std::string> view_problem(const Board& board,
         return fmt::format(
             "too few points: {}, at least {} are needed", points.size(), least_points);
     }
-    if (collinear(points)) return "all its points lie on a line";
+    if (collinear(points)) return "all points of the view lie on one line";
     return std::nullopt;
 }
 
@@ -102,7 +105,7 @@ double disc_radius_m(std::span<const BoardView> views) {
 
 std::string summary_of(std::span<const RejectedView> rejected, std::size_t views) {
     constexpr std::size_t kShown = 3;
-    std::string text = fmt::format("{} of {} views left out", rejected.size(), views);
+    std::string text = fmt::format("{} of {} views were left out", rejected.size(), views);
     for (std::size_t i = 0; i < std::min(kShown, rejected.size()); ++i) {
         text += fmt::format(
             "{} view {}: {}", i == 0 ? ":" : ";", rejected[i].index, rejected[i].reason);

@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 
 /// A view that the calibration does not use.
 struct RejectedView {
-    std::size_t index = 0;  ///< into the views given
+    std::size_t index = 0;  ///< index into the input views
     std::string reason;
     friend bool operator==(const RejectedView&, const RejectedView&) = default;
 };
@@ -22,9 +22,9 @@ struct RejectedView {
 /// Adds a view in ascending order. A second reason is appended to the first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
-/// First problem of a view, or nullopt. Problems: ids and pixels do not match; ids are not in order
-/// or not on the board; a pixel is NaN or outside the image. Also fewer than `least_points`, or
-/// points on a line.
+/// Describes the first problem of a view; nullopt if the view is usable. Problems: ids and pixels
+/// do not match; ids are not in order or not on the board; a pixel is NaN or outside the image; the
+/// disc radius is wrong; fewer than `least_points` points; all points on one line.
 [[nodiscard]] std::optional<std::string> view_problem(const Board& board,
                                                       const BoardView& view,
                                                       ImageSize size,
@@ -37,7 +37,7 @@ void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::s
 /// Median of the disc radii that the views state; 0 for views of points.
 [[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
 
-/// Text with the first three reasons: "6 of 8 views left out: view 2 ...; view 5 ...".
+/// Text with the first three reasons: "6 of 8 views were left out: view 2 ...; view 5 ...".
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
 [[nodiscard]] double median(std::vector<double> values);  ///< returns 0 for no values

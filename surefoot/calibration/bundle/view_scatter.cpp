@@ -9,8 +9,10 @@
 namespace surefoot::calibration {
 namespace {
 
-constexpr double kStep = 1e-6;       ///< step of a coefficient, an angle, or a distance
-constexpr double kRankLimit = 1e-9;  ///< limit for columns of unit length
+constexpr double kStep = 1e-6;       ///< relative step of a coefficient or distance; step of an
+                                     ///< angle [rad]
+constexpr double kRankLimit = 1e-9;  ///< rank threshold of the QR decomposition, for columns of
+                                     ///< length 1
 constexpr int kPose = 6;
 
 Pose moved(const Pose& T, int coordinate, double step) {
@@ -22,8 +24,8 @@ Pose moved(const Pose& T, int coordinate, double step) {
     return T * change;
 }
 
-/// The bundle after one step of a single parameter: a coordinate of all boards (first columns), or
-/// a shared parameter (lenses, right camera).
+/// Returns the bundle after one step of a single parameter. The first columns are a coordinate of
+/// all boards, the others a shared parameter (lenses, right camera).
 BoardBundle stepped(const BoardBundle& bundle, int column, double step) {
     BoardBundle there = bundle;
     if (column < kPose) {
@@ -49,7 +51,8 @@ int columns_of(const BoardBundle& bundle) {
            (lenses > 1 ? kPose : 0);
 }
 
-/// One row per coordinate of a sight, boards first. Columns without a derivative are zero.
+/// Returns the Jacobian with one row per coordinate of a sight; the columns of the boards come
+/// first. Entries without a derivative are zero.
 Eigen::MatrixXd jacobian(const BoardBundle& bundle) {
     const auto rows = static_cast<Eigen::Index>(2 * bundle.sights.size());
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, columns_of(bundle));
@@ -65,7 +68,7 @@ Eigen::MatrixXd jacobian(const BoardBundle& bundle) {
     return J;
 }
 
-/// Share of a vector's square that columns explain, and the rank of these columns.
+/// Part of a vector's squared length that columns explain, and the rank of these columns.
 struct Explained {
     double square = 0.0;
     double rank = 0.0;
@@ -89,7 +92,7 @@ double between_views_sigma_px(const BoardBundle& bundle) {
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     const Eigen::MatrixXd all = jacobian(bundle);
     double square = 0.0;
-    double freedom = -static_cast<double>(all.cols() - kPose);  // the fit of the common cameras
+    double freedom = -static_cast<double>(all.cols() - kPose);  // parameters of the common cameras
     int views = 0;
     for (std::size_t view = 0; view < bundle.T_left_board.size(); ++view) {
         std::vector<Eigen::Index> rows;
@@ -99,7 +102,7 @@ double between_views_sigma_px(const BoardBundle& bundle) {
             rows.push_back(2 * static_cast<Eigen::Index>(i));
         }
         const auto count = static_cast<Eigen::Index>(rows.size());
-        // With few sights a separate camera per view would explain everything, noise included.
+        // With few sights, a separate camera per view would explain all residuals, also the noise.
         if (2 * count <= all.cols()) continue;
         Eigen::MatrixXd J(2 * count, all.cols());
         Eigen::VectorXd r(2 * count);

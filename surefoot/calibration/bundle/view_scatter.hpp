@@ -19,8 +19,8 @@ namespace surefoot::calibration {
 /// The bundle must be solved. Returns NaN for fewer than two views.
 [[nodiscard]] double between_views_sigma_px(const BoardBundle& bundle);
 
-/// Noise behind a covariance [px]: the noise of single corners, or the scatter between views if
-/// that is larger.
+/// Returns the coordinate noise for a covariance [px]: `sigma_px` (the noise of single corners), or
+/// the scatter between views if the scatter is larger.
 [[nodiscard]] double stated_sigma_px(const BoardBundle& bundle, double sigma_px);
 
 }  // namespace surefoot::calibration

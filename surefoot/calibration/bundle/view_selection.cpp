@@ -24,13 +24,14 @@ std::vector<std::size_t> without_repeats(std::span<const std::size_t> candidates
             kept.push_back(i);
             continue;
         }
-        reject(rejected,
-               i,
-               fmt::format("almost the same as view {}: its corners moved by {:.2f} px; at least "
-                           "{:.2f} px are needed",
-                           *twin,
-                           motion_px(*twin, i),
-                           least_px));
+        reject(
+            rejected,
+            i,
+            fmt::format("almost the same as view {}: the corners moved by {:.2f} px, but at least "
+                        "{:.2f} px are needed",
+                        *twin,
+                        motion_px(*twin, i),
+                        least_px));
     }
     return kept;
 }
@@ -61,10 +62,10 @@ std::vector<std::size_t> select_views(std::span<const std::size_t> candidates,
         if (taken[i])
             kept.push_back(different[i]);
         else
-            reject(
-                rejected,
-                different[i],
-                fmt::format("not needed: {} views that differ more are used", limits.most_views));
+            reject(rejected,
+                   different[i],
+                   fmt::format("not needed: the calibration uses the {} views that differ most",
+                               limits.most_views));
     }
     return kept;
 }

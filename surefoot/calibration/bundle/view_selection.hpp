@@ -11,17 +11,17 @@
 namespace surefoot::calibration {
 
 struct SelectionLimits {
-    /// A view repeats an earlier one if its corners moved by less than this (rms). Corner noise of
-    /// 0.1 px per coordinate alone makes this difference.
+    /// A view repeats an earlier view if its corners moved by less than this (rms). Corner noise of
+    /// 0.1 px per coordinate alone causes this difference.
     double least_motion_px = 0.2;
-    /// Largest number of views, the most different ones. More views cost time and add little.
+    /// Largest number of selected views. More views cost time and add little.
     std::size_t most_views = 100;
 };
 
 /// Selects from the views `candidates` (ascending indices). `motion_px(a, b)` is the difference of
-/// two views. Removes views that repeat an earlier one. Of too many views it keeps those farthest
-/// from the views already selected, starting with the first. Returns ascending indices and adds the
-/// other views to `rejected`.
+/// two views. Removes views that repeat an earlier one. If too many remain, keeps the views that
+/// differ most from those already selected, starting with the first. Returns ascending indices and
+/// adds the other views to `rejected`.
 [[nodiscard]] std::vector<std::size_t> select_views(
     std::span<const std::size_t> candidates,
     const std::function<double(std::size_t, std::size_t)>& motion_px,

@@ -20,10 +20,12 @@ constexpr std::size_t kMostViews = 16;
 constexpr std::size_t kFewestViews = 3;
 constexpr std::size_t kFewestHalved = 8;
 constexpr int kFewestPoints = 8;
-/// An advised lens must reduce the rms by this factor, and by more than corner noise.
+/// The rms of an advised lens must be below this share of the chosen lens's rms, and smaller by
+/// more than corner noise.
 constexpr double kBetter = 0.7;
 constexpr double kLeastGain_px = 0.02;
-/// Lenses within this factor explain the boards about equally well.
+/// Lenses explain the boards about equally well if their rms is below the best rms times this
+/// factor.
 constexpr double kAlike = 1.1;
 /// Larger errors count linearly [px]: a single wrong corner must not choose the lens.
 constexpr double kHuber_px = 1.0;
@@ -31,7 +33,7 @@ constexpr int kIterations = 50;
 constexpr double kTolerance = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Views of different poses, ascending.
+/// Selects views with different poses, in ascending order of index.
 std::vector<std::size_t> chosen_views(const Board& board,
                                       std::span<const BoardView> views,
                                       ImageSize size) {
@@ -52,7 +54,7 @@ std::optional<Eigen::VectorXd> fitted_lens(BoardBundle bundle) {
     return bundle.lenses[0];
 }
 
-/// Rms of a view with its best pose; infinite if the lens does not show the view.
+/// Returns the rms of a view with its best pose [px]; infinite if the lens does not image the view.
 double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     view.lenses = {lens};
     const camera::CameraModel model = model_of(view.kind, lens);
@@ -142,7 +144,7 @@ std::string in_words(const LensAdvice& advice) {
                                               advice.better.rms_px,
                                               advice.chosen.rms_px,
                                               model_name(advice.chosen.kind))
-                                : fmt::format("rms {:.2f} px; {} cannot show most boards",
+                                : fmt::format("rms {:.2f} px; {} does not fit most views",
                                               advice.better.rms_px,
                                               model_name(advice.chosen.kind));
     return fmt::format("this lens looks like {} ({}): try --model {}",

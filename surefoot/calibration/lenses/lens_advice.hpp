@@ -19,23 +19,23 @@ struct LensTrial {
     double rms_px = 0.0;
 };
 
-/// A lens kind that explains the boards clearly better than the chosen one.
+/// A lens kind that explains the boards clearly better than the chosen kind.
 struct LensAdvice {
     LensTrial chosen;
     LensTrial better;
 };
 
 /// Cross-validation: fits the lens kind to every second view and tests it on the others, then vice
-/// versa. With fewer than eight views it uses the same views for both. Uses at most 16 views.
-/// nullopt with fewer than three usable views.
+/// versa. With fewer than eight views, fits and tests on the same views. Uses at most 16 views.
+/// Returns nullopt with fewer than three usable views.
 [[nodiscard]] std::optional<LensTrial> try_lens(const Board& board,
                                                 std::span<const BoardView> views,
                                                 ImageSize size,
                                                 LensKind kind);
 
 /// Compares the chosen lens kind with pinhole5, fisheye and rational. Advises another kind if its
-/// rms is below 0.7 of the chosen one's and at least 0.02 px smaller. Among about equal kinds (10
-/// %) the first in this order is advised.
+/// rms is below 0.7 times the rms of the chosen kind and at least 0.02 px smaller. If several kinds
+/// are within 10 % of the best rms, advises the first of them in this order.
 [[nodiscard]] std::optional<LensAdvice> advise_lens(const Board& board,
                                                     std::span<const BoardView> views,
                                                     ImageSize size,

@@ -86,7 +86,7 @@ TEST(LensAdvice, SaysNothingWhereTheChosenLensExplainsTheBoards) {
 TEST(LensAdvice, ALensThatShowsNothingIsSaidSo) {
     const LensAdvice advice{{LensKind::pinhole4, std::numeric_limits<double>::infinity()},
                             {LensKind::fisheye, 0.2}};
-    EXPECT_NE(in_words(advice).find("pinhole4 cannot show most boards"), std::string::npos);
+    EXPECT_NE(in_words(advice).find("pinhole4 does not fit most views"), std::string::npos);
 }
 
 TEST(LensAdvice, IsTheReasonInsteadOfTilt) {

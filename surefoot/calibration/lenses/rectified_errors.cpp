@@ -13,7 +13,8 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Step of central differences, as a share of a standard deviation: depth is linear that far.
+/// Step of central differences, as a share of a standard deviation: up to this step, depth is
+/// linear.
 constexpr double kStep = 0.1;
 
 std::optional<Eigen::Vector2d> seen(const camera::RectifiedCamera& camera,
@@ -27,7 +28,8 @@ std::optional<Eigen::Vector2d> seen(const camera::RectifiedCamera& camera,
     return raw;
 }
 
-/// A small image: the rotations of the cameras do not depend on its size, and planning is fast.
+/// Uses a small image: the rotations of the cameras do not depend on the size, and planning is
+/// fast.
 camera::Rectification plan_of(const camera::StereoRig& rig) {
     camera::RectificationConfig config;
     config.max_view_deg = 20.0;
@@ -49,7 +51,7 @@ StereoParameters moved(const StereoParameters& from, const Eigen::VectorXd& delt
     return to;
 }
 
-/// Depths of pairs of raw pixels, for a given calibration.
+/// Returns the depths of pairs of raw pixels [m], for a given calibration.
 Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const PixelPair> pixels) {
     Eigen::VectorXd depths = Eigen::VectorXd::Constant(std::ssize(pixels), kNan);
     const camera::StereoRig rig = rig_of(parameters);
@@ -116,7 +118,7 @@ std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
         const Eigen::Vector2d none = Eigen::Vector2d::Constant(kNan);
         pixels.push_back({left.value_or(none), right.value_or(none)});
     }
-    // Independent error directions, each one standard deviation long.
+    // The columns are independent error directions, each one standard deviation long.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
     Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(std::ssize(pixels));
     for (Eigen::Index i = 0; i < covariance.cols(); ++i) {

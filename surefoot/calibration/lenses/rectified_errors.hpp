@@ -47,10 +47,10 @@ struct StereoParameters {
 };
 [[nodiscard]] camera::StereoRig rig_of(const StereoParameters& parameters);
 
-/// Depth standard deviation of points on the axis of the rectified left camera, from the parameter
-/// covariance alone (left, right, T_left_right by right perturbation). The two raw pixels of a
-/// point stay fixed while the calibration varies. First order, one value per distance. NaN if an
-/// image does not show the point.
+/// Returns the depth standard deviation of points on the axis of the rectified left camera, one
+/// value per distance. It comes from the parameter covariance alone (left, right, T_left_right by
+/// right perturbation), to first order. The two raw pixels of a point stay fixed while the
+/// calibration varies. NaN if an image does not show the point.
 [[nodiscard]] std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
                                                  const Eigen::MatrixXd& covariance,
                                                  std::span<const double> distances_m);

@@ -12,7 +12,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Points that are sorted at once, and points per thread task.
+/// Numbers of points: of those that are sorted at once, and of those in one task of a thread.
 constexpr std::size_t kSorted = 1U << 20U;
 constexpr std::size_t kTaken = 1U << 13U;
 
@@ -43,7 +43,7 @@ std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
             Neighbour last;
             for (std::size_t i = begin; i < end; ++i) {
                 const Eigen::Vector3f& p_m = points_m[order[i]];
-                // The nearest point of the previous point is a good start for this point.
+                // The nearest neighbour of the previous point is a good start for this point.
                 const Neighbour start = last.index == Neighbour::kNone
                                             ? Neighbour{}
                                             : reference.neighbour(p_m, last.index);

@@ -11,9 +11,9 @@
 
 namespace surefoot::eval {
 
-/// C2C: distance from each compared point to the nearest *point* of the reference [m], in the order
-/// of `compared_m`. Points must be finite, the reference not empty. Never negative. The point
-/// spacing of the reference is a lower limit: two clouds of one surface measure the spacing.
+/// C2C: distance [m] from each compared point to the nearest *point* of the reference, in the order
+/// of `compared_m`. Points must be finite, and the reference must not be empty. Never negative.
+/// Even two clouds of one surface differ by about the point spacing of the reference.
 [[nodiscard]] std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
                                                    std::span<const Eigen::Vector3f> compared_m,
                                                    Executor& executor = serial());
@@ -22,7 +22,7 @@ namespace surefoot::eval {
 struct DistanceFigures {
     std::int64_t count = 0;
     double mean_m = 0.0;
-    double std_m = 0.0;  ///< population form, divided by n
+    double std_m = 0.0;  ///< standard deviation, divided by n
     double rms_m = 0.0;
     double least_m = 0.0;
     double most_m = 0.0;

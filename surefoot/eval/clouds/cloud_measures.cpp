@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Bins with a prominent count; within the smallest step only the fullest bin.
+/// Returns bins with a prominent count. Of bins within `least_step_m`, only the fullest counts.
 std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
                                   std::size_t points,
                                   const LevelConfig& config) {
@@ -53,7 +53,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
     return peaks;
 }
 
-/// Fits a plane to the points near a height, without outliers.
+/// Fits a plane to the points near a height, without outliers. Returns no value without a fit.
 std::optional<Level> level_near(std::span<const Vector3f> points_m,
                                 double height_m,
                                 const LevelConfig& config) {
@@ -111,9 +111,9 @@ bool is_step(const Level& lower, const Level& upper) {
 }
 
 /// Chains levels that are one riser apart, upward and downward from the first level. Among several
-/// levels near the expected height the one with most points is the tread.
+/// levels near the expected height the level with most points is the tread.
 std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
-    constexpr double kUneven = 0.08;  // share of a riser
+    constexpr double kUneven = 0.08;  // tolerance of a tread's height, as a share of the riser
     constexpr double kLeastShare = 0.15;
     const auto next_to = [&](const Level& from, double rise_m) -> const Level* {
         const Level* best = nullptr;
@@ -138,9 +138,9 @@ std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, do
     return chain;
 }
 
-/// The levels of a flight: the longest chain of treads with one riser; of equal lengths the one
-/// with more points. Surfaces beside the flight and patches of noise between two treads are in no
-/// chain.
+/// Returns the levels of a flight: the longest chain of treads with one riser. Of chains with equal
+/// length, the chain with more points counts. Surfaces beside the flight and patches of noise
+/// between two treads are in no chain.
 std::vector<Level> flight_of(std::span<const Level> levels) {
     std::vector<Level> best;
     std::int64_t best_points = 0;
@@ -160,8 +160,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
     return best;
 }
 
-/// Position of a cluster along a line: the fullest 20 mm. An even spread, such as that of a side
-/// wall, must be very unlikely to put so many points there by chance.
+/// Returns the position of a cluster along a line [m]: the fullest 20 mm. Evenly spread points, for
+/// example of a side wall, must be very unlikely to put so many points there by chance.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;
@@ -187,20 +187,20 @@ std::optional<double> crowd_m(std::vector<double> along_m) {
     return sum_m / static_cast<double>(best);
 }
 
-/// Positions along the uphill line.
+/// Measures positions along the uphill line.
 class Uphill {
   public:
     Uphill(const SortedSurfaces& surfaces, const Eigen::Vector2d& direction)
         : surfaces_(surfaces), direction_(direction) {}
 
-    /// Position of the riser between two levels: its face if there are points on it. Otherwise the
-    /// middle between the end of the lower level and the beginning of the upper level.
+    /// Position of the riser between two levels: the face of the riser if it has points. Otherwise
+    /// it is the middle between the end of the lower level and the beginning of the upper level.
     [[nodiscard]] std::optional<double> riser_m(const Level& lower, const Level& upper) const {
         const double rise_m = upper.height_m - lower.height_m;
         std::vector<double> face_m;
         for (const Vector3f& p_m : surfaces_.upright_m) {
             const double share = (static_cast<double>(p_m.z()) - lower.height_m) / rise_m;
-            constexpr double kEnds = 0.3;  // share of the face that noise of the levels can reach
+            constexpr double kEnds = 0.3;  // share of the face that the noise of a level can reach
             if (share > kEnds && share < 1.0 - kEnds) face_m.push_back(along(p_m));
         }
         if (const auto face = crowd_m(std::move(face_m))) return face;
@@ -215,8 +215,8 @@ class Uphill {
     [[nodiscard]] double along(const Vector3f& p_m) const {
         return direction_.dot(p_m.head<2>().cast<double>());
     }
-    /// First and last position of a level's points beside the middle of another level, without the
-    /// outermost hundredth.
+    /// Returns the first and last position of a level's points [m], in a strip through the middle
+    /// of another level. Leaves out the outermost hundredth at each end.
     [[nodiscard]] std::optional<std::pair<double, double>> ends_m(const Level& level,
                                                                   const Level& beside) const {
         constexpr double kStrip_m = 0.2;
@@ -242,7 +242,7 @@ class Uphill {
     Eigen::Vector2d direction_;
 };
 
-/// Direction along which the centres of the levels rise.
+/// Returns the direction along which the centres of the levels rise.
 Eigen::Vector2d uphill_of(std::span<const Level> levels) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Level& level : levels) {
@@ -310,7 +310,7 @@ StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Lev
     const std::vector<Level> flight = flight_of(all);
     const std::span<const Level> levels = flight.empty() ? all : std::span<const Level>(flight);
     constexpr double kLongestTread_m = 0.5;   // a longer level is a landing
-    constexpr double kShortestTread_m = 0.1;  // a foot cannot stand on less: not one flight
+    constexpr double kShortestTread_m = 0.1;  // too short for a foot: the levels are no flight
     StairMeasures measures;
     std::vector<double> rises_m;
     for (std::size_t i = 1; i < levels.size(); ++i) {
@@ -342,7 +342,7 @@ std::optional<double> door_width_m(std::span<const Vector3f> points_m, const Doo
     constexpr double kLow_m = 0.3;
     constexpr double kHigh_m = 1.8;
     constexpr double kOpen_m = 3.0;
-    constexpr double kFace_m = 0.015;  // spread of a jamb due to noise
+    constexpr double kFace_m = 0.015;  // largest scatter of the points of a jamb due to noise
     const Eigen::Vector2d way(std::cos(door.yaw_rad), std::sin(door.yaw_rad));
     const Eigen::Vector2d left(-way.y(), way.x());
     std::vector<double> sides_m[2];

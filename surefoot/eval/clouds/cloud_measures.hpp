@@ -16,12 +16,12 @@ namespace surefoot::eval {
 /// the levels: heights alone would mix riser points into a level and lower it.
 struct SortedSurfaces {
     std::vector<Eigen::Vector3f> level_m;    ///< normals within 20 deg of the vertical
-    std::vector<Eigen::Vector3f> upright_m;  ///< within 20 deg of the horizontal
+    std::vector<Eigen::Vector3f> upright_m;  ///< normals within 20 deg of the horizontal
 };
-/// Voxel size of the thinning to one point per voxel, which runs first. Without it the dense part
-/// near a scanner would dominate.
+/// Size of the voxels in which sort_surfaces first thins the cloud to one point each. Without this
+/// step the dense part near a scanner would dominate.
 inline constexpr double kSurfaceVoxel_m = 0.01;
-/// Points must be finite, and their bounding box must fit `fits_voxels`.
+/// Points must be finite, and `fits_voxels` must be true for their bounding box.
 [[nodiscard]] SortedSurfaces sort_surfaces(std::span<const Eigen::Vector3f> points_m,
                                            Executor& executor = serial());
 
@@ -30,13 +30,13 @@ struct LevelConfig {
     double bin_m = 0.005;
     double least_step_m = 0.04;  ///< smallest distance between two levels
     double least_share = 5e-4;   ///< smallest share of all points in the bin of a level
-    double prominence = 2.0;     ///< times the median of the bins around (walls fill all)
+    double prominence = 2.0;     ///< least count, in medians of the bins around (walls fill all)
 };
 
 /// A level surface, or several surfaces at one height.
 struct Level {
-    double height_m = 0.0;  ///< height of its plane at its centre
-    double rms_m = 0.0;     ///< rms distance of its points from its plane
+    double height_m = 0.0;  ///< height of the plane of the level at its centre
+    double rms_m = 0.0;     ///< rms distance of the points from this plane
     double tilt_rad = 0.0;
     std::int64_t points = 0;
     Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
@@ -56,21 +56,21 @@ struct HeightHistogram {
 /// Statistics of repeated measurements.
 struct Repeated {
     std::vector<double> values_m;
-    double mean_m = 0.0;       ///< NaN without values, as the other fields
+    double mean_m = 0.0;       ///< NaN without values, like the other two figures
     double spread_m = 0.0;     ///< standard deviation (n - 1); 0 for one value
     double std_error_m = 0.0;  ///< standard error of the mean
 };
 
 /// Dimensions of stairs from the histograms of their levels.
 struct StairMeasures {
-    Repeated riser;  ///< height differences of at most 0.30 m between the levels of the flight
-    Repeated going;  ///< between the faces of risers, or where a map has none, the ends of levels;
-                     ///< longer ones are landings and are left out
-    Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit; zero with fewer than two levels
+    Repeated riser;  ///< height differences up to 0.30 m between levels of the flight
+    Repeated going;  ///< distances of riser faces, or of the ends of levels in a map without faces;
+                     ///< landings (longer distances) are left out
+    Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit vector, or zero without two levels
 };
 /// Measures a flight: the longest sequence of levels with one riser (within 8 %). Other levels, for
 /// example patches between two treads or objects beside the stairs, are left out. For straight
-/// flights only: positions are measured along one uphill line. `levels`: from the level points.
+/// flights only: measures positions along one uphill line. `levels`: of surfaces.level_m.
 [[nodiscard]] StairMeasures measure_stairs(const SortedSurfaces& surfaces,
                                            std::span<const Level> levels);
 
@@ -80,8 +80,8 @@ struct DoorPlace {
     double yaw_rad = 0.0;  ///< direction of the passage
     double floor_m = 0.0;
 };
-/// Clear width between the nearest points left and right, within 0.1 m of the line across the
-/// passage, 0.3 to 1.8 m above the floor. No value if a side is open for 3 m.
+/// Returns the clear width between the nearest points left and right. Points count within 0.1 m of
+/// the line across the passage, 0.3 to 1.8 m above the floor. No value if a side is open for 3 m.
 [[nodiscard]] std::optional<double> door_width_m(std::span<const Eigen::Vector3f> points_m,
                                                  const DoorPlace& door);
 

@@ -9,7 +9,7 @@
 namespace surefoot::eval {
 namespace {
 
-constexpr std::size_t kTaken = 1U << 13U;  ///< points that one thread takes
+constexpr std::size_t kTaken = 1U << 13U;  ///< points in one task of a thread
 
 }  // namespace
 
@@ -23,7 +23,7 @@ OutlierFilter::OutlierFilter(geometry::KdTree cloud,
         std::vector<geometry::Neighbour> found(static_cast<std::size_t>(config.others) + 1);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t count = cloud_.nearest(points_m[i], found);
-            double sum_m = 0.0;  // the point itself adds nothing
+            double sum_m = 0.0;  // the point itself is found too, at distance 0
             for (std::size_t k = 0; k < count; ++k)
                 sum_m += std::sqrt(static_cast<double>(found[k].sq_distance_m2));
             to_neighbours_m_[i] =

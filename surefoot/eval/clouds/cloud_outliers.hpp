@@ -9,12 +9,12 @@
 
 namespace surefoot::eval {
 
-/// Statistical outlier removal (Rusu et al. 2008): a point is an outlier if its mean distance to
-/// its neighbours is above mean + `sigmas` * standard deviation of these means over all points. One
-/// pass over the whole cloud; the standard deviation is divided by n.
+/// Statistical outlier removal (Rusu et al. 2008). A point is an outlier if its mean distance to
+/// its neighbours is above mean + `sigmas` * standard deviation of these means over all points. The
+/// filter passes once over the cloud. The standard deviation uses the divisor n.
 struct OutlierConfig {
-    /// Number of averaged neighbours without the point itself: PCL's MeanK. CloudCompare and Open3D
-    /// include the point: their 7 is 6 here.
+    /// Number of averaged neighbours without the point itself, as PCL's MeanK. CloudCompare and
+    /// Open3D include the point: 7 there is 6 here.
     int others = 6;
     double sigmas = 4.0;
 };
@@ -27,7 +27,7 @@ class OutlierFilter {
                   const OutlierConfig& config,
                   Executor& executor = serial());
 
-    /// Whether a point of the cloud is not an outlier. Points are identified by their coordinates;
+    /// True if a point of the cloud is not an outlier. Points are identified by their coordinates;
     /// false for a point that is not in the cloud.
     [[nodiscard]] bool keeps(const Eigen::Vector3f& point_m) const;
 

@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr std::size_t kTaken = 256;  ///< core points that one thread takes
+constexpr std::size_t kTaken = 256;  ///< core points in one task of a thread
 
-/// Statistics of one cloud's points in the cylinder, along its axis from its centre.
+/// Statistics of one cloud's points in the cylinder: positions along the axis, from the centre.
 struct InCylinder {
     int count = 0;
     double mean_m = 0.0;
@@ -100,25 +100,25 @@ void M3c2Config::describe(ConfigVisitor& visitor) {
                    projection_diameter_m,
                    1e-4,
                    100.0,
-                   "diameter of the cylinder whose points are averaged");
+                   "diameter of the cylinder in which the points of each cloud are averaged");
     visitor.number(
         "half_length_m",
         half_length_m,
         1e-4,
         100.0,
-        "half the length of the cylinder, which is the largest distance that can be found");
-    visitor.number(
-        "registration_error_m",
-        registration_error_m,
-        0.0,
-        10.0,
-        "one sigma of the registration of the two clouds; it is part of the level of detection");
-    visitor.integer(
-        "min_points",
-        min_points,
-        1,
-        1000000,
-        "smallest number of points of each cloud in the cylinder that give a significant distance");
+        "half the length of the cylinder; a larger distance between the clouds is not found");
+    visitor.number("registration_error_m",
+                   registration_error_m,
+                   0.0,
+                   10.0,
+                   "one sigma of the registration error of the two clouds; the level of detection "
+                   "includes it");
+    visitor.integer("min_points",
+                    min_points,
+                    1,
+                    1000000,
+                    "smallest number of points that each cloud needs in the cylinder for a "
+                    "significant distance");
 }
 
 std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,

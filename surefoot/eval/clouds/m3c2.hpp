@@ -15,7 +15,7 @@
 namespace surefoot::eval {
 
 enum class M3c2Normals : std::uint8_t {
-    vertical,  ///< compares heights, as maps do
+    vertical,  ///< compares heights along z, as maps do
     pca,       ///< normal of the reference around each core point, pointing up
 };
 inline constexpr const char* kM3c2NormalsNames[] = {"vertical", "pca"};
@@ -23,30 +23,30 @@ inline constexpr const char* kM3c2NormalsNames[] = {"vertical", "pca"};
 /// Parameters with the names of CloudCompare's plugin: two diameters and a half length.
 struct M3c2Config {
     M3c2Normals normals = M3c2Normals::vertical;
-    double normal_diameter_m = 0.10;      ///< diameter of the ball of points for the normal
+    double normal_diameter_m = 0.10;      ///< diameter of the ball of points that give the normal
     double projection_diameter_m = 0.05;  ///< diameter of the cylinder along the normal
     double half_length_m = 0.10;          ///< half length of the cylinder
-    double registration_error_m = 0.0;    ///< added to the level of detection
+    double registration_error_m = 0.0;    ///< one sigma; added to the level of detection
     int min_points = 5;                   ///< least points of each cloud for a significant result
     void describe(ConfigVisitor& visitor);
 };
 
 /// Result of M3C2 at one core point.
 struct M3c2Value {
-    double distance_m = kNan;  ///< compared - reference along the normal; NaN: a cloud has no point
-    double lod95_m = kNan;     ///< level of detection (95 %); NaN: too few points
-    double std_reference_m = kNan;  ///< along the normal, divided by n
+    double distance_m = kNan;       ///< compared - reference along the normal; NaN: no points
+    double lod95_m = kNan;          ///< level of detection (95 %); NaN: too few points
+    double std_reference_m = kNan;  ///< scatter along the normal, divided by n
     double std_compared_m = kNan;
     int count_reference = 0;
     int count_compared = 0;
-    bool significant = false;  ///< |distance| above lod95
+    bool significant = false;  ///< |distance| is above lod95
     Eigen::Vector3f normal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 };
 
 /// M3C2 of Lague, Brodu and Leroux 2013, "Accurate 3D comparison of complex topography with
 /// terrestrial laser scanner". Averages the points of both clouds in a cylinder around each core
-/// point, along its axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error). Results
-/// are in the order of `cores_m`, which must be finite.
+/// point, along the cylinder's axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration
+/// error). Results are in the order of `cores_m`, which must be finite.
 [[nodiscard]] std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,
                                           const geometry::KdTree& compared,
                                           std::span<const Eigen::Vector3f> cores_m,

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kMostBits = 63;
-/// Number of pieces: of the points that are numbered and distributed at once, and of the voxels
-/// that are then processed independently.
+/// Number of points that are numbered and distributed at once, and number of buckets. The voxels of
+/// a bucket are processed independently of other buckets.
 constexpr std::size_t kTaken = 1U << 16U;
 constexpr int kBucketBits = 9;
 constexpr std::size_t kBuckets = 1U << kBucketBits;
@@ -51,17 +51,18 @@ class VoxelKeys {
     Numbers bits_ = Numbers::Zero();
 };
 
-/// Uninitialised on purpose: it is written before it is read, and the threads that fill the memory
-/// touch it first.
+/// Uninitialised on purpose: the code writes every entry before reading it, and the threads that
+/// fill the memory touch it first.
 struct Keyed {  // NOLINT(*-member-init)
     std::uint64_t key;
     Vector3f point_m;
 };
 
-/// Points grouped by the first bits of their voxel number, in their original order.
+/// Points grouped by the first bits of their voxel number; the order in a group is the original
+/// order.
 struct Dealt {
     std::unique_ptr<Keyed[]> points;  // NOLINT(*-avoid-c-arrays): a vector would fill it first
-    std::vector<std::size_t> first;   ///< first entry of each bucket, and the end
+    std::vector<std::size_t> first;   ///< first entry of each bucket, and the end of the last
 };
 
 geometry::PointBox box_in_pieces(std::span<const Vector3f> points_m, Executor& executor) {
@@ -125,12 +126,12 @@ std::vector<Vector3f> means_m(std::span<Keyed> points) {
 }  // namespace
 
 std::int64_t voxel_number(float p_m, double size_m) noexcept {
-    // `fits_voxels` returns false for boxes with such numbers.
+    // `fits_voxels` returns false for boxes whose voxel numbers would saturate.
     return saturated_integer<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {
-    // Beyond this limit the numbers do not fit.
+    // Voxel numbers above this limit do not fit.
     const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
     return static_cast<double>(most_m) / size_m < 1e18 &&
            VoxelKeys(box, size_m).bits() <= kMostBits;

@@ -34,7 +34,7 @@ std::optional<Eigen::Vector3d> solve(std::span<const Eigen::Vector3d> points_m,
     }
     const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
     const Eigen::Vector3d pivots = solver.vectorD();
-    constexpr double kMinRatio = 1e-10;  // collinear points leave a pivot of rounding errors
+    constexpr double kMinRatio = 1e-10;  // collinear points: a pivot is a rounding error
     if (!(pivots.minCoeff() > kMinRatio * pivots.maxCoeff())) return std::nullopt;
     return Eigen::Vector3d(solver.solve(right));
 }
@@ -59,7 +59,7 @@ std::optional<BoardPlane> fit_board(std::span<const Eigen::Vector3d> points_m) {
             residuals[i] =
                 1.0 / points_m[i].z() - plane.inverse_depth_1_m.dot(direction_of(points_m[i]));
         }
-        // Exact points leave only rounding errors; these must not remove half of the points.
+        // Points exactly on a plane leave only rounding errors. The least gate keeps these points.
         gate = std::max(kGate_sigma * kSigmaPerMad * median_abs(residuals), 1e-12);
     }
     if (!(plane.inverse_depth_1_m.z() > 0.0)) return std::nullopt;

@@ -16,7 +16,8 @@ namespace {
 constexpr double kSigmas = 3.0;
 constexpr double kRows_px = 3.0;
 
-/// Half of the vertical field of view; assumes the principal point in the middle of the image.
+/// Returns half of the vertical field of view; assumes the principal point in the middle of the
+/// image.
 double half_view_rad(const DepthDesign& design) {
     return std::atan2(0.5 * design.height, design.focal_px);
 }

@@ -23,28 +23,28 @@ struct DepthDesign {
 
 /// Smallest vertical step ahead that is distinguishable from a flat floor.
 ///
-/// The floor at the horizontal range R lies sqrt(R^2 + H^2) = L away, phi = atan(H / R) below the
-/// horizon, at the depth Z = L cos(phi - pitch). A disparity that is off by one sigma moves its
-/// point along the ray by the share sigma_d Z / (f b) (sigma_Z = Z^2 sigma_d / (f b): Matthies and
-/// Shafer, "Error modeling in stereo navigation", 1987), and so in height by
+/// The floor at the horizontal range R is L = sqrt(R^2 + H^2) away, phi = atan(H / R) below the
+/// horizon, at the depth Z = L cos(phi - pitch). sigma_Z is Z^2 sigma_d / (f b) (Matthies and
+/// Shafer, "Error modeling in stereo navigation", 1987). A disparity error of one sigma therefore
+/// moves the point along the ray by the share sigma_d Z / (f b) of its distance, and in height by
 ///   sigma_h = H Z sigma_d / (f b).
-/// noise limit: 3 sigma of the difference between two such heights, 3 sqrt(2) sigma_h, no
-/// averaging. pixel limit: the step must cover 3 rows, the matcher's window: 3 L / (f cos(phi)).
-/// ASSUMPTION: rows near the axis; independent errors of neighbours (averaging n pixels would
-/// divide the noise limit by sqrt(n); the smoothing of a matcher cancels this gain).
+/// Noise limit: 3 sigma of the difference between two such heights, 3 sqrt(2) sigma_h, without
+/// averaging. Pixel limit: the step must cover the matcher's window of 3 rows, 3 L / (f cos(phi)).
+/// ASSUMPTION: rows near the axis; independent errors of neighbouring pixels. Averaging n pixels
+/// would divide the noise limit by sqrt(n), but the smoothing of a matcher cancels this gain.
 struct ResolvableHeight {
     double range_m = 0.0;
-    bool in_view = false;  ///< the point is between the lower and the upper image border
+    bool in_view = false;  ///< the floor point lies between the lower and upper image border
     double depth_m = 0.0;
     double sigma_depth_m = 0.0;
     double noise_limit_m = 0.0;
     double pixel_limit_m = 0.0;
-    double height_m = 0.0;  ///< the larger limit
+    double height_m = 0.0;  ///< the larger of the two limits
 };
 /// Precondition: `design` has no problem(), and the range is above 0.
 [[nodiscard]] ResolvableHeight resolvable_height(const DepthDesign& design, double range_m);
 
-/// Distance of the nearest floor point in the image, straight ahead [m].
+/// Returns the distance of the nearest floor point in the image, straight ahead [m].
 [[nodiscard]] double nearest_floor_m(const DepthDesign& design);
 
 }  // namespace surefoot::eval

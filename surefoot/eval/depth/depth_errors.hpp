@@ -11,11 +11,11 @@
 
 namespace surefoot::eval {
 
-/// A disparity image and its ground truth [px]; NaN = unknown in both.
+/// A disparity image and its ground truth [px]; NaN = unknown in either image.
 struct DepthPair {
     ImageView<const float> estimate_px;
     ImageView<const float> truth_px;
-    ImageView<const std::uint8_t> mask;  ///< empty = all pixels, otherwise the non-zero ones
+    ImageView<const std::uint8_t> mask;  ///< empty = all pixels; otherwise non-zero pixels count
     ImageView<const float> sigma_px;     ///< sigma of the estimate; may be empty
 };
 
@@ -26,34 +26,34 @@ struct BadPixels {
     double over_2_percent = 0.0;
 };
 
-/// Counts pixels with known truth inside the mask. Without such pixels the fields are NaN.
+/// Errors of the pixels with known truth inside the mask. Without such pixels the fields are NaN.
 struct DepthErrors {
-    /// Over all counted pixels. Unknown estimates are filled first (see `filled`), so that a
-    /// matcher gains nothing by answering only at easy pixels. A pixel that stays unknown counts as
-    /// bad.
+    /// Bad pixels among all counted pixels. Unknown estimates are filled first (see `filled`), so a
+    /// matcher gains nothing if it answers only at easy pixels. A pixel that stays unknown counts
+    /// as bad.
     BadPixels bad;
     BadPixels known_bad;           ///< bad pixels among the counted pixels with a known estimate
     double density_percent = 0.0;  ///< share of the counted pixels with a known estimate
-    ErrorFigures known;            ///< estimate - truth at the known estimates [px]
-    SigmaCoverage coverage;        ///< coverage of the known estimates; empty without sigma
+    ErrorFigures known;            ///< estimate minus truth at the known estimates [px]
+    SigmaCoverage coverage;        ///< sigma coverage of the known estimates; empty without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
-    /// Median of truth / estimate where both are known and positive. About 1 if both are in pixels;
-    /// NaN without such pixels.
+    /// Median of truth / estimate where both are known and positive. About 1 if both images are in
+    /// pixels; NaN without such pixels.
     double truth_over_estimate = 0.0;
 };
 
 /// Fills an unknown pixel with the background of an occlusion, as Middlebury fills sparse results.
-/// This is the smaller of the nearest known disparities to the left and right in the row. A row
-/// without any known pixel stays unknown.
+/// The background is the smaller of the nearest known disparities to the left and right in the row.
+/// A row without any known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
 
-/// Suspected scale factor of the truth, for example 4 or 1/16: the factor, among those that data
-/// sets use to store disparities, that explains the ratio. No value if truth and estimate agree
-/// within the possible error of a matcher, or if no factor fits.
+/// Returns the suspected scale factor of the truth, for example 4 or 1/16. Data sets store
+/// disparities with such factors; the factor must explain the ratio. No value if truth and estimate
+/// agree within the possible error of a matcher, or if no factor fits.
 [[nodiscard]] std::optional<double> suspected_factor(double truth_over_estimate) noexcept;
 
-/// Error if the images differ in size.
+/// Returns an error if the images differ in size.
 [[nodiscard]] Result<DepthErrors> depth_errors(const DepthPair& pair);
 
 }  // namespace surefoot::eval

@@ -12,7 +12,7 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Smaller differences of areas are rounding errors of the sums: all errors are equal.
+/// If areas differ by less, the difference is a rounding error of the sums: all errors are equal.
 constexpr double kEqualAreas = 1e-12;
 
 struct Value {
@@ -20,9 +20,10 @@ struct Value {
     double error = 0.0;
 };
 
-/// Mean over m of the mean error of the m values with the smallest keys.
+/// Returns the mean of E(m) over all m: E(m) is the mean error of the m values with the smallest
+/// keys.
 double area_under(std::vector<Value>& values) {
-    // The error is the second key only so that sums do not depend on the order of the input.
+    // Sorting by error within equal keys makes the sums independent of the order of the input.
     std::sort(values.begin(), values.end(), [](const Value& a, const Value& b) {
         return a.key != b.key ? a.key < b.key : a.error < b.error;
     });

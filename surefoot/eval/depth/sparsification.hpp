@@ -9,14 +9,14 @@ namespace surefoot::eval {
 /// Measures whether a sigma finds the wrong values. Values are removed one by one, the most
 /// uncertain first, and the mean |error| of the rest is recorded. With n values sorted by
 /// increasing sigma,
-///     E(m) = mean |error| of the m most certain values, area = (1 / n) sum of E(1) .. E(n),
-/// `oracle_area` is the same for values sorted by |error| itself, the best possible order, and
-/// `random_area` that of a random order: the mean |error|. The score of the order is
+///     E(m) = mean |error| of the m most certain values, area = (1 / n) sum of E(1) .. E(n).
+/// `oracle_area` is this area for the best possible order, by |error| itself. `random_area` is the
+/// area of a random order, which equals the mean |error|. The score of the order is
 ///     auc = (area - oracle_area) / (random_area - oracle_area):
-/// 0 = as good as the oracle, 1 = no better than chance, above 1 = misleading. It does not depend
-/// on unit or size of the errors, so that scenes are comparable (cf. Ilg et al. 2018, "Uncertainty
-/// estimates and multi-hypotheses networks for optical flow": there the area between the curves,
-/// AUSE, is divided by the error alone).
+/// 0 = as good as the oracle, 1 = no better than chance, above 1 = misleading. The score does not
+/// depend on unit or size of the errors, so scenes are comparable. (Ilg et al. 2018, "Uncertainty
+/// estimates and multi-hypotheses networks for optical flow", divide the area between the curves,
+/// AUSE, by the error alone.)
 /// Values of equal sigma have no order: each gets the mean of all values with that sigma, the
 /// expectation over their orders. The result therefore does not depend on the input order.
 struct Sparsification {
@@ -27,7 +27,7 @@ struct Sparsification {
     std::int64_t count = 0;
 };
 
-/// Pairs with a number that is not finite are left out.
+/// Leaves out pairs with a number that is not finite.
 [[nodiscard]] Sparsification sparsification(std::span<const float> errors,
                                             std::span<const float> sigmas);
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
-/// Height difference per cell along one axis, from the known neighbours; 0 without any.
+/// Returns the height difference per cell along one axis, from the known neighbours; 0 without
+/// known neighbours.
 double difference_along(const grid::Layer& height_m, grid::Cell cell, int dx, int dy) {
     const auto at = [&](int sign) {
         const int ix = cell.ix + sign * dx;
@@ -25,7 +26,7 @@ double difference_along(const grid::Layer& height_m, grid::Cell cell, int dx, in
     return std::isfinite(before) ? here - before : 0.0;
 }
 
-/// Lambertian shade under light from the upper left (+x, +y), 1 on level ground.
+/// Returns the Lambertian shade under light from the upper left (+x, +y); 1 on level ground.
 double hill_shade(const grid::Layer& height_m, double resolution_m, grid::Cell cell) {
     const double slope_x = difference_along(height_m, cell, 1, 0) / resolution_m;
     const double slope_y = difference_along(height_m, cell, 0, 1) / resolution_m;

@@ -7,7 +7,7 @@
 
 namespace surefoot::eval {
 
-/// Colour of each known cell on that scale, with hill shading if the style enables it.
+/// Returns the colour of each known cell on `scale`, with hill shading if the style enables it.
 [[nodiscard]] Image<std::optional<Rgb8>> cell_colors(const grid::GridGeometry& geometry,
                                                      const grid::Layer& layer,
                                                      const LayerStyle& style,

@@ -17,21 +17,23 @@ namespace {
 /// Largest number of cells. 2^27 cells need 1 GB for the sums and 1 GB for the counts; a larger map
 /// means a wrong unit or resolution.
 constexpr double kMostCells = 134217728.0;
-/// Whole numbers up to here are exact in double, and fit an int after the first is subtracted.
+/// Largest cell number. Whole numbers up to this are exact in double; after subtraction of the
+/// first number they fit an int.
 constexpr double kLargestNumber = 1e15;
-/// Sums of heights are whole numbers of 2^-23 m (0.12 um), which double adds exactly up to 10^9 m.
+/// Steps per metre in sums of heights. Whole numbers of 2^-23 m (0.12 um) add exactly in double up
+/// to 10^9 m.
 constexpr double kSteps = 8388608.0;
-/// Cells of all threads together: 1 GB. Larger grids use fewer threads.
+/// Largest number of cells of all threads together: 1 GB. Larger grids use fewer threads.
 constexpr std::size_t kMostPartCells = 1U << 26U;
 /// Smallest number of points that justifies a thread.
 constexpr std::size_t kPiece = 1U << 14U;
 
-/// Whether a height map may hold this point.
+/// True if a height map may hold this point.
 bool is_mappable(const Eigen::Vector3d& p_m) {
     return p_m.allFinite() && std::abs(p_m.z()) <= kMaxHeight_m;
 }
 
-/// Number of the cell, or of the nearest node, along one axis.
+/// Returns the number of the cell, or of the nearest node, along one axis.
 double number_of(double p_m, double low, double resolution_m, Lattice lattice) {
     if (lattice == Lattice::node) return std::floor((p_m - low) / resolution_m + 0.5);
     return std::floor(p_m / resolution_m) - low;
@@ -59,7 +61,8 @@ void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& execu
               kPiece,
               executor,
               [&](std::size_t begin, std::size_t end, std::size_t piece) {
-                  CloudBounds bounds;  // beside another thread's it would share a cache line
+                  // An element of `pieces` would share a cache line with another thread's element.
+                  CloudBounds bounds;
                   for (std::size_t i = begin; i < end; ++i) bounds.add(points_m[i]);
                   pieces[piece] = bounds;
               });
@@ -87,11 +90,11 @@ void CloudBounds::add(const Eigen::Vector3d& p_m) {
 Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
-        return input_error(fmt::format(
-            "no point with finite coordinates (and a height within {:g} m) among {}: there is "
-            "nothing to map",
-            kMaxHeight_m,
-            skipped_));
+        return input_error(
+            fmt::format("no point with finite coordinates and a height within +-{:g} m among {} "
+                        "points; check the file and the unit of its heights",
+                        kMaxHeight_m,
+                        skipped_));
     }
     Eigen::Vector2d cells;
     DemGrid grid;
@@ -123,7 +126,7 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     }
     // in range: each is at least 1, and their product at most kMostCells
     geometry.nx = static_cast<int>(cells.x());
-    geometry.ny = static_cast<int>(cells.y());  // in range: likewise
+    geometry.ny = static_cast<int>(cells.y());  // in range: see the check above
     return grid;
 }
 

@@ -17,20 +17,20 @@ enum class Reduce : std::uint8_t { max, mean, min };
 
 /// Alignment of the cells of a height map.
 enum class Lattice : std::uint8_t {
-    cell,  ///< borders at multiples of the resolution (NOTATION.md): maps align
-    node,  ///< centres at the smallest x and y and every resolution from there, as CloudCompare's
-           ///< RASTERIZE: a point belongs to the nearest centre, the greater one in the middle
+    cell,  ///< borders at multiples of the resolution (NOTATION.md), so maps align
+    node,  ///< first centre at the smallest x and y (CloudCompare: RASTERIZE); a point belongs to
+           ///< the nearest centre, in the middle to the greater centre
 };
 
 /// The cells of a height map.
 struct DemGrid {
     grid::GridGeometry geometry;
     Lattice lattice = Lattice::cell;
-    /// node: the smallest centre [m]; cell: number of the first cell, counted from 0 m.
+    /// node: smallest centre [m]; cell: number of the first cell, counted from coordinate 0.
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
 };
 
-/// Cell index of a point, ix + iy * nx; `kNoCell` outside, and if a coordinate is not finite.
+/// Cell index ix + iy * nx of a point; `kNoCell` outside and for coordinates that are not finite.
 inline constexpr std::uint32_t kNoCell = 0xffffffffU;
 [[nodiscard]] std::uint32_t cell_number(const DemGrid& grid, const Eigen::Vector3d& p_m) noexcept;
 
@@ -43,7 +43,7 @@ class CloudBounds {
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
 
-    /// The cells that contain all points. Errors: no point; more cells than a map may have.
+    /// Returns the cells that contain all points. Errors: no point; too many cells for a map.
     [[nodiscard]] Result<DemGrid> grid(double resolution_m, Lattice lattice) const;
 
   private:
@@ -66,12 +66,12 @@ class DemBuilder {
     /// Leaves out points outside the grid and points that CloudBounds leaves out.
     void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
 
-    /// Heights so far; NaN in cells without a point.
+    /// Returns the heights of the points added so far [m]; NaN in cells without a point.
     [[nodiscard]] grid::Layer heights_m() const;
 
   private:
     struct Part {
-        std::vector<double> value;  ///< highest, lowest [m] or sum [steps]
+        std::vector<double> value;  ///< per cell: highest or lowest height [m], or sum [steps]
         std::vector<std::int64_t> count;
     };
     [[nodiscard]] Part empty() const;

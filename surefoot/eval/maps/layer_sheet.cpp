@@ -16,13 +16,13 @@ namespace {
 
 constexpr int kMargin_px = 24;
 constexpr int kHeadBand_px = 76;   ///< title of the sheet
-constexpr int kTitleBand_px = 34;  ///< over each map
+constexpr int kTitleBand_px = 34;  ///< space above each map for its title
 constexpr int kWantedSide_px = 330;
 constexpr int kBar_px = 14;
 constexpr int kBarGap_px = 10;
-constexpr int kLabels_px = 58;  ///< right of the bar
+constexpr int kLabels_px = 58;  ///< space for labels right of the bar
 constexpr int kGap_px = 22;     ///< between panels
-constexpr int kAround = 6;      ///< cells shown around what is known
+constexpr int kAround = 6;      ///< cells shown around the known cells
 constexpr double kBody_px = 18.0;
 
 TextStyle small_text(TextAnchor anchor = TextAnchor::left) {
@@ -32,7 +32,7 @@ TextStyle small_text(TextAnchor anchor = TextAnchor::left) {
     return style;
 }
 
-/// Shown cells, half-open along both axes.
+/// Range of shown cells, half-open along both axes.
 struct Shown {
     int ix0 = 0;
     int iy0 = 0;
@@ -73,7 +73,7 @@ Shown shown_cells(const grid::GridGeometry& geometry,
             std::min(geometry.ny, shown.iy1 + kAround)};
 }
 
-/// Positions of the maps of a sheet; all have one size.
+/// Positions of the maps of a sheet. All maps have one size.
 struct Layout {
     Shown shown;
     int cell_px = 1;
@@ -160,7 +160,7 @@ void draw_panel(Picture& picture,
         note.halo = true;
         draw_text(picture,
                   {plot.left + 0.5 * plot.width, plot.top + 0.4 * plot.height},
-                  "no cell has one",
+                  "no cell has a value",
                   note);
     }
     TextStyle title = small_text();
@@ -227,11 +227,11 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "normal_x") return direction_style("Normal, x");
     if (name == "normal_y") return direction_style("Normal, y");
     if (name == "normal_z") return share_style("Normal, z");
-    if (name == "free_above") return height_style("Unknown ground is below");
+    if (name == "free_above") return height_style("Height of rays over unknown ground");
     if (name == "rating_confidence") return share_style("Confidence of the rating");
     if (name == "smallest_step") return millimetre_style("Smallest step that can be resolved");
     if (name == "not_resolvable") return share_style("Sill not resolvable");
-    if (name == "reach_step") return millimetre_style("Largest step on the way");
+    if (name == "reach_step") return millimetre_style("Largest step on the way to the cell");
     LayerStyle rating = traversability_style(safe_threshold);
     if (name == "slope") rating.text.title = "Slope rating";
     if (name == "step") rating.text.title = "Step rating";
@@ -264,7 +264,7 @@ Picture render_layer_sheet(const grid::GridGeometry& geometry,
         SUREFOOT_ASSERT(layer.values.width() == geometry.nx &&
                         layer.values.height() == geometry.ny);
         drawn.scale_bar = overlays.scale_bar && i == 0;
-        // The path is drawn once; on every map it would hide more than it shows.
+        // Only the first map shows the path: on every map the path would hide more than it shows.
         if (i == 1) drawn.trajectory_m.clear();
         draw_panel(sheet, geometry, layer, layout, layout.plot(static_cast<int>(i)), drawn);
     }

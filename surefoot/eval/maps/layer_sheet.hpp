@@ -15,12 +15,12 @@ struct SheetLayer {
 };
 
 /// Style of a layer of the map or of its rating, by its name in files. "variance" is shown as one
-/// sigma in mm and expects one sigma in m. Any other name is a plain number.
+/// sigma in mm and expects one sigma in m. A layer of any other name is shown as plain numbers.
 [[nodiscard]] LayerStyle style_of_layer(std::string_view name, double safe_threshold);
 
 /// Draws layers of one map side by side, `columns` in a row, each with its own legend. x forward is
-/// up, y left is left, unknown is hatched grey. Shows the cells that any layer knows, and the path
-/// there. Returns an empty picture without a layer.
+/// up, y left is left, unknown is hatched grey. Shows the cells that at least one layer knows, and
+/// the path in this area. Returns an empty picture without a layer.
 [[nodiscard]] Picture render_layer_sheet(const grid::GridGeometry& geometry,
                                          const std::vector<SheetLayer>& layers,
                                          int columns,

@@ -10,9 +10,11 @@
 namespace surefoot::eval {
 namespace {
 
-/// Bins of half a metre where the next steps land, wider bins farther away.
+/// Borders of the distance bins. Bins are 0.5 m wide where the next steps land, and wider farther
+/// away.
 constexpr double kDistanceEdges_m[] = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0};
-/// Enough bins to separate the sides of the image from its middle, few enough to fill each bin.
+/// Number of bins: large enough to separate the sides of the image from its middle, small enough to
+/// fill each bin.
 constexpr int kColumnBins = 8;
 
 std::span<const float> values_of(const grid::Layer& layer) {
@@ -34,7 +36,8 @@ grid::Layer sigma_of(const grid::Layer& var_m2) {
     return sigma_m;
 }
 
-/// Bins of equal width over the image, in pixel coordinates (pixel 0 begins at -0.5).
+/// Returns the edges of equally wide bins over the image, in pixel coordinates (pixel 0 begins at
+/// -0.5).
 std::vector<double> column_edges(int width) {
     std::vector<double> edges_px;
     for (int k = 0; k <= kColumnBins; ++k)

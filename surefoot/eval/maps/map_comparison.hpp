@@ -28,21 +28,21 @@ struct MapPair {
     double tilt_sigma_rad = 0.0;
     grid::Layer live_traversability;
     grid::Layer truth_m;
-    /// The true surface to compare each live height with, if it is not the highest surface: floor
-    /// under a table top. Empty = truth_m.
+    /// The true surface to compare each live height with, if this is not the highest surface, for
+    /// example the floor under a table top. Empty = truth_m.
     grid::Layer compared_m;
     grid::Layer truth_traversability;
     Trajectory trajectory;              ///< base_link in the map's frame; may be empty
-    std::optional<CameraTrack> camera;  ///< no value: no errors by column and range
+    std::optional<CameraTrack> camera;  ///< without it no errors by column and range
 };
 
-/// All measurements of one live map. Fields without cells are NaN, lists without their input are
+/// All measurements of one live map. Fields without cells are NaN. Lists whose input is missing are
 /// empty. Lengths in m.
 struct MapComparison {
     ElevationErrors elevation;
     ElevationErrors elevation_away_from_edges;
-    std::vector<ErrorBin> by_distance;  ///< to the nearest position of the machine [m]
-    std::vector<ErrorBin> by_range;     ///< to the camera at the cell's last observation [m]
+    std::vector<ErrorBin> by_distance;  ///< distance to the nearest machine position [m]
+    std::vector<ErrorBin> by_range;     ///< distance to the camera at the last observation [m]
     std::vector<ErrorBin> by_column;    ///< image column of the cell's last observation [px]
     SigmaCoverage sigma;                ///< coverage of the height sigma, away from edges
     double coverage = 0.0;
@@ -54,9 +54,9 @@ struct MapComparison {
     grid::Layer error_m;
 };
 
-/// Compares the maps without any alignment. Edges and floor use level_floor of the truth. Errors by
-/// distance, range and column leave out edges. At a step, a shift of the map by one cell causes an
-/// error of the step height for every camera position.
+/// Compares the maps without any alignment. `edges` and `floor` use level_floor of the truth.
+/// Errors by distance, range and column leave out edges. At an edge, a shift of the map by one cell
+/// causes an error of the step height for every camera position.
 [[nodiscard]] MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config);
 
 }  // namespace surefoot::eval

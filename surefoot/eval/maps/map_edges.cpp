@@ -15,7 +15,7 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Standard deviation over median absolute deviation of a normal distribution.
+/// Standard deviation divided by median absolute deviation, for a normal distribution.
 constexpr double kSigmaPerMad = 1.4826;
 constexpr double kOutlierSpreads = 3.0;
 constexpr int kMostFits = 20;
@@ -24,7 +24,7 @@ bool in_mask(const CellMask& mask, int ix, int iy) {
     return mask.empty() || mask.at(ix, iy) != 0;
 }
 
-/// The lower end of the band of kFloorBand_m that holds the most of the ascending heights.
+/// Returns the lower end of the height band of width kFloorBand_m that holds most of the heights.
 double fullest_band(const std::vector<double>& sorted_m) {
     std::size_t best_count = 0;
     double best_low_m = kNone;

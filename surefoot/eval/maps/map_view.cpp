@@ -26,7 +26,7 @@ int tick_count(int length_px) {
     return std::max(2, length_px / 110);
 }
 
-/// Copies the plot area, so that drawing cannot cross its border.
+/// Copies the plot area, so that drawing cannot cross the border of the plot.
 Picture cut_out(const Picture& picture, const RectPx& rect) {
     Picture part(rect.width, rect.height);
     paste(part, picture, -rect.left, -rect.top);
@@ -55,9 +55,9 @@ void draw_body(Picture& picture,
 
 constexpr double kTickSpacing_px = 16.0;
 constexpr double kFallTick_px = 10.0;
-constexpr int kHalo_px = 4;  ///< both edges of a line together
+constexpr int kHalo_px = 4;  ///< sum of the widths of the two white edges of a line
 
-/// Begin and end of the right-hand ticks of a line.
+/// Returns the begin and end of each tick on the right of a line.
 std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Stroke& stroke) {
     std::vector<std::pair<PointPx, PointPx>> ticks;
     for (std::size_t i = 0; stroke.ticks && i + 1 < stroke.points_m.size(); ++i) {
@@ -76,7 +76,8 @@ std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Str
     return ticks;
 }
 
-/// The head of an arrow at the last point, tip first; empty without a direction.
+/// Returns the corners of the arrow head at the last point, the tip first; empty without a
+/// direction.
 std::vector<PointPx> arrow_head(const MapView& view, const Stroke& stroke) {
     const std::vector<PointPx> points = to_px(view, stroke.points_m);
     if (!stroke.arrow || points.size() < 2) return {};
@@ -96,7 +97,7 @@ std::vector<PointPx> arrow_head(const MapView& view, const Stroke& stroke) {
              tip.v - (back_px - ahead_px) * v - side_px * u}};
 }
 
-/// Draws all white edges first, so that no line cuts another.
+/// Draws all white edges before all lines, so that no edge covers a line.
 void draw_strokes(Picture& picture, const MapView& view, const std::vector<Stroke>& strokes) {
     const auto draw_all = [&](bool halo) {
         for (const Stroke& stroke : strokes) {

@@ -37,14 +37,14 @@ struct Outline {
     Rgb8 color = palette::kInk;
     std::string label;  ///< legend text; outlines with equal labels share one entry
 };
-/// A line with a white edge.
+/// A line over a map, drawn with a white edge.
 struct Stroke {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
     int width_px = 4;
     /// Legend entry, as for outlines; a line break starts a new row.
     std::string label = {};
-    bool ticks = false;  ///< draws ticks on the right-hand side, the map symbol for falling ground
+    bool ticks = false;  ///< draws ticks on the right of the line: the ground falls there
     bool arrow = false;  ///< draws an arrow at the last point
 };
 /// A short text on a disc, for example the number of a step. A badge that would cover an earlier
@@ -58,11 +58,11 @@ struct Badge {
 struct Dots {
     std::vector<Eigen::Vector2d> points_m;
     Rgb8 color = palette::kInk;
-    std::string label;  ///< legend text, if there are points
+    std::string label;  ///< legend text; used if there are points
 };
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-    std::string label;  ///< legend text: text over the map would hide the map
+    std::string label;  ///< text in the legend: text on the map would hide cells
 };
 struct Overlays {
     std::optional<Pose> T_odom_body;
@@ -73,7 +73,7 @@ struct Overlays {
     std::vector<Mark> marks;
     Dots dots;
     bool scale_bar = true;
-    /// Arrow length of the body symbol; no value: 0.35 m, but at least a visible length.
+    /// Arrow length of the body symbol. No value: 0.35 m of the map, but at least a visible length.
     std::optional<double> body_px = {};
 };
 
@@ -82,7 +82,7 @@ void draw_axes(Picture& picture, const MapView& view);
 /// Draws a bar of 1 m, or of a round length that fits the plot better, in the lower left corner. A
 /// plot that is too small gets no bar.
 void draw_scale_bar(Picture& picture, const MapView& view);
-/// Draws inside the plot only.
+/// Draws the overlays, only inside the plot.
 void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays);
 [[nodiscard]] std::vector<KeyEntry> key_of(const Overlays& overlays);
 

@@ -14,8 +14,8 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNoShare = std::numeric_limits<double>::quiet_NaN();
-/// A centre this close to a border counts as on it: far below a cell, far above the rounding errors
-/// of coordinates of some kilometres.
+/// A centre this close to a border [cells] counts as on the border. The limit is far below a cell
+/// and far above the rounding errors of coordinates of some kilometres.
 constexpr double kBorderCells = 1e-6;
 
 template <typename T>
@@ -29,7 +29,7 @@ double share(std::int64_t part, std::int64_t whole) {
     return whole == 0 ? kNoShare : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Index in `from` of each of `count` cell centres along one axis, -1 outside.
+/// Returns the index in `from` of each of `count` cell centres along one axis; -1 outside.
 std::vector<int> nearest_indices(double from_origin_m,
                                  double from_resolution_m,
                                  int from_count,
@@ -63,7 +63,8 @@ bool is_edge(const grid::Layer& height_m, int ix, int iy, double step_m) {
 Call call_of(float live, float truth, double safe_threshold) {
     if (std::isnan(truth)) return Call::no_truth;
     if (std::isnan(live)) return Call::unknown;
-    // The threshold is rounded to float like the layer, so that a stored 0.80 is safe at 0.80.
+    // The threshold is rounded to float like the layer, so a stored 0.80 is safe at a threshold of
+    // 0.80.
     const auto threshold = static_cast<float>(safe_threshold);
     const bool is_safe = truth >= threshold;
     const bool called_safe = live >= threshold;
@@ -74,24 +75,29 @@ Call call_of(float live, float truth, double safe_threshold) {
 }  // namespace
 
 void EvalMapsConfig::describe(ConfigVisitor& visitor) {
-    visitor.number(
-        "safe_threshold", safe_threshold, 0.0, 1.0, "smallest traversability of a safe cell");
+    visitor.number("safe_threshold",
+                   safe_threshold,
+                   0.0,
+                   1.0,
+                   "smallest traversability (0 to 1) of a safe cell");
     visitor.number("edge_step_m",
                    edge_step_m,
                    0.0,
                    10.0,
-                   "smallest difference between neighbouring true heights that counts as an edge");
+                   "smallest difference between the true heights of neighbouring cells that counts "
+                   "as an edge");
     visitor.integer(
         "edge_margin_cells",
         edge_margin_cells,
         0,
         100,
-        "largest distance from an edge, in cells, at which a cell is left out of the errors");
-    visitor.number("large_error_m",
-                   large_error_m,
-                   0.0,
-                   10.0,
-                   "height error above which a cell counts in share_over_50mm");
+        "largest distance from an edge, in cells, at which the height errors leave a cell out");
+    visitor.number(
+        "large_error_m",
+        large_error_m,
+        0.0,
+        10.0,
+        "height error above which a cell counts as a large error (result share_over_50mm)");
 }
 
 grid::Layer resample_nearest(const grid::GridGeometry& from,
@@ -160,7 +166,7 @@ grid::Layer height_error(const grid::Layer& live_m, const grid::Layer& truth_m) 
     SUREFOOT_ASSERT(live_m.width() == truth_m.width() && live_m.height() == truth_m.height());
     grid::Layer error_m(live_m.width(), live_m.height(), kNanF);
     for (std::size_t i = 0; i < error_m.size(); ++i) {
-        error_m.data()[i] = live_m.data()[i] - truth_m.data()[i];  // NaN stays NaN
+        error_m.data()[i] = live_m.data()[i] - truth_m.data()[i];  // NaN if either is NaN
     }
     return error_m;
 }

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Cells [ix0, ix1) x [iy0, iy1) of a map.
+/// Range of cells [ix0, ix1) x [iy0, iy1) of a map.
 struct Cells {
     int ix0 = 0, iy0 = 0, ix1 = 0, iy1 = 0;
     [[nodiscard]] bool empty() const { return ix1 <= ix0; }

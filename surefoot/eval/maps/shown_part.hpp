@@ -10,10 +10,10 @@ namespace surefoot::eval {
 /// The displayed part of a map; its narrow rim may extend beyond the map.
 struct ShownPart {
     grid::GridGeometry geometry;
-    int first_ix = 0;  ///< cell index in the map
+    int first_ix = 0;  ///< index of the first shown cell in the map
     int first_iy = 0;
 
-    /// This part of a layer of the map; `beyond` outside the map.
+    /// Copies this part of a layer of the map; cells outside the map get `beyond`.
     template <typename T>
     [[nodiscard]] Image<T> of(const Image<T>& layer, T beyond) const {
         Image<T> part(geometry.nx, geometry.ny, beyond);
@@ -26,8 +26,8 @@ struct ShownPart {
     }
 };
 
-/// The known cells and the overlays (marks, path, body), with some cells around them; the whole map
-/// if there are neither.
+/// Returns the part with the known cells and the overlays (marks, path, body), and some cells
+/// around them. Returns the whole map if there are neither known cells nor overlays.
 [[nodiscard]] ShownPart shown_part(const grid::GridGeometry& geometry,
                                    const grid::Layer& height_m,
                                    const Overlays& overlays);

@@ -13,7 +13,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Column of a point that falls into the image. Pixel u covers [u - 0.5, u + 0.5).
+/// Returns the column of a point that falls into the image. Pixel u covers [u - 0.5, u + 0.5).
 std::optional<double> column_of(const Eigen::Vector3d& p_camera,
                                 const PinholeView& view,
                                 double max_depth_m) {

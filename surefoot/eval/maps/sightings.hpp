@@ -22,18 +22,18 @@ struct Sightings {
     grid::Layer range_m;    ///< horizontal distance from the camera to the cell
 };
 
-/// Finds for each known cell the latest pose that observes its centre at its height. The centre is
-/// in the image and at most `max_depth_m` away along the optical axis. Ignores occlusion: a cell
-/// counts as observed although another object may hide it. `T_world_camera`: poses of the optical
-/// frame in the map's frame, in time order.
+/// Finds for each known cell the latest pose that observes its centre at its height. The centre
+/// must be in the image and at most `max_depth_m` away along the optical axis. Ignores occlusion: a
+/// cell counts as observed although another object may hide the cell. `T_world_camera`: poses of
+/// the optical frame in the map's frame, in time order.
 [[nodiscard]] Sightings last_sightings(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const Trajectory& T_world_camera,
                                        const PinholeView& view,
                                        double max_depth_m);
 
-/// Horizontal distance from each cell's centre to the nearest position of a trajectory, that is, to
-/// the machine. NaN everywhere for an empty trajectory.
+/// Returns the horizontal distance from each cell's centre to the nearest position of a trajectory
+/// (the machine) [m]. NaN everywhere for an empty trajectory.
 [[nodiscard]] grid::Layer distance_to(const grid::GridGeometry& geometry,
                                       const Trajectory& trajectory);
 

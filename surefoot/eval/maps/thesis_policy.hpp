@@ -14,15 +14,15 @@ namespace surefoot::eval {
 struct ThesisPolicy {
     double length_m = 0.20;   ///< length of the rectangle, along the robot
     double width_m = 0.40;    ///< across
-    double safe_mean = 0.80;  ///< allowed from this mean on (safeTraverse)
-    double unmapped = 1.0;    ///< traversability_default in the configuration of Lange 2016
+    double safe_mean = 0.80;  ///< least mean traversability for a step (safeTraverse)
+    double unmapped = 1.0;    ///< value of unmapped cells; Lange 2016: traversability_default
 };
 
 struct ThesisAnswer {
     bool allowed = false;
     double mean = 0.0;  ///< mean of the cells whose centre lies in the rectangle; 0 without cells
     int cells = 0;
-    int unmapped = 0;  ///< number of these cells that are unmapped
+    int unmapped = 0;  ///< number of unmapped cells in the rectangle
 };
 
 /// `rating`: traversability of the cells of `geometry`, 1 to 0, NaN = unmapped. `target` is in the

@@ -12,11 +12,11 @@
 namespace surefoot::eval {
 namespace {
 
-/// Text is drawn this many times larger and reduced by area: the stroke font then has smooth,
+/// Text is drawn this many times larger and then reduced by area. The stroke font then has smooth,
 /// evenly weighted lines at every size.
 constexpr int kTextOversampling = 8;
 constexpr double kHersheyCapHeight = 21.0;  ///< height of FONT_HERSHEY_SIMPLEX capitals at scale 1
-constexpr int kShift = 4;                   ///< OpenCV's fixed point: 1/16 px
+constexpr int kShift = 4;                   ///< fractional bits of OpenCV's coordinates: 1/16 px
 
 cv::Mat as_mat(Picture& picture) {
     static_assert(sizeof(Rgb8) == 3);
@@ -49,7 +49,8 @@ HersheyText measure(const std::string& text, const TextStyle& style) {
     return hershey;
 }
 
-/// Coverage of the text, 0..255, with `pad_px` around the capitals' box on every side.
+/// Returns the coverage of the text, 0 to 255, with `pad_px` around the box of the capitals on
+/// every side.
 cv::Mat text_mask(const std::string& text,
                   const HersheyText& hershey,
                   const TextStyle& style,

@@ -33,18 +33,18 @@ struct TextStyle {
     Rgb8 color = palette::kInk;
     TextAnchor anchor = TextAnchor::left;
     bool bold = false;
-    bool upward = false;  ///< rotated by 90 deg, reads upward
-    bool halo = false;    ///< white edge, for text on a map
+    bool upward = false;  ///< text rotated by 90 deg, read from bottom to top
+    bool halo = false;    ///< white edge around text on a map
 };
 
-/// Rounds a position to a whole number. Positions beyond all pictures become one 10^9 px away, and
+/// Rounds a position to a whole number. Positions far outside all pictures become +-10^9 px, and
 /// NaN becomes 0.
 [[nodiscard]] int nearest_px(double place_px) noexcept;
 
-/// Text width. All drawing is clipped at the border of the picture and anti-aliased. Text is
-/// printable ASCII; any other character appears as '?'.
+/// Returns the text width [px]. Text is printable ASCII; any other character appears as '?'. All
+/// drawing is anti-aliased and clipped at the border of the picture.
 [[nodiscard]] double text_width_px(const std::string& text, const TextStyle& style);
-/// `at` is the anchor, at half the height of the capital letters.
+/// `at` is the anchor of the text, at half the height of its capital letters.
 void draw_text(Picture& picture, PointPx at, const std::string& text, const TextStyle& style);
 void draw_line(Picture& picture, PointPx from, PointPx to, int width_px, Rgb8 color);
 void draw_polyline(Picture& picture,
@@ -55,7 +55,7 @@ void draw_polyline(Picture& picture,
 void fill_polygon(Picture& picture, std::span<const PointPx> points, Rgb8 color);
 void draw_circle(Picture& picture, PointPx center, double radius_px, int width_px, Rgb8 color);
 void fill_circle(Picture& picture, PointPx center, double radius_px, Rgb8 color);
-/// `opacity` 1 hides the pixels below.
+/// Fills a rectangle; `opacity` 1 hides the pixels below it.
 void fill_rect(Picture& picture, const RectPx& rect, Rgb8 color, double opacity = 1.0);
 void draw_rect(Picture& picture, const RectPx& rect, int width_px, Rgb8 color);
 /// Copies `source` with its top left corner at (left, top).
@@ -65,7 +65,7 @@ void paste(Picture& picture, const Picture& source, int left, int top);
 /// palette.
 [[nodiscard]] Rgb8 hatched_grey(int u, int v) noexcept;
 
-/// Encodes the picture as a PNG file; no bytes for an empty picture. Deterministic.
+/// Encodes the picture as a PNG file; no bytes for an empty picture. Equal input gives equal bytes.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Picture& picture);
 
 }  // namespace surefoot::eval

@@ -12,8 +12,8 @@
 namespace surefoot::eval {
 namespace {
 
-// Published maps, kept as 17 anchors at equal distances; between them colours are linear in sRGB,
-// on average within 1 of 255 of the full tables (the test has the largest difference).
+// Published maps, kept as 17 anchors at equal distances. Between the anchors, colours are linear in
+// sRGB: on average within 1 of 255 of the full tables. The test has the largest difference.
 // clang-format off
 constexpr std::array<Rgb8, 17> kViridis = {{
     {68, 1, 84}, {72, 24, 106}, {71, 45, 123}, {66, 64, 134}, {59, 82, 139},
@@ -33,8 +33,8 @@ constexpr std::array<Rgb8, 17> kMagma = {{
 // clang-format on
 constexpr double kPaleness = 0.5;  ///< share of white in the pale map
 constexpr std::array<Rgb8, 2> kGrey = {{{0, 0, 0}, {255, 255, 255}}};
-// Our own map, around Okabe-Ito vermillion and blue. Its two halves have a jump between them, so no
-// cell near the limit gets a colour that belongs to neither side.
+// Our own map, around vermillion and blue of Okabe and Ito. There is a jump between its two halves,
+// so no cell near the limit gets a colour that belongs to neither side.
 constexpr std::array<Rgb8, 4> kUnsafeHalf = {
     {{128, 38, 0}, {200, 80, 0}, {238, 142, 60}, {253, 208, 162}}};
 constexpr std::array<Rgb8, 4> kSafeHalf = {
@@ -47,7 +47,8 @@ constexpr std::array<Rgb8, 7> kBalance = {{{122, 12, 34},
                                            {46, 118, 181},
                                            {8, 54, 110}}};
 
-/// The anchors of a map; `s` chooses the half of a map in two halves and is stretched to it.
+/// Returns the anchors of a map. If a map has two halves, `s` chooses the half and is stretched to
+/// the length of this half.
 std::span<const Rgb8> anchors(ColorMap map, double& s) {
     switch (map) {
         case ColorMap::viridis:

@@ -14,26 +14,26 @@ struct Rgb8 {
 };
 
 /// Colour maps that stay readable with all common colour vision deficiencies. Sequential maps get
-/// monotonically lighter; diverging maps are lightest in the middle. `safety` jumps there from
-/// orange to blue: each colour belongs to one side of the limit.
+/// monotonically lighter; diverging maps are lightest in the middle. `safety` jumps from orange to
+/// blue in the middle: each colour belongs to one side of the limit.
 enum class ColorMap : std::uint8_t {
     viridis,  ///< sequential (Smith and van der Walt 2015)
     pale,     ///< sequential: viridis with much white, as a background for coloured lines
     cividis,  ///< sequential (Nunez, Anderton and Renslow 2018)
     magma,    ///< sequential (Smith and van der Walt 2015)
     grey,     ///< sequential, black to white
-    safety,   ///< diverging: orange = unsafe, blue = safe (Okabe and Ito 2008 hues)
-    balance,  ///< diverging: red below, blue above
+    safety,   ///< diverging: orange = unsafe, blue = safe (hues of Okabe and Ito 2008)
+    balance,  ///< diverging: red = below, blue = above
 };
 
-/// Colour at position s, clamped to [0, 1]. s must not be NaN.
+/// Returns the colour at position s, clamped to [0, 1]. s must not be NaN.
 [[nodiscard]] Rgb8 color_at(ColorMap map, double s);
 [[nodiscard]] bool is_diverging(ColorMap map) noexcept;
 
-/// CIE 1976 lightness L* of a colour, 0 (black) to 100 (white).
+/// Returns the CIE 1976 lightness L* of a colour, 0 (black) to 100 (white).
 [[nodiscard]] double lightness(Rgb8 color);
 
-/// (1 - weight) * a + weight * b, rounded.
+/// Mixes two colours: (1 - weight) * a + weight * b, rounded.
 [[nodiscard]] Rgb8 mixed(Rgb8 a, Rgb8 b, double weight);
 
 /// Maps values to colours between low and high; a diverging map has its middle at `centre`.
@@ -41,11 +41,11 @@ struct ColorScale {
     ColorMap map = ColorMap::viridis;
     double low = 0.0;
     double high = 1.0;
-    double centre = 0.5;  ///< diverging maps only
+    double centre = 0.5;  ///< used by diverging maps only
     [[nodiscard]] Rgb8 operator()(double value) const;
 };
 
-/// The fixed colours of all pictures and reports (Okabe and Ito 2008, where they name a thing).
+/// The fixed colours of all pictures and reports. Colours with a meaning: Okabe and Ito 2008.
 namespace palette {
 inline constexpr Rgb8 kInk{28, 30, 34};
 inline constexpr Rgb8 kSoftInk{96, 100, 108};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// `errors` holds no NaN.
+/// `errors` must hold no NaN.
 ErrorFigures figures_of(const std::vector<double>& errors) {
     if (errors.empty()) return {kNone, kNone, kNone, kNone, kNone, kNone, 0};
     std::vector<double> absolute;
@@ -36,7 +36,7 @@ ErrorFigures figures_of(const std::vector<double>& errors) {
             static_cast<std::int64_t>(errors.size())};
 }
 
-/// Number of the bin that holds `key`, or -1.
+/// Returns the number of the bin that holds `key`, or -1.
 std::ptrdiff_t bin_of(double key, std::span<const double> edges) {
     if (!(key >= edges.front() && key <= edges.back())) return -1;
     const auto after = std::upper_bound(edges.begin(), edges.end(), key) - edges.begin();

@@ -9,7 +9,8 @@
 namespace surefoot::eval {
 namespace {
 
-/// Lower end of every bin; by repeated multiplication, which is the same on every machine.
+/// Returns the lower end of every bin. Repeated multiplication gives the same result on every
+/// machine.
 using Edges = std::array<double, ErrorHistogram::kBins>;
 Edges make_edges() {
     Edges edges{};

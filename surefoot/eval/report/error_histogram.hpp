@@ -11,14 +11,14 @@ namespace surefoot::eval {
 /// exact and does not depend on the order. Errors in m.
 class ErrorHistogram {
   public:
-    /// Up to 0.1 mm, then 97 bins up to 1.04 m, then one bin for all larger errors.
+    /// First bin up to 0.1 mm, then 97 bins up to 1.04 m, then one bin for all larger errors.
     static constexpr int kBins = 99;
     static constexpr double kFirstEdge_m = 1e-4;
     static constexpr double kGrowth = 1.1;
 
     /// Ignores NaN.
     void add(double error_m);
-    /// `bin` in [0, kBins).
+    /// Adds `count` errors to `bin`, which must be in [0, kBins).
     void add_count(int bin, std::int64_t count);
     ErrorHistogram& operator+=(const ErrorHistogram& other);
 
@@ -26,8 +26,8 @@ class ErrorHistogram {
     [[nodiscard]] std::int64_t count_in(int bin) const {
         return counts_[static_cast<std::size_t>(bin)];
     }
-    /// The |error| below which `fraction` (0..1) of all errors lie, linear within its bin; NaN
-    /// without errors. An error in the last bin counts as the lower end of that bin.
+    /// Returns the |error| below which `fraction` (0 to 1) of all errors lie, linear within the
+    /// bin; NaN without errors. An error in the last bin counts as the lower end of that bin.
     [[nodiscard]] double percentile(double fraction) const;
 
     friend bool operator==(const ErrorHistogram&, const ErrorHistogram&) = default;

@@ -16,8 +16,8 @@ using namespace layout;
 constexpr double kLabelSpacing_px = 30.0;
 constexpr int kTickLength_px = 6;
 constexpr double kPoint_px = 18.0;
-constexpr int kBarTop_px = 50;     ///< room above the bar for its unit
-constexpr int kBarBottom_px = 36;  ///< room between the bar and the key
+constexpr int kBarTop_px = 50;     ///< space above the bar for its unit
+constexpr int kBarBottom_px = 36;  ///< space between the bar and the legend entries
 constexpr int kSmallestBar_px = 160;
 constexpr int kLargestBar_px = 620;
 
@@ -45,7 +45,7 @@ void draw_title(Figure& figure, const FigureText& text, int left_px, int width_p
               subtitle);
 }
 
-/// Row [px] of a value on the bar.
+/// Returns the picture row [px] of a value on the bar.
 double row_of(const RectPx& bar, const ColorScale& scale, double value) {
     const double share = (value - scale.low) / (scale.high - scale.low);
     return bar.bottom() - share * bar.height;
@@ -69,7 +69,7 @@ void draw_bar_ticks(Figure& figure, const ColorBar& bar, const RectPx& rect) {
               text_style(TextAnchor::left, palette::kSoftInk));
 }
 
-/// A pointed end means that values beyond the bar exist and share its last colour.
+/// Draws pointed ends: values beyond the bar exist and have the colour of its end.
 void draw_pointed_ends(Figure& figure, const ColorBar& bar, const RectPx& rect) {
     const auto point = [&](double base_v, double tip_v, double value) {
         const std::array<PointPx, 3> triangle = {PointPx{rect.left - 0.5, base_v},
@@ -129,7 +129,7 @@ void draw_words(Figure& figure, const ColorBar& bar, const RectPx& rect) {
 }
 
 PointPx along(PointPx center, PointPx direction, double forward_px, double left_px) {
-    // Left of a direction; picture rows grow downward.
+    // `left_px` is to the left of the direction, because picture rows grow downward.
     return {center.u + forward_px * direction.u + left_px * direction.v,
             center.v + forward_px * direction.v - left_px * direction.u};
 }
@@ -158,7 +158,7 @@ void draw_symbol(Figure& figure, const KeyEntry& entry, PointPx center) {
                           entry.color);
             }
             break;
-        case Symbol::none: break;  // goes on with the entry above
+        case Symbol::none: break;  // text that continues the entry above
         case Symbol::outline: draw_rect(picture, box, 2, entry.color); break;
         case Symbol::mark: draw_mark_symbol(picture, center); break;
         case Symbol::square:

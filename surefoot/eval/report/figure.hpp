@@ -17,7 +17,7 @@ inline constexpr double kTitleCap_px = 19.0;
 inline constexpr double kTextCap_px = 13.0;
 inline constexpr int kMargin_px = 28;
 inline constexpr int kTitleBand_px = 92;
-inline constexpr int kAxisBand_px = 78;  ///< left of and below a plot with axes
+inline constexpr int kAxisBand_px = 78;  ///< space left of and below a plot with axes
 inline constexpr int kBarWidth_px = 30;
 inline constexpr int kKeyRow_px = 36;
 inline constexpr int kMinBodyHeight_px = 420;
@@ -35,13 +35,13 @@ struct FigureText {
     std::string title;
     std::string subtitle;  ///< may be empty
 };
-/// Room [px] for legends; width 0 = no legend column.
+/// Space for legends [px]; width 0 = no legend column.
 struct ColumnSize {
     int width_px = 0;
     int height_px = 0;
 };
 /// `with_axes` leaves room for tick labels left of and below the plot. A plot that is lower than
-/// the legend column is centred beside it.
+/// the legend column is centred beside the column.
 [[nodiscard]] Figure make_figure(int plot_width_px,
                                  int plot_height_px,
                                  bool with_axes,
@@ -56,19 +56,19 @@ struct ColumnSize {
 /// A second scale on the other side of a colour bar.
 struct SecondScale {
     std::string unit;
-    std::function<double(double)> from_value;  ///< strictly decreasing, e.g. depth of a disparity
-    std::vector<double> candidates;  ///< values that may be labelled, in order of preference
+    std::function<double(double)> from_value;  ///< strictly decreasing, e.g. disparity to depth
+    std::vector<double> candidates;            ///< values to label, in order of preference
 };
 struct ColorBar {
     ColorScale scale;
     std::string unit;
-    bool clipped_low = false;  ///< values below the bar exist: its end is pointed
+    bool clipped_low = false;  ///< lower values exist: the lower end of the bar is pointed
     bool clipped_high = false;
     std::optional<SecondScale> second;
-    std::string low_word;  ///< beside the part below the centre, e.g. "unsafe"
+    std::string low_word;  ///< word beside the part below the centre, e.g. "unsafe"
     std::string high_word;
 };
-/// Draws the bar at the top of the legend column; returns the row [px] below it.
+/// Draws the bar at the top of the legend column; returns the picture row [px] below the bar.
 int draw_color_bar(Figure& figure, const ColorBar& bar, int key_rows);
 
 enum class Symbol : std::uint8_t { hatch, body, line, ticked_line, outline, mark, square, none };
@@ -76,12 +76,12 @@ struct KeyEntry {
     Symbol symbol = Symbol::square;
     Rgb8 color = palette::kInk;
     std::string label;
-    std::optional<Rgb8> dot = {};  ///< Symbol::square: a dot of another colour inside
+    std::optional<Rgb8> dot = {};  ///< colour of the dot inside a Symbol::square
 };
 /// Draws legend entries from row `top_px` downward in the legend column.
 void draw_key(Figure& figure, int top_px, const std::vector<KeyEntry>& entries);
 enum class BarKind : std::uint8_t { none, one_scale, two_scales };
-/// The smallest legend column for a colour bar and the legend entries below it.
+/// Returns the smallest legend column for a colour bar and the legend entries below the bar.
 [[nodiscard]] ColumnSize column_size(const std::vector<KeyEntry>& entries, BarKind bar);
 
 /// Draws an arrow head at `center` along `direction` (picture axes, unit length).

@@ -83,14 +83,15 @@ void add_counts(ReportContent& content, std::span<const FrameReport> frames) {
     for (const FrameReport& frame : frames) sum += frame.fusion;
     const std::int64_t n = sum.points;
     if (n > 0) {
-        content.bars.push_back({"Depth points by outcome",
-                                {bar_of("offered", n, n),
-                                 bar_of("too near or too far", sum.gated_range, n),
-                                 bar_of("too high or too low", sum.gated_height, n),
-                                 bar_of("jump, grazing or outlier", sum.gated_confidence, n),
-                                 bar_of("too few neighbours", sum.gated_density, n),
-                                 bar_of("cell beyond the image", sum.gated_border, n),
-                                 bar_of("beyond the map", sum.outside, n)}});
+        content.bars.push_back(
+            {"Depth points by outcome",
+             {bar_of("offered", n, n),
+              bar_of("too near or too far", sum.gated_range, n),
+              bar_of("too high or too low", sum.gated_height, n),
+              bar_of("depth jump, grazing ray or outlier", sum.gated_confidence, n),
+              bar_of("too few neighbours", sum.gated_density, n),
+              bar_of("cell partly outside the image", sum.gated_border, n),
+              bar_of("outside the map", sum.outside, n)}});
     }
     const std::int64_t m = sum.cells_measured;
     if (m > 0) {
@@ -98,7 +99,7 @@ void add_counts(ReportContent& content, std::span<const FrameReport> frames) {
                                 {bar_of("measured", m, m),
                                  bar_of("new", sum.cells_new, m),
                                  bar_of("agreed, fused", sum.cells_fused, m),
-                                 bar_of("disagreed, less certain", sum.cells_inflated, m)}});
+                                 bar_of("disagreed, sigma increased", sum.cells_inflated, m)}});
     }
 }
 

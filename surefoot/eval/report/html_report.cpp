@@ -180,11 +180,12 @@ std::string timing_html(const ReportContent& content) {
     const std::string cards =
         card("Per stage",
              stage_bars_svg(content.stages),
-             "Thick bar: median of the frames in which the stage ran. Thin bar: 99 % of them are "
-             "faster.") +
+             "Thick bar: median time of the frames in which the stage ran. Thin bar: 99th "
+             "percentile of the same frames.") +
         card("Per frame",
              frame_times_svg(content.frame_ms, content.frame_limit_ms),
-             content.frame_limit_ms > 0.0 ? "Dashed: time between two frames of the source." : "");
+             content.frame_limit_ms > 0.0 ? "Dashed line: time between two frames of the source."
+                                          : "");
     return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
 }
 

@@ -19,8 +19,8 @@ constexpr double kLeft = 64.0;
 constexpr double kRight = kWidth - 20.0;
 constexpr double kTop = 64.0;
 constexpr double kBottom = kHeight - 56.0;
-/// Okabe and Ito 2008: distinguishable with common colour vision deficiencies, on white and on
-/// black.
+/// Colours of Okabe and Ito 2008: distinguishable with common colour vision deficiencies, on white
+/// and on black.
 constexpr const char* kColour[LinePlot::kColours] = {
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"};
 

@@ -6,7 +6,7 @@
 
 namespace surefoot::eval {
 
-/// Lines over a quantity, both axes from 0; a standalone SVG that also fits into a report.
+/// Lines over a quantity; both axes start at 0. A standalone SVG that also fits into a report.
 struct LinePlot {
     struct Point {
         double x = 0.0;
@@ -15,10 +15,10 @@ struct LinePlot {
     struct Line {
         std::string label;
         std::vector<Point> points;  ///< ascending in x; a non-finite point interrupts the line
-        bool dashed = false;        ///< results of other authors
+        bool dashed = false;        ///< used for results of other authors
     };
     std::string title;
-    std::string x_label;  ///< labels with their units
+    std::string x_label;  ///< label of the x axis with its unit
     std::string y_label;
     std::vector<Line> lines;  ///< at most kColours
     static constexpr std::size_t kColours = 5;

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kWantedSide_px = 800.0;
 constexpr double kLargestSide_px = 1600.0;
-constexpr int kConfusionCell_px = 3;  ///< a dot and its surrounding need this
+constexpr int kConfusionCell_px = 3;  ///< smallest cell that shows a dot and its surrounding
 
-/// Whole pixels per cell if the map fits, otherwise the fraction that makes it fit.
+/// Returns whole pixels per cell if the map fits, otherwise the fraction at which the map fits.
 double px_per_cell(const grid::GridGeometry& geometry, int smallest_px) {
     const double longest = std::max({geometry.nx, geometry.ny, 1});
     if (longest > kLargestSide_px) return kLargestSide_px / longest;
@@ -47,7 +47,8 @@ MapFigure make_map_figure(const grid::GridGeometry& geometry,
     return map;
 }
 
-/// Calls paint(cell, u, v) -> colour for every pixel of the plot; u, v count inside the plot.
+/// Calls paint(cell, u, v) -> colour for every pixel of the plot. u and v are pixels of the plot,
+/// not of the picture.
 template <typename Paint>
 void paint_cells(MapFigure& map, const grid::GridGeometry& geometry, const Paint& paint) {
     const RectPx& plot = map.figure.plot;
@@ -76,8 +77,8 @@ void draw_note(Picture& picture, const RectPx& plot, const std::string& note) {
 struct CallColors {
     Rgb8 ground;
     Rgb8 dot;
-    double dot_share = 0.0;  ///< share of the cell's side; errors are larger than hits, so that few
-                             ///< errors stay visible
+    double dot_share = 0.0;  ///< dot side / cell side; larger for errors, so that few errors stay
+                             ///< visible
 };
 
 CallColors colors_of(Call call) {
@@ -94,7 +95,7 @@ CallColors colors_of(Call call) {
     return {palette::kFaint, palette::kFaint, 0.0};
 }
 
-/// Colour of pixel (u, v) of the plot, in a cell of this call.
+/// Returns the colour of pixel (u, v) of the plot, in a cell with this call.
 Rgb8 call_color(Call call, double side_px, int u, int v) {
     if (call == Call::no_truth) return hatched_grey(u, v);
     const CallColors colors = colors_of(call);
@@ -108,7 +109,7 @@ Rgb8 call_color(Call call, double side_px, int u, int v) {
     return in_middle(u) && in_middle(v) ? colors.dot : colors.ground;
 }
 
-/// Cells [first, end) of one axis, widened to `least` cells within the grid.
+/// Range of cells [first, end) of one axis. `widen` extends it to `least` cells within the grid.
 struct CellSpan {
     int first = 0;
     int end = 0;
@@ -130,7 +131,7 @@ std::vector<KeyEntry> confusion_key() {
     };
     return {entry(Call::true_safe, "safe, rightly"),
             entry(Call::true_unsafe, "unsafe, rightly"),
-            entry(Call::false_safe, "called safe, is NOT"),
+            entry(Call::false_safe, "called safe, is NOT safe"),
             entry(Call::false_unsafe, "called unsafe, is safe"),
             {Symbol::square, palette::kFaint, "not in the live map", {}},
             {Symbol::hatch, {}, "no truth", {}}};

@@ -29,51 +29,51 @@ struct LayerStyle {
     std::optional<ValueRange> range;  ///< no value: 1st to 99th percentile of the known values
     double min_span = 0.0;            ///< smallest width of a range computed from the values
     std::optional<double> centre;     ///< middle of a diverging map; no value: middle of the range
-    std::string low_word;             ///< diverging maps: beside the legend below the centre
+    std::string low_word;             ///< diverging maps: word beside the legend, below the centre
     std::string high_word;
     double value_scale = 1.0;   ///< shown = value_scale * stored, e.g. 1000 for mm
     bool hill_shading = false;  ///< shades heights like ground lit from the upper left
 };
 
-/// Predefined styles; callers may change `subtitle`.
+/// Predefined styles; callers may change the subtitle.
 [[nodiscard]] LayerStyle elevation_style();
 [[nodiscard]] LayerStyle traversability_style(double safe_threshold);
 /// Style for one-sigma heights that are stored in m and shown in mm.
 [[nodiscard]] LayerStyle height_sigma_style();
 
-/// Range of the shown values by the rule of LayerStyle; {0, 1} if no value is known.
+/// Returns the range of shown values as LayerStyle defines it; {0, 1} if no value is known.
 [[nodiscard]] ValueRange shown_range(const Image<float>& values, const LayerStyle& style);
 
-/// A map layer from above, x forward up and y left, one square per cell; unknown is hatched grey.
-/// Values outside the range take the colour of its end; the legend then ends in a point.
+/// Draws a map layer from above: x forward is up, y left is left. Unknown cells are hatched grey.
+/// Values outside the range take the colour of the legend's end; the legend then ends in a point.
 [[nodiscard]] Picture render_layer(const grid::GridGeometry& geometry,
                                    const grid::Layer& layer,
                                    const LayerStyle& style,
                                    const Overlays& overlays);
 
-/// Cells in given colours, hatched grey without a colour, with a legend.
+/// Draws cells in given colours, hatched grey without a colour, with a legend.
 [[nodiscard]] Picture render_cells(const grid::GridGeometry& geometry,
                                    const Image<std::optional<Rgb8>>& colors,
                                    const std::vector<KeyEntry>& meaning,
                                    const FigureText& text,
                                    const Overlays& overlays);
 
-/// Height error live - truth in mm: red = the map is too low (truth above it), blue = too high.
+/// Height error live - truth in mm. Red = the map is lower than the truth, blue = higher.
 [[nodiscard]] Picture render_error_map(const grid::GridGeometry& geometry,
                                        const grid::Layer& error_m,
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Cells that the live map rates safe are white, others black. The dot shows whether this is right:
-/// green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe. Colours
-/// as in Lange 2016, 9.2, except its red, which some people confuse with the green.
+/// Draws white cells where the live map says safe, others black. The dot shows whether this is
+/// right: green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe.
+/// Colours of Lange 2016, section 9.2, except its red: some people confuse this red with the green.
 [[nodiscard]] Picture render_confusion(const grid::GridGeometry& geometry,
                                        const Image<Call>& calls,
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// The same colours without title, axes and legend. Shows only the known cells of the live map and
-/// the path, at least `kThumbnailCells` wide and high. Empty if no cell is known.
+/// Draws the same colours without title, axes and legend. Shows only the known cells of the live
+/// map and the path, at least `kThumbnailCells` wide and high. Empty if no cell is known.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,
@@ -81,24 +81,24 @@ inline constexpr int kThumbnailCells = 80;
 
 /// Explains the colours of a confusion map in words.
 inline constexpr const char* kConfusionLegend =
-    "White: the map calls it safe, black: unsafe. The dot says whether that is right: green = yes, "
-    "blue on white = called safe and is NOT, orange on black = called unsafe and is safe. Grey: "
-    "never seen.";
+    "White cells are safe according to the map, black cells unsafe. Green dot: the map is right. "
+    "Blue dot on white: called safe and is NOT safe. Orange dot on black: called unsafe and is "
+    "safe. Grey cells were never seen.";
 
 [[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
 
-/// Disparity [px] of the rectified left image. If `depth_times_disparity_m_px` (focal length times
-/// baseline) is above 0, the legend also shows the depth in m.
+/// Draws the disparity [px] of the rectified left image. If `depth_times_disparity_m_px` (focal
+/// length times baseline) is above 0, the legend also shows the depth in m.
 [[nodiscard]] Picture render_disparity(const Image<float>& disparity_px,
                                        double depth_times_disparity_m_px,
                                        const FigureText& text);
 
-/// One sigma of a quantity per pixel, in `unit`.
+/// Draws one sigma of a quantity per pixel, in `unit`.
 [[nodiscard]] Picture render_sigma(const Image<float>& sigma,
                                    const std::string& unit,
                                    const FigureText& text);
 
-/// Positions from above. `truth` may be empty. Both paths are drawn unaligned (align them before).
+/// Draws positions from above. `truth` may be empty. Does not align the paths: align them before.
 [[nodiscard]] Picture render_trajectory(const Trajectory& estimate,
                                         const Trajectory& truth,
                                         const FigureText& text);
@@ -108,11 +108,11 @@ struct ErrorSample {
     double time_s = 0.0;
     double error_m = 0.0;
 };
-/// Error over time as a line, in mm or, from 1 m on, in m; samples in time order.
+/// Draws the error over time as a line, in mm, or in m from 1 m on. Samples are in time order.
 [[nodiscard]] Picture render_error_over_time(const std::vector<ErrorSample>& samples,
                                              const FigureText& text);
 
-/// Two pictures on one sheet, one below the other.
+/// Joins two pictures on one sheet, one below the other.
 [[nodiscard]] Picture stacked(const Picture& upper, const Picture& lower);
 
 }  // namespace surefoot::eval

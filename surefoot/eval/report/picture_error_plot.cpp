@@ -13,12 +13,12 @@ constexpr int kHeight_px = 400;
 constexpr int kTickLength_px = 6;
 constexpr double kShowMetresFrom_m = 1.0;
 
-/// Position of a time and an error on the plot; the error axis begins at 0.
+/// Maps a time and an error to a position on the plot. The error axis begins at 0.
 struct Axes {
     RectPx plot;
     double start_s = 0.0;
     double end_s = 1.0;
-    double top = 1.0;  ///< in the displayed unit
+    double top = 1.0;  ///< upper end of the error axis in the displayed unit
     double per_m = 1e3;
 
     [[nodiscard]] PointPx to_px(double time_s, double error_m) const {
@@ -68,7 +68,7 @@ void draw_axes(Picture& picture, const Axes& axes) {
     draw_text(picture, {28.0, plot.top + 0.5 * plot.height}, name, style);
 }
 
-/// The largest error of each column, so that a long run keeps its peaks.
+/// Returns the largest error of each column, so that a long run keeps its peaks.
 std::vector<PointPx> line_of(const Axes& axes, const std::vector<ErrorSample>& samples) {
     std::vector<PointPx> line;
     for (const ErrorSample& sample : samples) {

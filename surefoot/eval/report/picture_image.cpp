@@ -11,10 +11,10 @@
 namespace surefoot::eval {
 namespace {
 
-constexpr int kImageWidth_px = 1000;  ///< images are shown at least about this wide
+constexpr int kImageWidth_px = 1000;  ///< smaller images are enlarged to about this width
 constexpr int kLargestImage_px = 1600;
 
-/// Shown pixels per image pixel.
+/// Returns the number of shown pixels per image pixel.
 double image_scale(int width, int height) {
     const double enlarged = std::max(1.0, static_cast<double>(kImageWidth_px) / width);
     return std::min(enlarged, static_cast<double>(kLargestImage_px) / std::max(width, height));
@@ -29,7 +29,7 @@ Size shown_size(int width, int height) {
     return {std::max(1, nearest_px(width * scale)), std::max(1, nearest_px(height * scale))};
 }
 
-/// A number per pixel as a figure with its legend; pixels without a number are hatched.
+/// Draws a number per pixel as a figure with a legend; pixels without a number are hatched.
 Picture render_values(const Image<float>& values,
                       const LayerStyle& style,
                       const std::optional<SecondScale>& second,

@@ -8,7 +8,8 @@
 namespace surefoot::eval {
 namespace {
 
-/// A few outliers must not flatten the colours of all other values.
+/// Percentiles that limit the shown range: a few outliers must not flatten the colours of all other
+/// values.
 constexpr double kLowShare = 0.01;
 constexpr double kHighShare = 0.99;
 constexpr double kSmallestRelativeSpan = 1e-6;

@@ -6,10 +6,10 @@
 
 namespace surefoot::eval {
 
-/// Whether there is a finite value.
+/// True if at least one value is finite.
 [[nodiscard]] bool any_known(const Image<float>& values);
 
-/// The legend of `values` in a style: range, clipping, words.
+/// Returns the legend of `values` in a style: range, clipping, words.
 [[nodiscard]] ColorBar color_bar_of(const Image<float>& values, const LayerStyle& style);
 
 }  // namespace surefoot::eval

@@ -13,10 +13,10 @@
 namespace surefoot::eval {
 namespace {
 
-constexpr double kWidth = 600.0;         ///< drawings that share a row of the page
-constexpr double kHealthWidth = 1220.0;  ///< drawing that has a row for itself
-constexpr double kLabelWidth = 100.0;    ///< names left of the bars
-constexpr double kValueWidth = 174.0;    ///< figures right of the bars
+constexpr double kWidth = 600.0;         ///< width of drawings that share a row of the page
+constexpr double kHealthWidth = 1220.0;  ///< width of a drawing that fills a row
+constexpr double kLabelWidth = 100.0;    ///< space for names left of the bars
+constexpr double kValueWidth = 174.0;    ///< space for numbers right of the bars
 constexpr double kRow = 30.0;
 constexpr double kAxisHeight = 44.0;
 
@@ -59,7 +59,7 @@ std::string svg(double width, double height, const std::string& title, const std
         body);
 }
 
-/// Vertical grid lines with their numbers below.
+/// Draws vertical grid lines with their numbers below.
 std::string x_axis(
     double left, double right, double top, double bottom, double high, const std::string& unit) {
     std::string body;
@@ -72,7 +72,7 @@ std::string x_axis(
     return body + text_at(0.5 * (left + right), bottom + 38.0, "label", "middle", unit);
 }
 
-/// Merges neighbours to their largest value, so that a spike is never lost.
+/// Replaces groups of neighbours by their largest value, so that a spike is never lost.
 std::vector<double> largest_of_groups(const std::vector<double>& values, std::size_t most) {
     const std::size_t group = (values.size() + most - 1) / most;
     std::vector<double> merged;
@@ -155,7 +155,7 @@ std::string bin_plot_axes(const BinPlot& plot, const BinPlotFrame& frame) {
                           plot.x_label);
 }
 
-/// The line, broken where bins are empty, with a mark at every value.
+/// Draws the line with a mark at every value. The line has a gap at an empty bin.
 std::string bin_plot_line(const BinPlot& plot,
                           const BinPlot::Line& line,
                           const BinPlotFrame& frame,
@@ -288,7 +288,7 @@ std::string health_svg(const std::vector<HealthSample>& samples) {
     };
     std::string body;
     for (std::size_t k = 0; k < samples.size();) {
-        std::size_t end = k + 1;  // first sample of another state
+        std::size_t end = k + 1;  // first sample of the next state
         while (end < samples.size() && samples[end].health == samples[k].health &&
                samples[end].reason == samples[k].reason) {
             ++end;

@@ -11,7 +11,8 @@
 namespace surefoot::eval {
 namespace {
 
-/// Rounding error of a quotient of two doubles: a bound on a tick keeps its tick.
+/// Relative tolerance for rounding errors of a quotient: a tick exactly on the end of the range
+/// stays.
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -28,7 +29,7 @@ Ticks nice_ticks(double low, double high, int target) {
     SUREFOOT_ASSERT(std::isfinite(low) && std::isfinite(high) && low < high && target > 0);
     const double smallest = (high - low) / target;
     Ticks ticks;
-    // The nice number not below `smallest`.
+    // Finds the smallest round number that is not below `smallest`.
     ticks.step = nice_below(smallest);
     if (ticks.step * (1.0 + kRounding) < smallest) ticks.step = nice_below(2.5 * ticks.step);
     // in range: nice_below() gives a finite number above 0, whose logarithm is within 324 of 0

@@ -10,14 +10,14 @@ namespace surefoot::eval {
 struct Ticks {
     std::vector<double> values;  ///< ascending, within the range
     double step = 1.0;
-    int decimals = 0;  ///< enough to distinguish neighbours
+    int decimals = 0;  ///< number of decimals that distinguish neighbouring values
     [[nodiscard]] std::string label(double value) const;
 };
 
-/// Largest 1, 2 or 5 times a power of ten that is not above `value` (> 0).
+/// Returns the largest 1, 2 or 5 times a power of ten that is not above `value` (> 0).
 [[nodiscard]] double nice_below(double value);
 
-/// At most about `target` + 1 round numbers in [low, high]; low < high, both finite.
+/// Returns about `target` + 1 round numbers at most in [low, high]; low < high, both finite.
 [[nodiscard]] Ticks nice_ticks(double low, double high, int target);
 
 }  // namespace surefoot::eval

@@ -44,7 +44,7 @@ std::vector<KeyEntry> key_of_classes(const stairs::GroundClasses& classes, doubl
                        fmt::format("{}, {}", stairs::kGroundClassNames[i], size),
                        {}});
     }
-    key.push_back({Symbol::hatch, {}, "unknown or unsure", {}});
+    key.push_back({Symbol::hatch, {}, "unknown or uncertain", {}});
     return key;
 }
 

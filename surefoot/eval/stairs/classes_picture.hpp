@@ -6,9 +6,9 @@
 
 namespace surefoot::eval {
 
-/// Colour of a class, for all common kinds of colour vision: hues of Okabe and Ito (2008); classes
-/// that meet on the ground (floor, kerb, drop; tread, riser) also differ in lightness. Danger is
-/// warm, standing objects are dark. Unknown has no colour: it is hatched.
+/// Returns the colour of a class, for all common kinds of colour vision: hues of Okabe and Ito
+/// (2008). Classes that meet on the ground (floor, kerb, drop; tread, riser) also differ in
+/// lightness. Danger is warm, standing objects are dark. Unknown has no colour but hatching.
 [[nodiscard]] Rgb8 color_of(stairs::GroundClass name);
 
 /// Draws the ground class of each cell, with the area of each class in the legend. Shows the known

@@ -15,12 +15,12 @@ namespace {
 
 using stairs::FeaturePose;
 
-/// Common properties for the comparison of all kinds of features.
+/// Common properties of all kinds of features, for the comparison.
 struct Placed {
     FeaturePose pose;
     double height_m = 0.0;
-    bool down = false;     ///< leads down: matches only features that lead down too
-    bool two_way = false;  ///< has the same meaning with its pose turned by 180 deg
+    bool down = false;     ///< leads down; matches only a feature that also leads down
+    bool two_way = false;  ///< keeps its meaning if its pose is turned by 180 deg
 };
 
 struct Pair {
@@ -36,7 +36,7 @@ double turn_between(const Placed& found, const Placed& truth) {
     return truth.two_way ? std::min(turn, std::numbers::pi - turn) : turn;
 }
 
-/// Possible pairs, nearest first.
+/// Returns the possible pairs, the nearest first.
 std::vector<Pair> candidates(const std::vector<Placed>& found,
                              const std::vector<Placed>& truth,
                              const FeatureMatch& match) {
@@ -140,7 +140,7 @@ std::vector<Placed> placed(const std::vector<Feature>& features, const AsPlaced&
     return out;
 }
 
-/// The height of a drop whose bottom was not observed is a lower bound, not a measurement.
+/// The height of a drop whose bottom was not observed is a lower bound. It is not compared.
 Placed of_line(const stairs::LineFeature& line) {
     return {line.pose,
             line.bottom_seen ? std::abs(line.height_m) : kNan,

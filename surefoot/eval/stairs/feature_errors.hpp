@@ -8,20 +8,20 @@
 
 namespace surefoot::eval {
 
-/// Limits for a match between a found and a true feature. They limit the rotation, and the offset
-/// of the middle along the line and across it (along the path over the feature).
+/// Limits for a match of a found with a true feature: rotation and offset of the middle. The offset
+/// has a part along the line and a part across it (along the path over the feature).
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
     double turn_deg = 20.0;
 };
 
-/// Found minus true, for matched pairs whose two values are both known.
+/// Errors (found minus true) of matched pairs whose two values are both known.
 struct MatchErrors {
     std::size_t count = 0;
-    double mean_m = 0.0;     ///< NaN without pairs, as the other fields
-    double std_m = 0.0;      ///< about the mean, divided by n
-    double max_abs_m = 0.0;  ///< the largest
+    double mean_m = 0.0;     ///< NaN without pairs, like the other figures
+    double std_m = 0.0;      ///< standard deviation about the mean, divisor n
+    double max_abs_m = 0.0;  ///< largest magnitude of an error
 };
 
 /// Errors of one kind of feature. Pairs are formed nearest first; a feature is in at most one pair.
@@ -31,10 +31,10 @@ struct KindErrors {
     std::size_t matched = 0;
     std::vector<stairs::FeaturePose> missed;  ///< true features without a match
     std::vector<stairs::FeaturePose> extra;   ///< found features without a match
-    std::vector<std::size_t> missed_at;       ///< indices of the missed features in their lists
+    std::vector<std::size_t> missed_at;       ///< indices of missed features in the input list
     std::vector<std::size_t> extra_at;
     MatchErrors across;  ///< position error along the path over the feature
-    MatchErrors height;  ///< riser of flights; sill of doors
+    MatchErrors height;  ///< error of a flight's riser; of a door's sill
 
     [[nodiscard]] double recall() const;     ///< NaN without a true feature
     [[nodiscard]] double precision() const;  ///< NaN without a found feature
@@ -59,7 +59,7 @@ struct FeatureErrors {
     KindErrors edges;  ///< all edges, matched with the lower ground on the same side
 };
 
-/// Compares found features with the truth, both in one frame.
+/// Compares found features with the truth. Both must be in one frame.
 [[nodiscard]] FeatureErrors feature_errors(const stairs::TerrainFeatures& found,
                                            const stairs::TerrainFeatures& truth,
                                            const FeatureMatch& match);

@@ -19,7 +19,7 @@ using stairs::FlightKind;
 using stairs::LineFeature;
 
 constexpr int kStep_px = 5;
-constexpr int kDrop_px = 9;  ///< stays visible beside the first step of a flight that goes down
+constexpr int kDrop_px = 9;  ///< wide enough to be visible beside the first step of a flight down
 constexpr int kThin_px = 3;
 constexpr std::size_t kFlightsInKey = 4;
 constexpr std::size_t kDoorsInKey = 4;
@@ -32,12 +32,12 @@ Rgb8 color_of(FlightKind kind) {
     return kind == FlightKind::up ? ground_palette::kUp : ground_palette::kDown;
 }
 
-/// Name of a flight on the map: A, B, C, ...; empty for a single flight and from the 27th on.
+/// Returns the name of a flight on the map: A, B, C, ...; empty for a single flight and after Z.
 std::string name_of(std::size_t index, std::size_t count) {
     return count < 2 || index > 25 ? std::string() : std::string(1, static_cast<char>('A' + index));
 }
 
-/// The line of a feature with its lower ground on the right hand.
+/// Returns the line of a feature, directed so that the lower ground is on the right.
 std::vector<Vector2d> line_of(const LineFeature& feature) {
     const Vector2d down = (feature.height_m < 0.0 ? 1.0 : -1.0) * direction(feature.pose.yaw_rad);
     const Vector2d half_m = 0.5 * feature.length_m * Vector2d(-down.y(), down.x());
@@ -45,7 +45,7 @@ std::vector<Vector2d> line_of(const LineFeature& feature) {
     return {middle_m - half_m, middle_m + half_m};
 }
 
-/// The range of the heights of lines: "drop: 0.18 to 0.50 m", "drop: 0.50 m or more".
+/// Formats the range of the heights of lines: "drop: 0.18 to 0.50 m", "drop: 0.50 m or more".
 std::string heights_text(const char* what, const std::vector<LineFeature>& lines) {
     double least_m = 1e9;
     double most_m = 0.0;
@@ -79,8 +79,8 @@ void add_lines(const std::vector<LineFeature>& lines,
     }
 }
 
-/// The path along a flight: from before the first edge over the middles of all edges to behind the
-/// last one, a turn included.
+/// Returns the path along a flight, also along a flight with a turn. It leads from before the first
+/// edge over the middles of all edges to behind the last edge.
 std::vector<Vector2d> way_along(const Flight& flight) {
     constexpr double kBefore_m = 0.30;
     constexpr double kBehind_m = 0.20;
@@ -99,7 +99,7 @@ void add_flight(const Flight& flight,
                 const std::string& name,
                 const std::string& label,
                 Overlays& overlays) {
-    constexpr double kNumberAt = 0.14;  ///< of an edge, from its left end as one walks
+    constexpr double kNumberAt = 0.14;  ///< share of the edge, from a walker's left end
     const Rgb8 color = color_of(flight.kind);
     int number = 0;
     for (const Edge& edge : flight.edges) {
@@ -131,7 +131,7 @@ void add_flights(const std::vector<Flight>& flights, Overlays& overlays) {
     }
 }
 
-/// A line across the opening between two jambs.
+/// Adds a line across the opening between the two jambs of each door.
 void add_doors(const std::vector<stairs::Door>& doors, Overlays& overlays) {
     constexpr double kJamb_m = 0.08;
     constexpr int kJamb_px = 6;
@@ -225,7 +225,7 @@ Picture render_features(const grid::GridGeometry& geometry,
     const grid::Layer part_m = shown.of(height_m, std::nanf(""));
     LayerStyle style = elevation_style();
     style.map = ColorMap::pale;
-    style.hill_shading = false;  // the lines mark steep ground
+    style.hill_shading = false;  // the lines already mark steep ground
     style.text = text;
     return render_layer(shown.geometry, part_m, style, with_features(features, overlays));
 }

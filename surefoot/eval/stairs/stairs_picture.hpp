@@ -13,15 +13,15 @@ namespace surefoot::eval {
 namespace ground_palette {
 inline constexpr Rgb8 kDrop = palette::kUnsafe;
 inline constexpr Rgb8 kUp = palette::kSafe;
-inline constexpr Rgb8 kDown{150, 60, 120};  ///< reddish purple, darker than kPink, for white
+inline constexpr Rgb8 kDown{150, 60, 120};  ///< reddish purple, dark enough for white text on it
 inline constexpr Rgb8 kKerb = palette::kOrange;
 inline constexpr Rgb8 kSill{86, 180, 233};  ///< sky blue (Okabe and Ito 2008)
 inline constexpr Rgb8 kDoor = palette::kGreen;
 inline constexpr Rgb8 kEdge = palette::kSoftInk;
 }  // namespace ground_palette
 
-/// A length with one sigma in whole mm: "180 +- 1 mm"; with tenths if sigma is below 1 mm; "?" if
-/// the length is not finite.
+/// Formats a length with one sigma in whole mm: "180 +- 1 mm". Uses tenths if sigma is below 1 mm,
+/// and "?" if the length is not finite.
 [[nodiscard]] std::string length_text(double length_m, double sigma_m);
 
 /// A flight in words: "up, 4 steps, 1.00 m wide\n180 +- 1 mm by 310 +- 2 mm" (riser by going).

@@ -12,10 +12,10 @@
 namespace surefoot::eval {
 namespace {
 
-/// evo's rel_delta_tol.
+/// Largest deviation of a stretch from its length, as a share: evo's rel_delta_tol.
 constexpr double kLengthTolerance = 0.1;
 
-/// True path length from the first matched pose to each matched pose.
+/// Returns the true path length [m] from the first matched pose to each matched pose.
 std::vector<double> path_so_far_m(const Trajectory& truth, const std::vector<PosePair>& pairs) {
     std::vector<double> path_m;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -27,7 +27,7 @@ std::vector<double> path_so_far_m(const Trajectory& truth, const std::vector<Pos
     return path_m;
 }
 
-/// The pair after `start` whose true path length from `start` is nearest to `length_m`.
+/// Finds the pair after `start` whose true path length from `start` is nearest to `length_m`.
 std::optional<std::size_t> stretch_end(const std::vector<double>& path_m,
                                        std::size_t start,
                                        double length_m) {
@@ -37,7 +37,7 @@ std::optional<std::size_t> stretch_end(const std::vector<double>& path_m,
     auto end = std::lower_bound(first, path_m.end(), wanted_m);
     if (end == path_m.end() || (end != first && wanted_m - *(end - 1) <= *end - wanted_m)) {
         end = std::lower_bound(
-            first, end, *(end - 1));  // the earliest of several poses without motion
+            first, end, *(end - 1));  // of several poses without motion between them, the earliest
     }
     if (std::abs(*end - wanted_m) > kLengthTolerance * length_m) return std::nullopt;
     return static_cast<std::size_t>(end - path_m.begin());

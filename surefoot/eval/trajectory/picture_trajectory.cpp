@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kLongSide_px = 860.0;
 constexpr double kSmallestExtent_m = 0.1;
-constexpr double kLargestAspect = 1.6;  ///< longer side of the plot over its shorter side
+constexpr double kLargestAspect = 1.6;  ///< longer side of the plot divided by its shorter side
 constexpr double kBorderShare = 0.07;
-constexpr Rgb8 kTruth{246, 178, 107};  ///< wide and pale, so that the estimate is visible on it
+constexpr Rgb8 kTruth{246, 178, 107};  ///< pale: the estimate stays visible on the wide line
 
 std::vector<Eigen::Vector2d> ground_track(const Trajectory& trajectory) {
     std::vector<Eigen::Vector2d> points_m;
@@ -28,7 +28,8 @@ struct Box {
     Eigen::Vector2d high_m;
 };
 
-/// Box around all points with a margin; never a point and never a narrow strip.
+/// Returns a box around all points with a margin. The box is never a single point or a narrow
+/// strip.
 Box view_box(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(HUGE_VAL);
     Eigen::Vector2d high = -low;
@@ -62,7 +63,7 @@ void draw_end(Picture& picture, PointPx center, Rgb8 fill) {
     fill_circle(picture, center, 5.0, fill);
 }
 
-/// Draws a word beside an end of the track, on the side with room.
+/// Draws a word beside an end of the track, on the side with more space.
 void draw_end_word(Picture& picture, PointPx center, int plot_width, double dv, const char* word) {
     TextStyle style;
     style.halo = true;

@@ -31,12 +31,12 @@ std::vector<std::size_t> order_by_time(const Trajectory& trajectory) {
 
 struct Candidate {
     std::int64_t difference_ns;
-    std::size_t estimate_rank;  // position in time order
+    std::size_t estimate_rank;  // position of the estimated pose in time order
     std::size_t truth_rank;
     [[nodiscard]] auto key() const { return std::tuple(difference_ns, estimate_rank, truth_rank); }
 };
 
-/// All pairs within the tolerance, found with one sweep over both time orders.
+/// Returns all pairs within the tolerance. Goes once through both time orders.
 std::vector<Candidate> candidates_within(const Trajectory& estimate,
                                          const std::vector<std::size_t>& estimate_order,
                                          const Trajectory& truth,
@@ -93,9 +93,10 @@ double path_length(const Eigen::Matrix3Xd& points_m) {
     return length_m;
 }
 
-/// The pair that ends an interval starting at pair `start`: the next one, or the one nearest to
-/// `interval_ns` later and at most half an interval off. Intervals that reach beyond the last pair
-/// are left out: a shorter one would flatter the error.
+/// Returns the pair that ends an interval starting at pair `start`. For an interval of 0, this is
+/// the next pair. Otherwise it is the pair nearest to `interval_ns` later, at most half an interval
+/// off. Intervals that reach beyond the last pair are left out: a shorter interval would flatter
+/// the error.
 std::optional<std::size_t> interval_end(const Trajectory& estimate,
                                         const std::vector<PosePair>& pairs,
                                         std::size_t start,
@@ -152,7 +153,7 @@ Error too_few(const Trajectory& estimate,
     return input_error(
         fmt::format("eval trajectory: {} poses match within {:.0f} ms, at least {} are needed; the "
                     "estimate {}, "
-                    "the truth {}: check that both use the same clock and overlap",
+                    "the truth {}: check that both use the same clock and overlap in time",
                     matched,
                     1e3 * tolerance_s,
                     needed,
@@ -176,11 +177,11 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
         rot_deg.push_back(kDegPerRad * log_so3(error.rotation).norm());
     }
     if (trans_m.empty()) {
-        return input_error(fmt::format(
-            "eval trajectory: no two matched poses are {:g} s apart (half of that is allowed as "
-            "difference); choose rpe_interval_s within the recording's length, or 0 for frame to "
-            "frame",
-            config.rpe_interval_s));
+        return input_error(
+            fmt::format("eval trajectory: no two matched poses are {:g} s apart (a deviation of "
+                        "half this time is allowed); choose rpe_interval_s shorter than the "
+                        "recording, or 0 for successive poses",
+                        config.rpe_interval_s));
     }
     errors.rpe_trans_rmse_m = rms(trans_m);
     errors.rpe_rot_rmse_deg = rms(rot_deg);
@@ -192,18 +193,23 @@ Result<void> add_relative_errors(TrajectoryErrors& errors,
 void EvalTrajectoryConfig::describe(ConfigVisitor& visitor) {
     static constexpr std::array<const char*, 3> kNames = {"se3", "yaw", "none"};
     visitor.enumeration(
-        "align", align, kNames, "transformation that is removed before positions are compared");
+        "align",
+        align,
+        kNames,
+        "alignment of the estimate with the truth before positions are compared: se3 = rotation "
+        "and shift, yaw = rotation about the vertical and shift, none = no alignment");
     visitor.number("tolerance_s",
                    tolerance_s,
                    0.0,
                    10.0,
-                   "largest time between an estimated pose and its true pose");
-    visitor.number(
-        "rpe_interval_s",
-        rpe_interval_s,
-        0.0,
-        3600.0,
-        "time over which relative pose errors are computed; 0 = from one matched pose to the next");
+                   "largest time difference between an estimated pose and the true pose that is "
+                   "matched with it");
+    visitor.number("rpe_interval_s",
+                   rpe_interval_s,
+                   0.0,
+                   3600.0,
+                   "time over which relative pose errors are computed; 0 = from each matched pose "
+                   "to the next");
 }
 
 std::vector<PosePair> associate(const Trajectory& estimate,
@@ -242,7 +248,7 @@ Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
     if (align == Alignment::se3) {
         T_truth_estimate.rotation = Eigen::Quaterniond(best_rotation(covariance)).normalized();
     } else {
-        // d/dyaw of sum |q - Rz(yaw) p|^2 = 0 leaves the in-plane cross and dot products.
+        // Setting d/dyaw of sum |q - Rz(yaw) p|^2 to 0 leaves the in-plane cross and dot products.
         const double yaw =
             std::atan2(covariance(1, 0) - covariance(0, 1), covariance(0, 0) + covariance(1, 1));
         T_truth_estimate.rotation = exp_so3({0.0, 0.0, yaw});

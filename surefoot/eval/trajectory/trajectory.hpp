@@ -11,17 +11,17 @@
 
 namespace surefoot::eval {
 
-/// Transformation of the estimate's world frame that is removed before positions are compared.
+/// How the estimate's world frame is moved onto the truth's before positions are compared.
 enum class Alignment : std::uint8_t {
     se3,   ///< rotation and translation (Umeyama 1991, without scale)
     yaw,   ///< translation and rotation about z: both world frames have z up
-    none,  ///< both share one world frame
+    none,  ///< no change: estimate and truth share one world frame
 };
 
 struct EvalTrajectoryConfig {
     Alignment align = Alignment::se3;
-    double tolerance_s = 0.010;   ///< largest time between an estimate and its true pose
-    double rpe_interval_s = 0.0;  ///< 0: relative errors from one matched pose to the next
+    double tolerance_s = 0.010;   ///< largest time difference of a matched pair
+    double rpe_interval_s = 0.0;  ///< time of relative errors; 0 = to the next matched pose
     void describe(ConfigVisitor& visitor);
 };
 
@@ -32,20 +32,20 @@ struct PosePair {
     friend bool operator==(const PosePair&, const PosePair&) = default;
 };
 
-/// Pairs nearest in time, one to one: of all pairs within the tolerance the closest is taken first
-/// (ties: the earlier estimate, then the earlier truth). Sorted by the estimate's time.
+/// Matches poses nearest in time, one to one: of all pairs within the tolerance the closest comes
+/// first (ties: the earlier estimate, then the earlier truth). Sorted by the estimate's time.
 [[nodiscard]] std::vector<PosePair> associate(const Trajectory& estimate,
                                               const Trajectory& truth,
                                               double tolerance_s);
 
-/// T_truth_estimate that brings the columns of `estimate_m` closest to those of `truth_m` (least
-/// squares; columns correspond). If the points leave a rotation open, it returns any best one.
+/// Returns T_truth_estimate that brings the columns of `estimate_m` closest to those of `truth_m`
+/// (least squares; columns correspond). If several rotations are equally good, returns one of them.
 [[nodiscard]] Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
                                    const Eigen::Matrix3Xd& truth_m,
                                    Alignment align);
 
-/// Difference between the estimated and the true motion from pair a to pair b: (Q_a^-1 Q_b)^-1
-/// (P_a^-1 P_b) with P estimated and Q true.
+/// Returns the difference between the estimated and the true motion from pair a to pair b: (Q_a^-1
+/// Q_b)^-1 (P_a^-1 P_b) with P estimated and Q true.
 [[nodiscard]] Pose relative_error(const Trajectory& estimate,
                                   const Trajectory& truth,
                                   const PosePair& a,
@@ -53,16 +53,16 @@ struct PosePair {
 
 /// Errors over the matched poses (Sturm et al. 2012 for ATE and RPE).
 struct TrajectoryErrors {
-    double ate_rmse_m = 0.0;        ///< positions after alignment
-    double rpe_trans_rmse_m = 0.0;  ///< of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), any alignment
+    double ate_rmse_m = 0.0;        ///< rms position error after alignment
+    double rpe_trans_rmse_m = 0.0;  ///< rms translation of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j)
     double rpe_rot_rmse_deg = 0.0;
     /// 100 |t| / path length; t = error of the motion from the first to the last matched pose,
     /// which needs no alignment. NaN if the true path is shorter than 1 mm.
     double drift_percent = 0.0;
     int matched = 0;
     double path_length_m = 0.0;  ///< length of the path through the matched true positions
-    double end_error_m = 0.0;    ///< |t| above
-    Pose T_truth_estimate;       ///< the alignment
+    double end_error_m = 0.0;    ///< |t| of drift_percent
+    Pose T_truth_estimate;       ///< alignment of the estimate with the truth
     std::vector<PosePair> pairs;
     std::vector<double> position_error_m;  ///< one error per pair, after alignment
 };
@@ -74,7 +74,7 @@ struct TrajectoryErrors {
                                                            const Trajectory& truth,
                                                            const EvalTrajectoryConfig& config);
 
-/// Moves every pose into the truth's world: T_truth_estimate * T_estimate_body.
+/// Moves every estimated pose into the truth's world: T_truth_estimate * T_estimate_body.
 [[nodiscard]] Trajectory transformed(const Pose& T_truth_estimate, const Trajectory& estimate);
 
 }  // namespace surefoot::eval
