@@ -184,7 +184,7 @@ std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_h
     }
     if (!(max_view_deg >= 10.0 && max_view_deg <= kWidestPlane_deg)) {
         return fmt::format(
-            "camera.max_view_deg = {} must be from 10 to {}", max_view_deg, kWidestPlane_deg);
+            "camera.max_view_deg = {} must be 10 to {} deg", max_view_deg, kWidestPlane_deg);
     }
     if (rectified_focal_px == 0.0) return std::nullopt;
     const double longest = std::max(width, height) - 1;

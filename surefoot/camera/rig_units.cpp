@@ -70,7 +70,8 @@ std::optional<std::string> baseline_warning(double length_m) {
 std::optional<std::string> focal_problem(double focal_px) {
     constexpr double kMaxFocal_px = 1e6;
     if (focal_px <= kMaxFocal_px) return std::nullopt;
-    return fmt::format("focal length {:g} px exceeds {:g} px", focal_px, kMaxFocal_px);
+    return fmt::format(
+        "focal length {:g} px exceeds {:g} px: give it in pixels", focal_px, kMaxFocal_px);
 }
 
 std::optional<std::string> focal_warning(double focal_px, int width_px) {

@@ -22,7 +22,8 @@ constexpr double kRectifiedPixel_px = 1e-3;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 Problem pose_problem(const Pose& pose, const char* name) {
-    if (!pose.all_finite()) return fmt::format("{} holds a value that is not finite", name);
+    if (!pose.all_finite())
+        return fmt::format("{} holds a value that is not finite: correct the calibration", name);
     const double norm = pose.rotation.norm();
     if (std::abs(norm - 1.0) > kUnitTolerance) {
         return fmt::format(

@@ -50,7 +50,7 @@ TEST(StereoRig, RefusesImpossibleGeometry) {
         "baseline 110.078 m exceeds 5 m: is it in mm (then 110.1 mm)? Give it in metres");
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.translation_m.y() = kNan; }),
-              "T_left_right holds a value that is not finite");
+              "T_left_right holds a value that is not finite: correct the calibration");
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.rotation.coeffs() *= 1.1; }),
               "T_left_right is not rigid: its rotation quaternion has norm 1.100000, not 1");
@@ -94,7 +94,7 @@ TEST(StereoRig, ChecksTheClaimOfBeingRectified) {
 TEST(StereoRig, ChecksMountsAndTimes) {
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_body_left->translation_m.x() = kNan; }),
-              "T_body_left holds a value that is not finite");
+              "T_body_left holds a value that is not finite: correct the calibration");
     EXPECT_EQ(problem_after(test::euroc_rig(), [](StereoRig& r) { r.imu.emplace().rate_hz = 0.0; }),
               "imu.rate_hz = 0 must be between 1 and 100000 Hz");
     EXPECT_EQ(problem_after(test::euroc_rig(), [](StereoRig& r) { r.rate_hz = kNan; }),

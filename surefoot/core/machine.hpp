@@ -124,20 +124,20 @@ constexpr const char* problem_of(const GroundBox& box) noexcept {
     // With bounds of 10 m every product of the exact geometry stays far inside 64 bits.
     if (!within(box.center_x_tenth_mm, -100'000, 100'000) ||
         !within(box.center_y_tenth_mm, -100'000, 100'000))
-        return "a box lies farther than 10 m from base_link";
+        return "center_x_m and center_y_m of feet and body parts must be -10 to 10 m";
     if (!within(box.length_tenth_mm, 100, 20'000) || !within(box.width_tenth_mm, 100, 20'000))
-        return "a box must be 0.01-2 m long and wide";
+        return "length_m and width_m of feet and body parts must be 0.01 to 2 m";
     return nullptr;
 }
 
 constexpr const char* problem_of(const Body& body) noexcept {
-    if (!within(body.sway_tenth_mm, 0, 5'000)) return "the sway is outside 0-0.5 m";
-    if (!within(body.count, 1, Body::kMaxParts)) return "the body must have 1 to 8 parts";
+    if (!within(body.sway_tenth_mm, 0, 5'000)) return "body.sway_m must be 0 to 0.5 m";
+    if (!within(body.count, 1, Body::kMaxParts)) return "body.parts must have 1 to 8 parts";
     for (const BodyPart& part : body.all()) {
         if (const char* why = problem_of(part.box)) return why;
         if (!within(part.low_tenth_mm, 1, 20'000) ||
             !within(part.high_tenth_mm, part.low_tenth_mm + 1, 30'000))
-            return "the heights of a part of the body are outside their range";
+            return "body part: low_m must be 0.0001 to 2 m, and high_m above low_m and up to 3 m";
     }
     return nullptr;
 }
@@ -146,67 +146,67 @@ constexpr const char* problem_of(const Movement& movement) noexcept {
     if (!movement.configured) return nullptr;
     if (!within(movement.forward_tenth_mm, -20'000, 20'000) ||
         !within(movement.left_tenth_mm, -20'000, 20'000))
-        return "a movement is longer than 2 m";
+        return "forward_m and left_m of a movement must be -2 to 2 m";
     const double norm_sq =
         movement.cos_turn * movement.cos_turn + movement.sin_turn * movement.sin_turn;
-    if (!within(norm_sq, 0.999'999, 1.000'001)) return "a turn has no valid cosine and sine";
+    if (!within(norm_sq, 0.999'999, 1.000'001)) return "cos_turn and sin_turn give no unit vector";
     // The swept hull joins start and target by straight lines. Up to 30 deg an arc leaves it by
     // less than 16 mm for a corner 0.46 m from base_link. Margin and sway cover this.
-    if (!(movement.cos_turn >= 0.866)) return "a turn is larger than 30 deg";
+    if (!(movement.cos_turn >= 0.866)) return "turn_deg of a movement must be -30 to 30";
     if (static_cast<int>(movement.movement_class) >= kMovementClassCount)
-        return "a movement has an unknown class";
-    if (movement.name.back() != '\0') return "a movement has no terminated name";
+        return "the class of a movement must be walk or stair";
+    if (movement.name.back() != '\0') return "the name of a movement must have at most 7 bytes";
     return nullptr;
 }
 
 constexpr const char* problem_of(const GateLimits& limits) noexcept {
     for (const StepLimits& step : limits.step) {
         if (!within(step.up_tenth_mm, 0, 3'000) || !within(step.down_tenth_mm, 0, 3'000))
-            return "a step limit is outside 0-0.3 m";
+            return "up_m and down_m of limits.walk and limits.stair must be 0 to 0.3 m";
     }
-    if (!within(limits.min_normal_z, 0.98, 1.0)) return "the tilt limit is outside 0-11.4 deg";
-    if (!within(limits.patch_side_tenth_mm, 200, 1'000)) return "patches must be 20-100 mm wide";
+    if (!within(limits.min_normal_z, 0.98, 1.0)) return "limits.tilt_deg must be 0 to 11.4 deg";
+    if (!within(limits.patch_side_tenth_mm, 200, 1'000)) return "patch_side_m must be 0.02-0.1 m";
     if (!within(limits.patch_residual_tenth_mm, 1, 500) ||
         !within(limits.patch_sigma_tenth_mm, 1, 100) || !within(limits.cell_sigma_tenth_mm, 1, 300))
-        return "a limit of the foot plane is outside its range";
-    if (!within(limits.sigma_factor, 3.0, 10.0)) return "sigma_factor is outside 3-10";
+        return "set patch_residual_m <= 0.05, patch_sigma_m <= 0.01, cell_sigma_m <= 0.03, all > 0";
+    if (!within(limits.sigma_factor, 3.0, 10.0)) return "limits.sigma_factor must be 3 to 10";
     if (!within(limits.patch_independent_cells, 1, 16))
-        return "patch_independent_cells is outside 1-16";
+        return "limits.patch_independent_cells must be 1 to 16";
     if (!within(limits.swing_clearance_tenth_mm, 1, 2'000) ||
         !within(limits.foot_margin_tenth_mm, 0, 2'000))
-        return "a corridor limit is outside its range";
+        return "swing_clearance_m must be 0.0001 to 0.2 m, and foot_margin_m 0 to 0.2 m";
     if (!within(limits.drop_tenth_mm, 1, 1'000) || !within(limits.drop_band_tenth_mm, 500, 5'000) ||
         limits.drop_evidence == 0)
-        return "a drop limit is outside its range";
-    if (!within(limits.drift_tenth_mm, 1, 1'000)) return "the drift limit is outside 0.1-100 mm";
+        return "drop_m must be 0.0001-0.1 m, drop_band_m 0.05-0.5 m, and drop_evidence above 0";
+    if (!within(limits.drift_tenth_mm, 1, 1'000)) return "limits.drift_m must be 0.0001 to 0.1 m";
     if (!within(limits.tread_share_permille, 500, 1'000) ||
         !within(limits.tread_overhang_tenth_mm, 0, 1'000))
-        return "a limit of treads is outside its range";
+        return "tread_share must be 0.5 to 1, and tread_overhang_m 0 to 0.1 m";
     // No value switches a time limit off.
     constexpr std::int64_t kSecondNs = 1'000'000'000;
     if (!within(limits.frame_age_ns, std::int64_t{1}, kSecondNs) ||
         !within(limits.pose_age_ns, std::int64_t{1}, kSecondNs) ||
         !within(limits.verdict_ttl_ns, std::int64_t{1}, kSecondNs) ||
         !within(limits.future_tolerance_ns, std::int64_t{0}, kSecondNs / 10))
-        return "a time limit is outside its range";
+        return "frame_age_ms, pose_age_ms, verdict_ttl_ms need 1-1000, future_tolerance_ms 0-100";
     if (!within(limits.attestation_radius_tenth_mm, 0, 20'000))
-        return "the vouched radius is outside 0-2 m";
+        return "the attestation radius (vouch_radius_m) must be 0 to 2 m";
     return nullptr;
 }
 
 }  // namespace detail
 
 constexpr const char* Machine::problem() const noexcept {
-    if (!detail::within(sole_depth_tenth_mm, 1, 30'000)) return "the soles lie outside 0-3 m depth";
+    if (!detail::within(sole_depth_tenth_mm, 1, 30'000)) return "sole_depth_m must be 0.0001-3 m";
     for (const GroundBox* box : {&left_foot, &right_foot}) {
         if (const char* why = detail::problem_of(*box)) return why;
     }
     for (const GroundBox* foot : {&left_foot, &right_foot}) {
         if (foot->length_tenth_mm > 16 * limits.patch_side_tenth_mm ||
             foot->width_tenth_mm > 16 * limits.patch_side_tenth_mm)
-            return "a foot is longer or wider than 16 patches";
+            return "a foot must be at most 16 times limits.patch_side_m long and wide";
         if (!detail::within(ankle_from_heel_tenth_mm, 0, foot->length_tenth_mm))
-            return "an ankle is not over its foot";
+            return "ankle_from_heel_m must be 0 to the length of each foot";
     }
     if (const char* why = detail::problem_of(body)) return why;
     if (movements[0].configured) return "code 0 is the joystick at rest and cannot be a movement";

@@ -78,9 +78,10 @@ Status check(const SnapshotInput& input) {
     const auto refuse = [](const std::string& why) {
         return Status(usage_error("map snapshot: " + why));
     };
-    if (g.nx < 1 || g.ny < 1) return refuse("the map has no cells");
+    if (g.nx < 1 || g.ny < 1)
+        return refuse("the map has no cells; its width and height must be at least 1 cell");
     if (!(g.resolution_m >= 0.005 && g.resolution_m <= 0.2))
-        return refuse("cells of " + std::to_string(g.resolution_m) +
+        return refuse("the map has cells of " + std::to_string(g.resolution_m) +
                       " m; the gate needs 0.005 to 0.2 m: change elevation.resolution_m");
     const double cells = g.resolution_m * kTenthMmPerM;
     if (std::abs(cells - std::round(cells)) > 1e-6)
@@ -90,7 +91,8 @@ Status check(const SnapshotInput& input) {
         !input.T_odom_body.all_finite() ||
         input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > kFarthestM)
         return refuse(
-            "the pose or the map is not finite or farther than 100 km from the origin of odom");
+            "the pose or the origin of the map is not finite, or is farther than 100 km from the "
+            "origin of odom");
     for (const auto& [name, length_m] : {std::pair{"connect_step_m", input.connect_step_m},
                                          std::pair{"drop_step_m", input.drop_step_m},
                                          std::pair{"drop_reach_m", input.drop_reach_m}}) {

@@ -225,15 +225,15 @@ Result<Footprint> Footprint::circle(double radius_m) {
 Result<Footprint> Footprint::polygon(std::span<const Eigen::Vector2d> vertices_m) {
     const std::size_t n = vertices_m.size();
     if (n < 3 || n > kMaxVertices) {
-        return usage_error(
-            fmt::format("footprint: a polygon of {} corners; give 3 to {}", n, kMaxVertices));
+        return usage_error(fmt::format(
+            "footprint: the polygon has {} corners; give 3 to {} corners", n, kMaxVertices));
     }
     Footprint footprint;
     for (std::size_t i = 0; i < n; ++i) {
         const double reach_m = vertices_m[i].norm();
         if (!(reach_m <= kMaxReach_m)) {  // NaN too
             return usage_error(
-                fmt::format("footprint: corner {} (counted from 0) at ({}, {}) m; give finite "
+                fmt::format("footprint: corner {} (counted from 0) is at ({}, {}) m; give finite "
                             "numbers within {} m",
                             i,
                             vertices_m[i].x(),

@@ -20,7 +20,7 @@ void TraversabilityConfig::Normals::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "radius of the surface patch around a cell whose normal is computed");
+                   "radius around a cell within which its surface normal is computed");
 }
 
 void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
@@ -31,23 +31,24 @@ void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
 void TraversabilityConfig::Step::describe(ConfigVisitor& visitor) {
     visitor.number(
         "critical_m", critical_m, 0.0001, 10.0, "step height at which the rating reaches 0");
-    visitor.number("first_radius_m",
-                   first_radius_m,
-                   kMinRadius_m,
-                   kMaxRadius_m,
-                   "radius around a cell within which its height range is taken");
+    visitor.number(
+        "first_radius_m",
+        first_radius_m,
+        kMinRadius_m,
+        kMaxRadius_m,
+        "radius around a cell within which its height range (highest minus lowest) is measured");
     visitor.number(
         "second_radius_m",
         second_radius_m,
         kMinRadius_m,
         kMaxRadius_m,
-        "radius around a cell within which height ranges are gathered for its step height");
-    visitor.integer(
-        "critical_cells",
-        critical_cells,
-        1,
-        100000,
-        "number of cells with a critical step from which the step height counts in full");
+        "radius around a cell within which the height ranges of the cells decide its step height");
+    visitor.integer("critical_cells",
+                    critical_cells,
+                    1,
+                    100000,
+                    "number of cells with a critical step; from this number on, the step height "
+                    "counts in full");
 }
 
 void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
@@ -57,25 +58,29 @@ void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "radius around a cell within which distances from the plane are taken");
+                   "radius around a cell within which the distances of the ground from the plane "
+                   "are measured");
 }
 
 void TraversabilityConfig::Weights::describe(ConfigVisitor& visitor) {
-    visitor.number("slope",
-                   slope,
-                   0.0,
-                   1000.0,
-                   "weight of the slope rating in the sum; the sum is divided by all weights");
-    visitor.number("step",
-                   step,
-                   0.0,
-                   1000.0,
-                   "weight of the step rating in the sum; the sum is divided by all weights");
+    visitor.number(
+        "slope",
+        slope,
+        0.0,
+        1000.0,
+        "weight of the slope rating in the sum; the sum is divided by the total of all weights");
+    visitor.number(
+        "step",
+        step,
+        0.0,
+        1000.0,
+        "weight of the step rating in the sum; the sum is divided by the total of all weights");
     visitor.number("roughness",
                    roughness,
                    0.0,
                    1000.0,
-                   "weight of the roughness rating in the sum; the sum is divided by all weights");
+                   "weight of the roughness rating in the sum; the sum is divided by the total of "
+                   "all weights");
 }
 
 void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
@@ -103,7 +108,7 @@ void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
                     independent_cells,
                     1,
                     1000,
-                    "largest number of independent height errors in a disc");
+                    "largest number of height errors in a disc that count as independent");
 }
 
 void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
