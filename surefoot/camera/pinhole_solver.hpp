@@ -8,13 +8,13 @@
 
 /// Common code of the pinhole models with distortion; private to them. A model passes the function
 ///   std::optional<Distorted> distort(const Eigen::Vector2d& p)
-/// on the plane z = 1. It returns nullopt outside the domain in which the image grows outward.
+/// on the plane z = 1. `distort` returns nullopt where the image does not grow outward.
 namespace surefoot::camera::pinhole_solver {
 
-inline constexpr int kMaxNewtonSteps = 200;  ///< five inside an image, many from far outside
+inline constexpr int kMaxNewtonSteps = 200;  ///< 5 suffice in the image; far outside it takes more
 /// Residual of the inverse, normalised: 1e-13 times f = 1000 px is far below any practical use.
 inline constexpr double kConverged = 1e-13;
-/// Largest residual after the steps stall, from rounding; 1e-7 px at f = 1000 px.
+/// Largest valid residual if rounding stops the steps earlier; 1e-7 px at f = 1000 px.
 inline constexpr double kStalled = 1e-10;
 
 struct Distorted {
@@ -73,7 +73,7 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
         }
         if (!improved) break;
     }
-    // The form with ! also rejects NaN. Far off axis the rounding grows with the point itself.
+    // The comparison with ! also rejects NaN. Far off the axis the rounding grows with |p|.
     if (!(error <= kStalled * (1.0 + target.norm()))) return std::nullopt;
     return p;
 }

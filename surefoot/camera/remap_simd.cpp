@@ -18,7 +18,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/camera/remap_simd.cpp"
 #include <hwy/foreach_target.h>
-// Must come after foreach_target.h.
+// This include must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();

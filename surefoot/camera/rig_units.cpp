@@ -21,7 +21,7 @@ bool is_usual(double length_m) {
     return length_m >= kUsualMin_m && length_m <= kUsualMax_m;
 }
 
-/// ": is it in mm (then 60.8 mm)?", or "." if no unit gives a usual baseline.
+/// Returns ": is it in mm (then 60.8 mm)?", for example, or "." if no unit gives a usual baseline.
 std::string likely_units(double number) {
     struct Unit {
         const char* name;

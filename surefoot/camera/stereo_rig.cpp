@@ -15,8 +15,8 @@ using Problem = std::optional<std::string>;
 /// Largest norm error of a quaternion that was read with seven decimals.
 constexpr double kUnitTolerance = 1e-6;
 constexpr double kMaxRelativeRotation_deg = 45.0;
-/// Limits for rigs marked rectified: at 2000 px from the centre they bend a row by less than 0.01
-/// px.
+/// Limits for rigs marked rectified. Within these limits an error moves a row by less than 0.01 px
+/// at 2000 px from the centre.
 constexpr double kRectifiedRotation_rad = 5e-6;
 constexpr double kRectifiedPixel_px = 1e-3;
 constexpr double kDegreesPerRadian = 57.29577951308232;

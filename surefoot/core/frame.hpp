@@ -40,7 +40,7 @@ enum class HealthReason : std::uint8_t {
     machine_disagreement,  ///< the motion that the machine reports contradicts the images
     beyond_machine,        ///< faster than the machine can move; the motion is rejected
     moving_scene,          ///< many points agree on another motion, e.g. of a person in view
-    recovered,             ///< found again after LOST: the motion in between is unknown
+    recovered,             ///< motion estimated again after LOST; the motion in between is unknown
     imu_gap,               ///< IMU samples are missing or invalid; vision continues without it
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
@@ -48,7 +48,7 @@ enum class HealthReason : std::uint8_t {
 /// Pose of the machine with its uncertainty.
 struct MotionEstimate {
     std::int64_t time_ns = 0;
-    Pose T_odom_body;                               ///< continuous: odom never jumps
+    Pose T_odom_body;                               ///< pose in odom; it never jumps
     Pose T_previous_body;                           ///< motion since the previous frame
     Matrix6 relative_covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
     Health health = Health::lost;
@@ -58,7 +58,7 @@ struct MotionEstimate {
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
 };
 
-/// Motion of base_link since the previous frame in time order, every frame included. The machine
+/// Motion of base_link since the previous frame in time order; no frame is left out. The machine
 /// measures it: with its joints over the standing foot, or with its wheels.
 struct MachineMotion {
     Pose T_previous_body;
@@ -91,7 +91,7 @@ struct StereoFrame {
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
     std::optional<MachineMotion> machine_motion;
-    std::optional<DepthImage> known_depth;  ///< in the frame of the rectified rig
+    std::optional<DepthImage> known_depth;  ///< depth in the frame of the rectified rig
     /// Known motion. Its odom frame begins at the first base_link of the source.
     std::optional<MotionEstimate> known_motion;
     FrameStatus frame_status;

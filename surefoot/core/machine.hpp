@@ -11,8 +11,8 @@ namespace surefoot {
 /// A rectangle on the ground, parallel to the axes of base_link. Lengths are integers in units of
 /// 0.1 mm ("tenth_mm") as in the map snapshot, so that every computer decides the same.
 struct GroundBox {
-    std::int32_t center_x_tenth_mm = 0;  ///< forward of base_link
-    std::int32_t center_y_tenth_mm = 0;  ///< left of base_link
+    std::int32_t center_x_tenth_mm = 0;  ///< centre, forward of base_link
+    std::int32_t center_y_tenth_mm = 0;  ///< centre, left of base_link
     std::int32_t length_tenth_mm = 0;    ///< along x
     std::int32_t width_tenth_mm = 0;     ///< along y
 };
@@ -31,13 +31,13 @@ struct Body {
     static constexpr int kMaxParts = 8;
     std::array<BodyPart, kMaxParts> parts{};
     std::int32_t count = 0;
-    std::int32_t sway_tenth_mm = 0;  ///< allowance for motion that no trace covers
+    std::int32_t sway_tenth_mm = 0;  ///< width added for motion that no trace covers
 
     [[nodiscard]] constexpr std::span<const BodyPart> all() const noexcept {
         const bool sound = count >= 0 && count <= kMaxParts;
         return {parts.data(), sound ? static_cast<std::size_t>(count) : 0};
     }
-    /// Below this height only the feet need room. 0 if there are no parts.
+    /// Below this height only the feet need room. The height is 0 if there are no parts.
     [[nodiscard]] constexpr std::int32_t lower_edge_tenth_mm() const noexcept {
         std::int32_t lowest = 0;
         for (const BodyPart& part : all()) {
@@ -72,14 +72,14 @@ struct StepLimits {
 struct GateLimits {
     std::array<StepLimits, kMovementClassCount> step{};
     double min_normal_z = 1.0;                  ///< cosine of the largest tilt of a foot plane
-    std::int32_t patch_side_tenth_mm = 500;     ///< a foot is judged by such patches
-    std::int32_t patch_residual_tenth_mm = 0;   ///< |residual| + sigma_factor * sigma of a patch
+    std::int32_t patch_side_tenth_mm = 500;     ///< side of the patches that judge a foot
+    std::int32_t patch_residual_tenth_mm = 0;   ///< limit of |residual| + sigma_factor * sigma
     std::int32_t patch_sigma_tenth_mm = 0;      ///< a patch with a larger sigma is not resolvable
-    double sigma_factor = 3.4;                  ///< one-sided 3e-4 for a normal error
-    std::int32_t patch_independent_cells = 1;   ///< most cell errors that average out
+    double sigma_factor = 3.4;                  ///< error probability 3e-4 (one-sided, normal)
+    std::int32_t patch_independent_cells = 1;   ///< most cells whose errors are independent
     std::int32_t cell_sigma_tenth_mm = 0;       ///< cells with a larger sigma prove nothing
     std::int32_t swing_clearance_tenth_mm = 0;  ///< highest obstacle below a swinging foot
-    std::int32_t foot_margin_tenth_mm = 0;      ///< added around the path of a foot
+    std::int32_t foot_margin_tenth_mm = 0;      ///< width added around the path of a foot
     std::int32_t drop_tenth_mm = 0;             ///< ground lower by this much is a drop
     std::int32_t drop_band_tenth_mm = 0;        ///< solid ground required beyond a landing foot
     std::uint8_t drop_evidence = 0;             ///< smallest evidence of a drop
@@ -90,7 +90,7 @@ struct GateLimits {
     std::int32_t tread_overhang_tenth_mm = 0;
     std::int64_t frame_age_ns = 0;
     std::int64_t pose_age_ns = 0;
-    std::int64_t future_tolerance_ns = 0;          ///< stamps later than now by more are refused
+    std::int64_t future_tolerance_ns = 0;          ///< largest time of a stamp after now
     std::int64_t verdict_ttl_ns = 0;               ///< validity time of an OK
     std::int32_t attestation_radius_tenth_mm = 0;  ///< largest radius of an operator attestation
 };
@@ -99,16 +99,16 @@ struct GateLimits {
 struct Machine {
     static constexpr int kMovementCodes = 27;  ///< 0 = joystick at rest, never a movement
 
-    std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
+    std::int32_t sole_depth_tenth_mm = 0;  ///< distance of the soles below base_link
     GroundBox left_foot;                   ///< the feet before and after a movement
     GroundBox right_foot;
-    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< the tread must carry this part of a foot
+    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< position of the ankle; the tread must carry it
     Body body;
     std::array<Movement, kMovementCodes> movements{};
     GateLimits limits;
 
-    /// First reason why the machine cannot be used, or nullptr. The gate calls it before every
-    /// decision: it calls no libm function and allocates no memory.
+    /// Returns the first reason why the machine cannot be used, or nullptr. Calls no libm function
+    /// and allocates no memory, because the gate calls it before every decision.
     [[nodiscard]] constexpr const char* problem() const noexcept;
 };
 
@@ -150,8 +150,8 @@ constexpr const char* problem_of(const Movement& movement) noexcept {
     const double norm_sq =
         movement.cos_turn * movement.cos_turn + movement.sin_turn * movement.sin_turn;
     if (!within(norm_sq, 0.999'999, 1.000'001)) return "cos_turn and sin_turn give no unit vector";
-    // The swept hull joins start and target by straight lines. Up to 30 deg an arc leaves it by
-    // less than 16 mm for a corner 0.46 m from base_link. Margin and sway cover this.
+    // The swept hull joins start and target by straight lines. Up to 30 deg an arc leaves the hull
+    // by less than 16 mm for a corner 0.46 m from base_link. Margin and sway cover this distance.
     if (!(movement.cos_turn >= 0.866)) return "turn_deg of a movement must be -30 to 30";
     if (static_cast<int>(movement.movement_class) >= kMovementClassCount)
         return "the class of a movement must be walk or stair";
