@@ -15,7 +15,7 @@ namespace surefoot::geometry {
 /// A point of a tree with its squared distance from the query.
 struct Neighbour {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t index = kNone;  ///< in `KdTree::points_m`
+    std::uint32_t index = kNone;  ///< index in `KdTree::points_m`
     float sq_distance_m2 = std::numeric_limits<float>::infinity();
 };
 
@@ -54,11 +54,11 @@ class KdTree {
     /// All points, in the order of the tree.
     [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const noexcept { return points_m_; }
 
-    /// The nearest point; `start` if no point is nearer. Also `start` if the query is so far away
-    /// that the squared distance is not a finite float. A near start (for example the result of the
-    /// previous query) makes the search short.
+    /// Returns the nearest point, or `start` if no point is nearer. Also returns `start` if the
+    /// query is so far away that the squared distance is not a finite float. A near start (for
+    /// example the result of the previous query) makes the search short.
     [[nodiscard]] Neighbour nearest(const Eigen::Vector3f& query_m, Neighbour start = {}) const;
-    /// Makes a `start` for `nearest`: point `index` as a neighbour of `query_m`.
+    /// Makes a `start` for `nearest` from point `index` and the query.
     [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
 
     /// The nearest points, ascending. A query that is a point of the tree finds itself too. Returns
@@ -68,8 +68,8 @@ class KdTree {
     /// Index of a point with exactly these coordinates; `Neighbour::kNone` if none exists.
     [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
 
-    /// Nodes and points that a search for `neighbours` points, or `find`, visits. Tests use it:
-    /// unlike a time it does not depend on the computer.
+    /// Counts the nodes and points that a search for `neighbours` points, or `find`, visits. Tests
+    /// use these counts: unlike times, they do not depend on the computer.
     [[nodiscard]] SearchWork work_of_nearest(const Eigen::Vector3f& query_m,
                                              std::size_t neighbours) const;
     [[nodiscard]] SearchWork work_of_find(const Eigen::Vector3f& point_m) const;

@@ -17,19 +17,19 @@ struct Symmetric3 {
     [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
-/// All eigenvalues, ascending, with their unit eigenvectors as columns.
+/// All eigenvalues in ascending order, with their unit eigenvectors as columns.
 struct EigenSystem3 {
     Eigen::Vector3d values = Eigen::Vector3d::Zero();
     Eigen::Matrix3d vectors = Eigen::Matrix3d::Identity();
 };
 
 /// Cyclic Jacobi rotations (Golub and Van Loan, section 8.5): accurate for every finite matrix.
-/// Plain IEEE arithmetic, so the bits are the same on every machine.
+/// Uses plain IEEE arithmetic, so the bits are the same on every machine.
 [[nodiscard]] EigenSystem3 eigen_system(const Symmetric3& m) noexcept;
 
 /// The direction in which a cloud of points is thinnest.
 struct SmallestAxis {
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; its sign is arbitrary
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit vector; its sign is arbitrary
     double smallest = 0.0;                                 ///< eigenvalue of `direction`
     double middle = 0.0;                                   ///< the next larger eigenvalue
 };
