@@ -61,8 +61,8 @@ class KdTree {
     /// Makes a `start` for `nearest` from point `index` and the query.
     [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
 
-    /// The nearest points, ascending. A query that is a point of the tree finds itself too. Returns
-    /// their number: `found.size()`, or the number of all points if smaller.
+    /// Finds the nearest points, in order of distance; a query that is a tree point finds itself.
+    /// Returns their number: `found.size()`, or the number of all points if that is smaller.
     std::size_t nearest(const Eigen::Vector3f& query_m, std::span<Neighbour> found) const;
 
     /// Index of a point with exactly these coordinates; `Neighbour::kNone` if none exists.

@@ -30,8 +30,8 @@ std::int32_t tenth_mm_up(double length_m) {
     return static_cast<std::int32_t>(std::ceil(length_m * kTenthMmPerM));  // in range: at most 10^7
 }
 
-/// A value from 0, rounded up. NaN and too large values become the largest value, which marks them
-/// as bad.
+/// Rounds a length up to 0.1 mm. NaN, negative and too large lengths become the largest value,
+/// which marks them as bad.
 std::uint16_t saturated_up(double length_m) {
     const double scaled = std::ceil(length_m * kTenthMmPerM);
     if (!(scaled >= 0.0 && scaled < 65535.0)) return 0xffff;
@@ -181,8 +181,8 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
     if (!input.clearance_m.empty()) {
         const double clearance_m = value(input.clearance_m);
-        // NaN = no obstacle above was observed. A negative clearance is damaged: treat it as no
-        // room.
+        // NaN = no obstacle above was observed. A negative clearance is damaged data and becomes 0:
+        // no room.
         const double scaled = std::floor(std::max(clearance_m, 0.0) * kTenthMmPerM);
         if (!std::isnan(clearance_m) && scaled < 65535.0)
             out.clearance_tenth_mm[at] =
@@ -209,13 +209,13 @@ bool is_sound(const SnapshotInput::Edge& edge) {
            edge.across_sigma_m <= kHighestM;
 }
 
-/// Writes the nearest edges, nearest first. Leaves out damaged numbers.
+/// Writes the nearest edges, nearest first. Leaves out edges with damaged numbers.
 void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     std::vector<std::pair<double, const SnapshotInput::Edge*>> sorted;
     const Eigen::Vector2d body_m = input.T_odom_body.translation_m.head<2>();
     for (const SnapshotInput::Edge& edge : input.edges)
         if (is_sound(edge)) sorted.emplace_back(distance_m(edge, body_m), &edge);
-    std::sort(sorted.begin(), sorted.end());  // equal distances: in order of the input
+    std::sort(sorted.begin(), sorted.end());  // keeps the input order of equal distances
     const std::size_t count =
         std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
     out.edge_count = static_cast<std::int32_t>(count);
@@ -248,7 +248,7 @@ class Labeller {
         const int count = map_.nx * map_.ny;
         for (int at = 0; at < count; ++at) {
             if (!is_free(at)) continue;
-            if (++label > 0xffff) return;  // other cells keep kNoComponent, which inhibits
+            if (++label > 0xffff) return;  // the gate refuses all other cells (kNoComponent)
             fill(at, static_cast<std::uint16_t>(label));
         }
     }

@@ -17,9 +17,9 @@ namespace surefoot::ground {
 /// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
 /// * it fills `min_image_share` of the image,
 /// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
-/// * nothing lies more than a high step below it. Below table tops, beds, seats and tilted backs
-/// some points do, wherever the edge of the object is in view.
-/// * Of several such planes the lowest wins; of those a step apart, the one with the larger share.
+/// * nothing lies more than a high step below it. This excludes table tops, beds, seats and tilted
+///   backs, if the edge of the object is in view.
+/// Of several such planes the lowest wins. Of planes a step apart, the larger image share wins.
 ///
 /// A table that fills the whole view cannot be distinguished from a floor. The same input and seed
 /// give the same bytes.
