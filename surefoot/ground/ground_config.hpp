@@ -10,7 +10,7 @@ struct GroundConfig {
     double voxel_m = 0.05;       ///< side of cubes that keep one point: weight by area, not pixels
     int max_points = 4000;       ///< most points; they are picked evenly
     double max_range_m = 8.0;    ///< largest range; stereo noise tilts farther ground
-    double tolerance_m = 0.05;   ///< of inliers in the search; the refit narrows it to the noise
+    double tolerance_m = 0.05;   ///< largest distance of an inlier, before the refit narrows it
     double max_tilt_deg = 20.0;  ///< largest tilt from the hint: mount error plus slope
     double min_inlier_ratio = 0.15;  ///< smallest share, for a floor between furniture
     double min_area_m2 = 0.3;        ///< smallest occupied area; two soles cover 0.14 m2

@@ -50,7 +50,7 @@ struct View {
 /// Points from which candidate planes are drawn. Each cube of points is one entry in `begin`.
 struct Drawable {
     View view;
-    /// for each point: range of its cube
+    /// For each point: range of its cube.
     std::vector<std::pair<std::size_t, std::size_t>> cube_of;
 };
 

@@ -16,10 +16,10 @@ namespace surefoot::ground {
 namespace {
 
 constexpr double kTile_rad = 0.2;  ///< side of a tile; 70 px of a ZED
-/// one bump of uneven ground; at short range it fills a larger tile
+/// Size of a bump of uneven ground. At short range a bump fills a larger tile.
 constexpr double kBump_m = 0.2;
 constexpr double kLargestTile_rad = 0.6;  ///< largest side of a tile
-/// assumed error of a whole tile, as a share of the stated sigma
+/// Assumed error of a whole tile, as a share of the stated sigma.
 constexpr double kPriorShare = 0.6;
 constexpr double kPriorTiles = 4.0;  ///< weight of kPriorShare, in tiles
 constexpr double kUnknowns = 3.0;

@@ -42,10 +42,10 @@ double variance_of(const FootholdGround& ground, int ix, int iy) {
 
 /// Sums and extremes around the cells of one row.
 struct FootholdFinder::Row {
-    std::vector<Sums> foot;            ///< sums over F; xz relative to the cell
-    std::vector<double> yz;            ///< sum of y z over F, y in cells from the cell
-    std::vector<double> unknown_band;  ///< unknown cells of B
-    std::vector<double> tight_band;    ///< cells of B whose clearance is not open
+    std::vector<Sums> foot;            ///< sums over F; xz with x relative to the cell
+    std::vector<double> yz;            ///< sum of y z over F, y in cells relative to the cell
+    std::vector<double> unknown_band;  ///< number of unknown cells of B
+    std::vector<double> tight_band;    ///< number of cells of B whose clearance is not open
     std::vector<float> patch_high;
     std::vector<float> patch_low;
     std::vector<float> low_near;  ///< largest low_shown_ within the corner distance

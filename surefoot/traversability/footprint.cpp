@@ -75,7 +75,7 @@ bool is_valid(const FootprintLayers& layers) {
            (layers.height_m.empty() || fits(layers.height_m));
 }
 
-/// Builds a report from runs of cells; no cell may come twice.
+/// Builds a report from runs of cells; no cell may appear twice.
 class Gathering {
   public:
     explicit Gathering(const FootprintLayers& layers) noexcept : layers_(layers) {}
@@ -112,7 +112,7 @@ class Gathering {
     }
 
   private:
-    /// Runs that are read at a time: enough for a footprint, few enough for the stack.
+    /// Number of runs that are read at a time: enough for a footprint, few enough for the stack.
     static constexpr int kWaiting = 64;
 
     void read() noexcept {
@@ -135,7 +135,7 @@ class Gathering {
     const FootprintLayers& layers_;
     rows::LaneStatistics rating_;
     rows::LaneStatistics height_m_;
-    CellRun worst_run_;  ///< the first one that holds the worst rating
+    CellRun worst_run_;  ///< the first run that holds the worst rating
     std::int64_t cells_ = 0;
     std::int64_t outside_ = 0;
     std::array<CellRun, kWaiting> waiting_;

@@ -7,9 +7,9 @@
 
 namespace surefoot::traversability {
 
-/// Pass 1: highest minus lowest known height within the first disc around every known cell of
-/// `rect`; NaN at unknown cells. NaN everywhere if the disc is a single cell, because it could only
-/// find 0.
+/// Pass 1: computes the highest minus the lowest known height within the first disc around every
+/// known cell of `rect`; NaN at unknown cells. NaN everywhere if the disc is a single cell, because
+/// it could only find 0.
 void step_heights(const PaddedLayer& height_m,
                   const Disc& first_disc,
                   const CellRect& rect,

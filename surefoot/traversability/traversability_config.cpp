@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMinRadius_m = 0.001;
 constexpr double kMaxRadius_m = 5.0;
-constexpr double kMaxSlope_rad = 1.5708;  // a wall; published sets round pi/2 up to this
+// Slope of a wall. Published sets round pi/2 up to this value.
+constexpr double kMaxSlope_rad = 1.5708;
 constexpr std::array<const char*, 2> kCombineNames{"mean_nan", "zero_dominates"};
 
 }  // namespace
@@ -183,7 +184,7 @@ TraversabilityConfig TraversabilityConfig::widened_to(double resolution_m) const
 
 std::optional<TraversabilityConfig> preset(std::string_view name) {
     using Config = TraversabilityConfig;
-    if (name == "rex_zed") {  // live on the REX with the ZED in 2016: comparison, not advice
+    if (name == "rex_zed") {  // used on the REX with the ZED in 2016; only for comparison
         return Config{{0.075},
                       {1.047},
                       {0.075, 0.075, 0.075, 30},
@@ -191,7 +192,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "rex_demo_stairs") {  // slope and roughness practically off
+    if (name == "rex_demo_stairs") {  // slope and roughness have practically no effect
         return Config{{0.075},
                       {1.56},
                       {0.10, 0.06, 0.06, 10},
@@ -199,7 +200,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "laser") {  // preset for ground truth by the laser scanner
+    if (name == "laser") {  // preset for ground truth that the laser scanner measured
         return Config{{0.1},
                       {1.5708},
                       {0.1, 0.075, 0.10, 5},
