@@ -19,13 +19,13 @@ struct BrokenFrames {
 };
 
 struct SourceInfo {
-    std::string kind;  ///< "euroc", "kitti", "side_by_side", "tum_rgbd", "sim", ...
+    std::string kind;  ///< for example "euroc", "kitti", "side_by_side", "tum_rgbd" or "sim"
     std::string path;
-    std::optional<int> frames;  ///< number of frames, if known in advance
+    std::optional<int> frames;  ///< number of frames, if the source knows it in advance
     bool has_imu = false;
     bool modelled_depth = false;   ///< the depth of the frames is known, not measured
     bool modelled_motion = false;  ///< the motion of the frames is known, not measured
-    /// True if stamps are of this computer's CLOCK_MONOTONIC: then the frame age is known.
+    /// True if stamps are times of this computer's CLOCK_MONOTONIC. Then the frame age is known.
     bool steady_stamps = false;
     /// Pose of base_link at the first frame in odom (z up, ground at 0), if the source knows it.
     std::optional<Pose> T_odom_first_body = {};

@@ -48,7 +48,7 @@ struct Intrinsics {
     return J.determinant() > 0.0 && J.trace() > 0.0;
 }
 
-/// Newton from the centre outward. Halves steps that leave the domain or do not improve.
+/// Newton's method from the centre outward. Halves steps that leave the domain or do not improve.
 template <typename Distort>
 std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Vector2d& target) {
     Eigen::Vector2d p = target;
@@ -78,7 +78,7 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
     return p;
 }
 
-/// Pixel of a point in the optical frame; nullopt for a point at or behind the camera plane.
+/// Returns the pixel of a point, or nullopt for a point at or behind the camera plane.
 template <typename Distort>
 std::optional<Eigen::Vector2d> project(const Intrinsics& k,
                                        const Distort& distort,
@@ -98,7 +98,7 @@ std::optional<Eigen::Vector2d> project(const Intrinsics& k,
     return Eigen::Vector2d(k.fx_px * d->m.x() + k.cx_px, k.fy_px * d->m.y() + k.cy_px);
 }
 
-/// Unit ray of a pixel. `has_distortion` = false skips the iterations.
+/// Returns the unit ray of a pixel. `has_distortion` = false skips the iterations.
 template <typename Distort>
 std::optional<Eigen::Vector3d> unproject(const Intrinsics& k,
                                          const Distort& distort,

@@ -36,7 +36,7 @@ struct Rectification {
     RectifiedRig rig;
     RectifiedCamera left;
     std::optional<RectifiedCamera> right;
-    bool identity = false;  ///< raw and rectified images are equal
+    bool identity = false;  ///< true if raw and rectified images are equal
 };
 
 /// `rig` and `config` must have no problem(). A rectified rig stays unchanged unless `config` sets
@@ -46,7 +46,7 @@ struct Rectification {
                                                const RectificationConfig& config,
                                                double virtual_baseline_m);
 
-/// Raw pixel that shows the direction `ray` of the rectified frame; nullopt outside the lens.
+/// Returns the raw pixel that shows the direction `ray`, or nullopt outside the lens.
 [[nodiscard]] std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedCamera& this_camera,
                                                           const Eigen::Vector3d& ray);
 

@@ -43,8 +43,8 @@ class Rectifier {
     /// Images must have the size of the rig; the source checks that. Pixels without a source
     /// become 0.
     void rectify(const StereoFrame& frame, RectifiedPair& out) const;
-    /// RGB-D: depth along z [m] of every rectified pixel, from the nearest raw pixel; NaN = unknown
-    /// depth.
+    /// Computes the depth along z [m] of every rectified pixel of an RGB-D frame, from the nearest
+    /// raw pixel; NaN = unknown depth.
     void rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const;
     /// True if rectification leaves the images unchanged.
     [[nodiscard]] bool is_identity() const noexcept;

@@ -22,8 +22,8 @@ class RemapTable {
     /// Starts with no source for any pixel. `source_*`: size of the image to read, at least 2x2.
     RemapTable(int width, int height, int source_width, int source_height);
 
-    /// Sets the source position of pixel (u, v). It must lie inside the source: 0 <= x_px <=
-    /// source_width - 1, and y_px likewise.
+    /// Sets the source position of pixel (u, v). This position must lie inside the source: 0 <=
+    /// x_px <= source_width - 1, and y_px likewise.
     void set(int u, int v, float x_px, float y_px);
 
     [[nodiscard]] int width() const noexcept { return width_; }

@@ -56,7 +56,7 @@ HWY_INLINE V16 mixed(V16 p, V16 q, V16 fraction) {
     return hn::Add(hn::ShiftLeft<kShift>(p), hn::Mul(hn::Sub(q, p), fraction));
 }
 
-/// h of a row from pairs of neighbours.
+/// Returns h of a row from pairs of neighbours.
 HWY_INLINE V16 along_row(V16 pairs, V16 fraction_x) {
     return mixed(hn::And(pairs, hn::Set(D16(), 0xFF)), hn::ShiftRight<8>(pairs), fraction_x);
 }

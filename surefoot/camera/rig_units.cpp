@@ -9,8 +9,8 @@
 namespace surefoot::camera {
 namespace {
 
-/// Usual baselines of cameras that people carry or mount on a machine: 18 mm on a ZED-X Nano, 0.6 m
-/// on a car.
+/// Usual baselines of cameras that people carry or mount on a machine. For example, a ZED-X Nano
+/// has 18 mm, and cameras on a car have 0.6 m.
 constexpr double kUsualMin_m = 0.01;
 constexpr double kUsualMax_m = 1.0;
 /// A calibration with squares of side 1 gives the baseline in squares. Real squares are 20-100 mm.

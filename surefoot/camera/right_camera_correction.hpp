@@ -5,8 +5,8 @@
 
 namespace surefoot::camera {
 
-/// Deviation of the right camera from its calibration, for example after warming up, a shock or a
-/// long time. Rotations are about the axes of the left camera.
+/// Deviation of the right camera from its calibration, for example after warm-up, after a shock or
+/// after a long time. Rotations are about the axes of the left camera.
 struct RightCameraCorrection {
     double roll_rad = 0.0;     ///< about z (forward): makes the rows cross
     double pitch_rad = 0.0;    ///< about x (to the right): shifts the rows

@@ -9,7 +9,7 @@
 
 namespace surefoot::camera {
 
-/// An IMU that is fixed to the rig.
+/// An IMU that is fixed to the rig, with its sample rate.
 struct ImuMount {
     Pose T_body_imu;
     double rate_hz = 200.0;
@@ -47,7 +47,7 @@ struct RectifiedRig {
     double cx_px = 0.0;
     double cy_px = 0.0;
     double baseline_m = 0.0;  ///< for RGB-D: a virtual baseline
-    Pose T_body_camera;       ///< rectified left optical frame in base_link
+    Pose T_body_camera;       ///< pose of the rectified left optical frame in base_link
 
     [[nodiscard]] double depth_to_disparity_px_m() const noexcept { return fx_px * baseline_m; }
     /// Point of a pixel in the rectified left optical frame, from its disparity (> 0).

@@ -22,8 +22,8 @@ struct GroundBox {
 /// the weight shift of the body. Heights count from the soles.
 struct BodyPart {
     GroundBox box;
-    std::int32_t low_tenth_mm = 0;   ///< lower obstacles pass below the part
-    std::int32_t high_tenth_mm = 0;  ///< higher obstacles pass above the part
+    std::int32_t low_tenth_mm = 0;   ///< lower edge: lower obstacles pass below the part
+    std::int32_t high_tenth_mm = 0;  ///< upper edge: higher obstacles pass above the part
 };
 
 /// The machine and its user without the feet.
@@ -80,8 +80,8 @@ struct GateLimits {
     std::int32_t cell_sigma_tenth_mm = 0;       ///< cells with a larger sigma prove nothing
     std::int32_t swing_clearance_tenth_mm = 0;  ///< highest obstacle below a swinging foot
     std::int32_t foot_margin_tenth_mm = 0;      ///< width added around the path of a foot
-    std::int32_t drop_tenth_mm = 0;             ///< ground lower by this much is a drop
-    std::int32_t drop_band_tenth_mm = 0;        ///< solid ground required beyond a landing foot
+    std::int32_t drop_tenth_mm = 0;             ///< height difference from which ground is a drop
+    std::int32_t drop_band_tenth_mm = 0;        ///< width of solid ground beyond a landing foot
     std::uint8_t drop_evidence = 0;             ///< smallest evidence of a drop
     std::int32_t drift_tenth_mm = 0;            ///< 1-sigma horizontal drift since a cell was seen
     /// Class stair: the share of a foot's length that its tread must carry, in thousandths, and the
@@ -114,14 +114,14 @@ struct Machine {
 
 namespace detail {
 
-/// False if `value` is NaN.
+/// Returns false if `value` is NaN.
 template <typename T>
 constexpr bool within(T value, T min, T max) noexcept {
     return value >= min && value <= max;
 }
 
 constexpr const char* problem_of(const GroundBox& box) noexcept {
-    // With bounds of 10 m every product of the exact geometry stays far inside 64 bits.
+    // With limits of 10 m every product of the exact geometry stays far inside 64 bits.
     if (!within(box.center_x_tenth_mm, -100'000, 100'000) ||
         !within(box.center_y_tenth_mm, -100'000, 100'000))
         return "center_x_m and center_y_m of feet and body parts must be -10 to 10 m";

@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-/// How much of the pipeline runs for a frame: odometry alone, or also depth and map.
+/// Part of the pipeline that runs for a frame: odometry alone, or also depth and map.
 enum class Work : std::uint8_t { odometry, full };
 
 enum class Stage : std::uint8_t { rectify, odometry, stereo, ground, fuse, traversability, stairs };
@@ -66,7 +66,7 @@ struct FrameReport {
     MotionEstimate motion;
     std::int64_t depth_pixels = 0;  ///< pixels with a disparity
     std::int64_t image_pixels = 0;
-    GroundObservation ground;  ///< in the body frame
+    GroundObservation ground;  ///< ground plane in the body frame
     FusionCounts fusion;
     std::int64_t known_cells = 0;  ///< known map cells after this frame
     /// Wall time per stage [ms]. The only values that differ between equal runs.

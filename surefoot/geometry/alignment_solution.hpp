@@ -63,12 +63,12 @@ struct AlignmentSigma {
     double place_m = 0.0;
     double turn_rad = 0.0;
 };
-/// Adds two kinds of error. First the scatter: squared distances of the pairs (White 1980), times
-/// the correlation of pairs in one block (Liang and Zeger 1986), because neighbouring pairs share
-/// the noise of a normal. Second the errors that more pairs do not reduce. Edges and borders lie up
-/// to half a point spacing off in each cloud, perhaps all in one direction (`cell_var_m2`, variance
-/// per fixed direction). A scan that ends elsewhere shifts a border by up to a tenth of its balls'
-/// radius.
+/// Adds two kinds of error. First, the scatter: squared distances of the pairs (White 1980), times
+/// the correlation of pairs in one block (Liang and Zeger 1986). Neighbouring pairs share the
+/// noise of a normal. Second, the errors that more pairs do not reduce. Edges and borders lie up
+/// to half a point spacing off in each cloud, perhaps all in one direction (`cell_var_m2`,
+/// variance per fixed direction). A scan with another end shifts a border by up to a tenth of its
+/// balls' radius.
 [[nodiscard]] AlignmentSigma alignment_sigma(std::span<const Pair> surface,
                                              std::span<const Pair> border,
                                              const Lever& lever,

@@ -33,7 +33,7 @@ struct AlignmentConfig {
 /// One iteration: its pairs before the step, and the step.
 struct AlignmentStep {
     std::int64_t pairs = 0;
-    std::int64_t borders = 0;    ///< points on a border of both clouds
+    std::int64_t borders = 0;    ///< number of points on a border of both clouds
     double rms_m = 0.0;          ///< rms of the distances across the surface of the reference
     double nearest_rms_m = 0.0;  ///< rms of the distances between the points of a pair
     double step_m = 0.0;

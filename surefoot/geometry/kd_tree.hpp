@@ -19,7 +19,7 @@ struct Neighbour {
     float sq_distance_m2 = std::numeric_limits<float>::infinity();
 };
 
-/// How many nodes a search entered and how many points it compared.
+/// Number of nodes that a search entered, and number of points that it compared.
 struct SearchWork {
     std::size_t nodes = 0;
     std::size_t points = 0;
@@ -41,11 +41,11 @@ struct Cylinder {
 ///
 /// Equal points form one leaf of any size, so that a cloud of copies is not slower than others.
 ///
-/// No errors. Points must be finite, within `kFarthest_m` of zero along each axis, and fewer than
-/// 2^32 - 1.
+/// The points must be finite and within `kFarthest_m` of zero along each axis. Their number must be
+/// less than 2^32 - 1.
 class KdTree {
   public:
-    /// Squares of distances up to this one are finite as floats.
+    /// Distances up to this one [m] have finite squares as floats.
     static constexpr float kFarthest_m = 1e18F;
 
     explicit KdTree(std::vector<Eigen::Vector3f> points_m, Executor& executor = serial());

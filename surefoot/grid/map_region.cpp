@@ -46,8 +46,8 @@ std::optional<std::string> problem_of_known(const MapRegion& r, std::size_t i) {
     if (!(std::isfinite(drift_m) && drift_m >= 0.0F))
         return fault("drift", drift_m, "it must be finite and 0 m or more");
     if (!is_height(highest_m)) return fault("highest", highest_m, "it must be -1e6 to 1e6 m");
-    // Not compared with `highest`: both are robust values, and with few points the lowest may
-    // exceed the highest.
+    // `lowest` is not compared with `highest`: both are robust values, and with few points the
+    // lowest may exceed the highest.
     if (!is_height(lowest_m)) return fault("lowest", lowest_m, "it must be -1e6 to 1e6 m");
     if (!(std::isnan(clearance_m) || is_height(clearance_m)))
         return fault("clearance", clearance_m, "it must be -1e6 to 1e6 m");
@@ -187,7 +187,8 @@ std::optional<std::string> MapRegion::problem() const {
 MapRegion cut(MapRegion region, const LatticeBox& box) {
     SUREFOOT_ASSERT(!box.problem());
     const LatticeBox& had = region.box;
-    const std::int64_t dx = box.first_ix - had.first_ix;  // column of `region` at new column 0
+    // column of `region` that becomes column 0
+    const std::int64_t dx = box.first_ix - had.first_ix;
     const std::int64_t dy = box.first_iy - had.first_iy;
     const std::int64_t begin_ix = std::clamp<std::int64_t>(-dx, 0, box.nx);
     const std::int64_t end_ix = std::clamp<std::int64_t>(had.nx - dx, begin_ix, box.nx);

@@ -87,7 +87,7 @@ struct MapSnapshot {
         clearance_tenth_mm{};                          ///< free height above; kNoCeiling = open
     std::array<std::uint16_t, kMaxCells> component{};  ///< label of the connected surface, 0 = none
     std::array<std::uint8_t, kMaxCells>
-        drop_evidence{};  ///< 0..255, 255 = a ray proved a drop here
+        drop_evidence{};  ///< 0 to 255; 255 = a ray proved a drop here
     std::array<EvidenceSource, kMaxCells> source{};
     /// Edges, nearest to the body first. The cells are valid without the edges: a drop that was not
     /// detected as a line is still a drop in the cells.

@@ -15,7 +15,7 @@ namespace surefoot::grid {
 
 /// Map data for a snapshot. All layers have the size of `geometry`; NaN = unknown.
 struct SnapshotInput {
-    GridGeometry geometry;  ///< in odom; the resolution must be a whole number of 0.1 mm
+    GridGeometry geometry;  ///< in the frame odom; the cell side is a whole number of 0.1 mm
     ImageView<const float> height_m;
     ImageView<const float> variance_m2;  ///< variance of the height
     /// 1-sigma horizontal drift of the pose since the last observation of the cell. Without this

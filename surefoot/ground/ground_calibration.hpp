@@ -11,7 +11,7 @@
 
 namespace surefoot::ground {
 
-/// Whether the average is accepted, and if not, why.
+/// Result of the calibration: accepted, or the reason why not.
 enum class CalibrationReason : std::uint8_t {
     accepted,
     no_observation,  ///< no accepted observation yet

@@ -12,7 +12,7 @@
 
 namespace surefoot::ground {
 
-/// Whether an observation of the ground is accepted, and if not, the first reason that applies.
+/// Result for an observation of the ground: accepted, or the first reason why not.
 enum class GroundReason : std::uint8_t {
     accepted,
     no_hint,      ///< the expected up direction is zero or not finite
@@ -31,7 +31,7 @@ struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
     double tilt_rad = 0.0;  ///< angle between the normal and `up_hint`
-    double area_m2 = 0.0;   ///< occupied squares of two voxel sides, projected along the normal
+    double area_m2 = 0.0;   ///< area of occupied squares of two voxel sides, along the normal
     /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
     double image_share = 0.0;
     /// Zero if the noise of the points is unknown.

@@ -47,7 +47,7 @@ struct View {
     double scale = 1.0;  ///< factor of all sizes
 };
 
-/// Points from which candidate planes are drawn. Each cube of points is one entry in `begin`.
+/// Points from which candidate planes are drawn, cube by cube.
 struct Drawable {
     View view;
     /// For each point: range of its cube.
@@ -112,8 +112,8 @@ View view_of(const GroundConfig& config, const FramePoints& seen) {
     return view;
 }
 
-/// Returns one sigma of the distance of a point on the plane from the plane, along the normal,
-/// because of the noise of the point.
+/// Returns the distance from the plane (one sigma, along the normal) that the noise of a point on
+/// the plane causes.
 double noise_of(const View& view, std::size_t i, const Plane& plane) {
     return plane.offset_m * view.points[i].norm() * view.inverse_range_sigma[i];
 }
@@ -168,7 +168,7 @@ std::optional<Plane> draw(const Drawable& from, Rng& rng) {
     const Eigen::Vector3d ab = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d ac = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d normal = ab.cross(ac);
-    constexpr double kLeastSine = 0.1;  // flatter triangles do not determine one direction
+    constexpr double kLeastSine = 0.1;  // flatter triangles do not determine the plane
     if (!(normal.norm() > kLeastSine * ab.norm() * ac.norm())) return std::nullopt;
     const Eigen::Vector3d unit = normal.normalized();
     const double offset_m = -unit.dot(pa);
@@ -210,7 +210,7 @@ struct Census {
     std::vector<Eigen::Vector3d> inliers;
     std::size_t fringe = 0;  ///< number of points between one and two bands
     double square_sum_m2 = 0.0;
-    double noise_sum_m2 = 0.0;  ///< expected from the noise of the points
+    double noise_sum_m2 = 0.0;  ///< sum that the noise of the points alone would give
 };
 
 Census census_of(const View& view, const Candidate& candidate) {
@@ -281,7 +281,7 @@ GroundReason judge(const GroundConfig& config,
                    const Census& census,
                    const Candidate& candidate) {
     constexpr double kMinContrast = 3.0;  // evenly spread points have at most 2
-    constexpr double kMostBelow = 0.03;   // share of the inliers; wrong matches lie anywhere
+    constexpr double kMostBelow = 0.03;  // largest share of the inliers; wrong matches lie anywhere
     if (census.inliers.size() < kLeastPoints || candidate.image_share < config.min_image_share)
         return GroundReason::few_inliers;
     const double contrast = static_cast<double>(census.inliers.size()) /
@@ -493,7 +493,8 @@ GroundSighting search_ground(const GroundConfig& config,
 
 FramePoints with_nominal_noise(std::span<const Eigen::Vector3d> points,
                                const Eigen::Vector3d& sensor) {
-    /// 4 mm at 1 m and 16 mm at 2 m: between a depth camera and a small stereo camera.
+    /// Noise of 4 mm at 1 m and 16 mm at 2 m: between the noise of a depth camera and that of a
+    /// small stereo camera.
     constexpr double kInverseRangeSigma = 0.004;
     FramePoints seen;
     seen.camera_body_m = sensor;

@@ -12,8 +12,8 @@ namespace surefoot::ground {
 /// `search_roll_deg`, at any allowed height. Points are in camera body axes: x along the optical
 /// axis, y left, z up when the axis is level. No `up_hint` is needed.
 ///
-/// Planes are drawn through three points near each other, because a floor on a tenth of the image
-/// holds only one random triple in a thousand. Points near the best plane refine it
+/// Planes are drawn through three points near each other. Of random triples, only one in a thousand
+/// lies on a floor that fills a tenth of the image. Points near the best plane refine the plane
 /// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
 /// * it fills `min_image_share` of the image,
 /// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),

@@ -54,7 +54,7 @@ struct Sample {
 
 struct Split {
     double rest = 0.0;
-    double from_m = 0.0;  ///< side of the sensor: range [from, to] of the coordinate
+    double from_m = 0.0;  ///< start of the sensor's side along the coordinate
     double to_m = 0.0;
     Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< correction of the plane's m
 };

@@ -38,7 +38,7 @@ inline constexpr double kNoisiest = 0.67;
 struct Sighting {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]
-    double expected_inverse_range = 0.0;            ///< value of the plane; 0 = no hit by the ray
+    double expected_inverse_range = 0.0;  ///< inverse range of the plane; 0 = ray misses it
     /// Distance from the plane and its one sigma, to first order in the inverse range. The distance
     /// is symmetric in the noise, so a limit on it causes no bias.
     double off_m = 0.0;

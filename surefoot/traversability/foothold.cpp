@@ -217,7 +217,7 @@ void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
 }
 
 int FootholdFinder::patch_half_width(int dy) const {
-    // All rows of the patch must lie within F, each over its full width.
+    // All rows of the patch must lie within F over their full width.
     return std::min(foot_[static_cast<std::size_t>(std::abs(dy))],
                     foot_[static_cast<std::size_t>(std::abs(dy + patch_cells_ - 1))]);
 }

@@ -48,10 +48,10 @@ struct FootholdConfig {
 
 enum class Foothold : std::uint8_t {
     unknown,      ///< not all cells under the foot and around it are known
-    safe,         ///< proven at `sigma_factor`
+    safe,         ///< proven safe at `sigma_factor`
     unsure,       ///< heights too uncertain to prove safe or unsafe
     unreachable,  ///< safe, but no known way leads there from the stance
-    drop,         ///< this value and the following: proven unsafe, with the cause
+    drop,         ///< `drop` and the following values: proven unsafe, with the cause
     tilted,
     rough,
     low,  ///< too little free height above

@@ -64,7 +64,7 @@ enum class FootprintOutcome : std::uint8_t {
     invalid_pose,  ///< no pose, a pose that is not finite, or one more than 2^20 cells away:
                    ///< no cells were read
     invalid_map,   ///< no cell size, or layers of another size than the grid: no cells were read
-    outside_map,   ///< cells were counted, none of them in the map
+    outside_map,   ///< cells were counted, but none lies in the map
     rated,         ///< at least one cell lies in the map; it may be unknown
 };
 
@@ -92,7 +92,7 @@ struct FootprintReport {
 
 /// Treatment of unknown cells under a footprint.
 enum class UnknownPolicy : std::uint8_t {
-    unsafe,   ///< refuse if one cell has no rating, no height or lies outside
+    unsafe,   ///< refuse if any cell has no rating, has no height or lies outside
     ignored,  ///< consider only rated cells; for far planning, never for a step
 };
 

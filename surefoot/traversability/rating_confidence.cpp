@@ -13,7 +13,7 @@ namespace surefoot::traversability {
 namespace {
 
 constexpr float kHighest = std::numeric_limits<float>::max();  ///< largest finite value
-constexpr float kGateSigmas = 3.4F;                            ///< GateLimits::sigma_factor
+constexpr float kGateSigmas = 3.4F;  ///< same value as GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
 constexpr float kRangeSigma = 0.87F;  ///< largest deviation of a range, for any number of cells
 constexpr float kCertain = 6.0F;      ///< beyond so many sigmas the probability (1e-9) is ignored
@@ -231,7 +231,8 @@ void RatingConfidence::find_flips(const Input& input) {
             // Distance of the required error from its mean [sigma].
             const float sigmas = over_m > 0.0F ? (over_m / sigma_m[ix] - error_range_) / kRangeSigma
                                                : -over_m / (kSqrt2 * sigma_m[ix]);
-            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);  // false if unknown
+            // false for an unknown step
+            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);
         }
     }
 }

@@ -13,7 +13,7 @@ namespace surefoot::traversability {
 
 /// Cells on which the machine is assumed to stand.
 struct Stance {
-    int cells = 0;          ///< start cells of the ways; 0 if the map has no known cell
+    int cells = 0;          ///< number of start cells; 0 if the map has no known cell
     double lowest_m = 0.0;  ///< lowest height of these cells in the map frame; 0 without cells
     double radius_m = 0.0;  ///< search radius around the body
 };
@@ -22,12 +22,12 @@ struct Stance {
 /// table top is flat but not reachable.
 ///
 /// reach_step_m of a cell: each way from the stance to the cell has a largest height difference
-/// between consecutive cells, and reach_step_m is the smallest of these over all ways (a minimax
-/// path). A way leads from known cell to known 4-neighbour; it never crosses an unknown cell or a
-/// gap, not even of one cell. Up and down count alike: the smallest step up and the smallest step
-/// down may lie on different ways, so two layers would promise a way that does not exist. Heights
-/// are rounded to 0.1 mm as for the gate. For these heights the result is exact. It does not depend
-/// on the order of the visits.
+/// between consecutive cells. reach_step_m is the smallest of these over all ways (minimax path). A
+/// way leads from known cell to known 4-neighbour. It never crosses an unknown cell or a gap, not
+/// even of one cell. Up and down count alike: the smallest step up and the smallest step down may
+/// lie on different ways. So two layers would promise a way that does not exist. Heights are
+/// rounded to 0.1 mm as for the gate. For these heights the result is exact. It does not depend on
+/// the order of the visits.
 ///
 /// NaN = unknown, or not reachable, or reachable only over a step above `max_step_m`; only unknown
 /// cells have no height. Every comparison with NaN is false, so `<= limit` never accepts NaN as

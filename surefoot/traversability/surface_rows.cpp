@@ -38,7 +38,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<double, 8> kDoubles;
-constexpr hn::Rebind<float, decltype(kDoubles)> kHalf;  // as many floats as there are doubles
+// a vector of floats with as many lanes as a vector of doubles
+constexpr hn::Rebind<float, decltype(kDoubles)> kHalf;
 constexpr hn::CappedTag<float, 16> kFloats;
 using Doubles = hn::VFromD<decltype(kDoubles)>;
 using Mask = decltype(hn::Eq(Doubles(), Doubles()));
@@ -51,7 +52,7 @@ HWY_INLINE Doubles set(double value) {
 HWY_INLINE Floats setf(float value) {
     return hn::Set(kFloats, value);
 }
-/// Converts as many floats as there are doubles.
+/// Converts as many floats as fit into a vector of doubles.
 HWY_INLINE Doubles doubles(const float* from) {
     return hn::PromoteTo(kDoubles, hn::LoadU(kHalf, from));
 }
@@ -510,7 +511,7 @@ void rate_strip(const Surface& surface,
         &out.normal_x, &out.normal_y, &out.normal_z, &out.slope, &out.roughness};
     for (int iy = strip.iy0 - reach; iy < strip.iy0 + strip.ny + reach; ++iy) {
         std::rotate(row, row + 1, row + kept);
-        // One row ahead: a load right after a store at another offset would stall.
+        // Loads one row ahead: a load right after a store at another offset would stall.
         if (iy + 1 < strip.iy0 + strip.ny + reach) load(iy + 1);
         reduce_heights(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
         reduce_counts(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
