@@ -28,7 +28,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kBlock = 512;
 constexpr int kShift = 5;  // 32 units per pixel
 static_assert(RemapTable::kUnits == 1 << kShift);
-static_assert(std::endian::native == std::endian::little, "the left neighbour is the low byte");
+static_assert(std::endian::native == std::endian::little,
+              "remap loads two neighbours as one word: the left neighbour must be the low byte");
 
 using D16 = hn::CappedTag<std::uint16_t, kBlock>;
 using V16 = hn::Vec<D16>;

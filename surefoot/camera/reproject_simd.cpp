@@ -14,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace surefoot::camera::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float), "points are written as plain floats");
+static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float),
+              "points are written as three plain floats without padding");
 
 /// Computes as many whole vectors of D as fit, from `first`; returns the first remaining pixel.
 template <class D>

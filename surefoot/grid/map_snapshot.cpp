@@ -56,7 +56,8 @@ std::uint64_t add_whole(std::uint64_t hash, const Layer& layer) noexcept {
 
 std::uint64_t block_checksum(const MapSnapshot& s, std::size_t block) noexcept {
     constexpr std::size_t kCells = MapSnapshot::kBlockCells;
-    static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0, "whole words of the narrowest layer");
+    static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0,
+                  "a block must consist of whole words of the narrowest layer");
     std::uint64_t hash = step(kOffsetBasis, block);
     for_each_snapshot_layer(s, [&hash, first = block * kCells](const auto& layer) {
         hash = add_part(hash, layer, first, kCells);

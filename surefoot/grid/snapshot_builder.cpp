@@ -101,7 +101,7 @@ Status check(const SnapshotInput& input) {
                           " m; it must be 0 to 1000 m");
     }
     if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
-        return refuse("height and variance must have the size of the map");
+        return refuse("the layers of height and variance must have the size of the map");
     for (const auto& layer :
          {input.drift_m, input.clearance_m, input.free_above_m, input.drop_evidence}) {
         if (!layer.empty() && !has_size(layer, g))

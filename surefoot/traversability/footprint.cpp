@@ -34,7 +34,8 @@ std::optional<std::string> convexity_problem(std::span<const Eigen::Vector2d> ve
     for (std::size_t i = 1; i + 1 < n; ++i) {
         doubled_area_m2 += cross(vertices_m[i] - vertices_m[0], vertices_m[i + 1] - vertices_m[0]);
     }
-    if (std::abs(doubled_area_m2) <= straight_m2) return "its corners lie on a line";
+    if (std::abs(doubled_area_m2) <= straight_m2)
+        return "its corners lie on a line; give corners that enclose an area";
     // Convex: every corner lies on the inner side of every edge.
     const double side = doubled_area_m2 > 0.0 ? 1.0 : -1.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -43,7 +44,7 @@ std::optional<std::string> convexity_problem(std::span<const Eigen::Vector2d> ve
             if (side * cross(edge, vertices_m[k] - vertices_m[i]) < -straight_m2) {
                 return fmt::format(
                     "corner {} (counted from 0) lies outside of the edge from corner {}"
-                    "; list the corners around it, or take their convex hull",
+                    "; list the corners in order around the polygon, or take their convex hull",
                     k,
                     i);
             }
