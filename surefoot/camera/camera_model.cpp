@@ -8,7 +8,7 @@
 namespace surefoot::camera {
 namespace {
 
-/// Largest valid image side; a larger one is a mistake in a file.
+/// Largest valid image side [px]. A larger side is a mistake in the file.
 constexpr int kMaxSide_px = 16384;
 
 }  // namespace

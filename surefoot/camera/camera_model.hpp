@@ -35,7 +35,7 @@ struct Camera {
     CameraModel model;
     int width = 0;
     int height = 0;
-    /// First problem (NaN, size, focal length), or nullopt if the camera is valid.
+    /// Returns the first problem (NaN, size, focal length), or nullopt if the camera is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

@@ -65,7 +65,7 @@ FrameIntegrityCheck::Likeness FrameIntegrityCheck::compare(const Rows& now, cons
     if (now.size() != before.size()) return Likeness::different;
     int same = 0;
     int structured = 0;
-    int switches = 0;  // changes between equal and new rows, top down
+    int switches = 0;  // number of changes between equal and new rows, from top to bottom
     bool last_same = false;
     for (std::size_t v = 0; v < now.size(); ++v) {
         if (!now[v].structured) continue;
@@ -82,7 +82,8 @@ FrameIntegrityCheck::Likeness FrameIntegrityCheck::compare(const Rows& now, cons
 }
 
 bool FrameIntegrityCheck::torn(const Summary& now, const Summary& before) {
-    // The depth image of RGB-D has holes and steps of its own, so the tearing test ignores it.
+    // The depth image of an RGB-D camera has holes and steps of its own, which the grey image does
+    // not have. So the tearing test ignores the depth image.
     const Likeness left = compare(now.images[0], before.images[0]);
     const Likeness right = compare(now.images[1], before.images[1]);
     if (left == Likeness::torn || right == Likeness::torn) return true;
@@ -104,7 +105,7 @@ FrameStatus FrameIntegrityCheck::look(const StereoFrame& frame) {
         });
     repeated_ = repeated ? repeated_ + 1 : 0;
     frame_status.repeated = repeated_;
-    if (repeated) return frame_status;  // the frame is in memory already
+    if (repeated) return frame_status;  // memory_ already holds this frame
     frame_status.torn = std::any_of(
         memory_.begin(), end, [&](const Summary& before) { return torn(now_, before); });
     std::swap(memory_[seen_ % kMemory], now_);

@@ -31,12 +31,12 @@ class FrameIntegrityCheck {
     /// reports one of them, that status is returned unchanged and the frame is not compared.
     [[nodiscard]] FrameStatus look(const StereoFrame& frame);
 
-    /// ASSUMPTION: capture rings have at most so many buffers (V4L2 programs ask for 3 to 8).
+    /// ASSUMPTION: a capture ring has at most kMemory buffers (V4L2 programs ask for 3 to 8).
     static constexpr std::size_t kMemory = 8;
-    /// A tear needs at least this many old and this many new rows: one block of JPEG.
+    /// A tear needs at least this many old rows and as many new rows: the height of a JPEG block.
     static constexpr int kMinTornRows = 8;
-    /// A row has structure if this many neighbouring pixels differ. With noise of one grey level
-    /// two readings of a pixel agree in 28 % of cases: 0.28^16 < 1e-8 for the row.
+    /// A row has structure if this many neighbouring pixels differ. With noise of one grey level,
+    /// two readings of a pixel agree in 28 % of cases; of a row, in 0.28^16 < 1e-8.
     static constexpr int kMinChanges = 16;
 
   private:
@@ -46,7 +46,7 @@ class FrameIntegrityCheck {
     };
     using Rows = std::vector<Row>;
     struct Summary {
-        std::array<Rows, 3> images;  ///< left, right, depth
+        std::array<Rows, 3> images;  ///< rows of the left, right and depth image
     };
     enum class Likeness : std::uint8_t { unknown, same, torn, different };
 
@@ -58,7 +58,7 @@ class FrameIntegrityCheck {
     [[nodiscard]] static bool torn(const Summary& now, const Summary& before);
 
     std::array<Summary, kMemory> memory_;
-    std::size_t seen_ = 0;  ///< frames with images so far; the next one goes to seen_ % kMemory
+    std::size_t seen_ = 0;  ///< count of frames with images; the next frame goes to seen_ % kMemory
     Summary now_;
     int repeated_ = 0;
 };

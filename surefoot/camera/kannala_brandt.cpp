@@ -12,7 +12,8 @@
 namespace surefoot::camera {
 namespace {
 
-/// Bisection alone reduces pi to the last bit in 54 steps; Newton needs about five.
+/// Bisection alone needs 54 steps to reduce an interval of pi to the last bit. Newton needs about
+/// five.
 constexpr int kMaxSteps = 80;
 /// Residual of the inverse in normalised coordinates (rad): 1e-12 times f = 1000 px is 1e-9 px.
 constexpr double kConverged = 1e-12;
@@ -35,7 +36,8 @@ bool inside_domain(const KannalaBrandt& m, double theta) {
     return positive_on(c, theta * theta);
 }
 
-/// The angle whose image has this radius: Newton, limited to a bracket that bisection shrinks.
+/// Returns the angle whose image has this radius. Uses Newton's method within a bracket that
+/// bisection shrinks.
 std::optional<double> angle_of(const KannalaBrandt& m, double target) {
     double low = 0.0;
     double high = std::numbers::pi;
@@ -75,7 +77,7 @@ std::optional<Eigen::Vector2d> KannalaBrandt::project(
         const double d_theta = slope(*this, theta);
         const double along = d_theta * z / distance_sq;   // radial stretch
         const double across = r > 0.0 ? d / r : 1.0 / z;  // tangential stretch
-        const double depth = -d_theta * r / distance_sq;  // change of the radius with z
+        const double depth = -d_theta * r / distance_sq;  // derivative of the image radius by z
         *d_pixel_d_point << fx_px * (cosine * cosine * along + sine * sine * across),
             fx_px * cosine * sine * (along - across), fx_px * cosine * depth,
             fy_px * cosine * sine * (along - across),

@@ -21,11 +21,11 @@ struct KannalaBrandt {
     double k3 = 0.0;
     double k4 = 0.0;
 
-    /// nullopt where d no longer grows with theta (outside the lens), and at the origin.
+    /// Returns nullopt where d stops growing with theta (outside the lens), and at the origin.
     [[nodiscard]] std::optional<Eigen::Vector2d> project(
         const Eigen::Vector3d& p_camera,
         Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;
-    /// Unit ray, by Newton iterations on theta; nullopt if no angle maps to the pixel.
+    /// Returns the unit ray (Newton on theta), or nullopt if no angle maps to the pixel.
     [[nodiscard]] std::optional<Eigen::Vector3d> unproject(
         const Eigen::Vector2d& pixel, Eigen::Matrix<double, 3, 2>* d_ray_d_pixel = nullptr) const;
     [[nodiscard]] std::optional<std::string> problem() const;

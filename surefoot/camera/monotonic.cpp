@@ -36,13 +36,14 @@ Bernstein bernstein_of(std::span<const double> coefficients, double s_max) noexc
 }
 
 bool positive(Bernstein b, std::size_t terms, int halvings_left) noexcept {
-    // The outer coefficients are the values at the ends. The form with ! also rejects NaN.
+    // The outer coefficients are the values at the ends. The comparison with ! also rejects NaN.
     if (!(b[0] > 0.0) || !(b[terms - 1] > 0.0)) return false;
     bool all_positive = true;
     for (std::size_t i = 1; i + 1 < terms; ++i) all_positive = all_positive && b[i] > 0.0;
     if (all_positive) return true;
     if (halvings_left == 0) return false;
-    // De Casteljau at the middle: b becomes the right half, `left_half` receives the left one.
+    // De Casteljau's algorithm at the middle: b becomes the right half, `left_half` receives the
+    // left half.
     Bernstein left_half{};
     for (std::size_t level = 0; level < terms; ++level) {
         left_half[level] = b[0];

@@ -14,8 +14,9 @@ namespace {
 
 using pinhole_solver::Distorted;
 
-/// True if the image grows outward from the axis to (x, y). The radial part is tested on the whole
-/// way, by its derivative d(r radial)/dr; the tangential part at the point, by the Jacobian.
+/// True if the image grows outward from the axis to (x, y). The radial part is tested along the
+/// whole line from the axis, by its derivative d(r radial)/dr. The tangential part is tested only
+/// at the point, by the Jacobian.
 bool inside_domain(const PinholeRadTan& model, double r2, const Eigen::Matrix2d& J) {
     const std::array<double, 4> slope{1.0, 3.0 * model.k1, 5.0 * model.k2, 7.0 * model.k3};
     return positive_on(slope, r2) && pinhole_solver::grows(J);

@@ -25,11 +25,11 @@ struct PinholeRadTan {
     [[nodiscard]] bool has_distortion() const noexcept {
         return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
     }
-    /// nullopt for points at or behind the camera plane.
+    /// Returns nullopt for points at or behind the camera plane.
     [[nodiscard]] std::optional<Eigen::Vector2d> project(
         const Eigen::Vector3d& p_camera,
         Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;
-    /// Unit ray, by Newton iterations on the distortion; nullopt if they do not converge.
+    /// Returns the unit ray (Newton on the distortion), or nullopt without convergence.
     [[nodiscard]] std::optional<Eigen::Vector3d> unproject(
         const Eigen::Vector2d& pixel, Eigen::Matrix<double, 3, 2>* d_ray_d_pixel = nullptr) const;
     [[nodiscard]] std::optional<std::string> problem() const;

@@ -38,8 +38,9 @@ std::array<double, 7> product(const Cubic& a, const Cubic& b, const Factor& fact
 /// True if the Jacobian J of the distortion is positive definite on the whole disc of radius r. The
 /// disc is convex, so no two of its points then share a pixel. The radial part has the eigenvalues
 ///   d(r N/D)/dr = sum N_i D_j (1 + 2 i - 2 j) s^(i + j) / D^2   and   N/D = N D / D^2.
-/// Those of the tangential part lie within +-6 |(p1, p2)| r. Multiplied by D^2, with D > 0, both
-/// differences are polynomials in s.
+/// The eigenvalues of the tangential part lie within +-6 |(p1, p2)| r. So each radial eigenvalue
+/// minus this bound must be positive. Multiplied by D^2, with D > 0, both differences are
+/// polynomials in s.
 bool inside_domain(const PinholeRational& model, const Cubic& N, const Cubic& D, double r2) {
     const double tangential = 6.0 * std::hypot(model.p1, model.p2) * std::sqrt(r2);
     const auto one = [](std::size_t, std::size_t) { return 1.0; };

@@ -8,13 +8,13 @@
 
 /// Common code of the pinhole models with distortion; private to them. A model passes the function
 ///   std::optional<Distorted> distort(const Eigen::Vector2d& p)
-/// on the plane z = 1. It returns nullopt outside the domain in which the image grows outward.
+/// on the plane z = 1. `distort` returns nullopt where the image does not grow outward.
 namespace surefoot::camera::pinhole_solver {
 
-inline constexpr int kMaxNewtonSteps = 200;  ///< five inside an image, many from far outside
+inline constexpr int kMaxNewtonSteps = 200;  ///< 5 suffice in the image; far outside it takes more
 /// Residual of the inverse, normalised: 1e-13 times f = 1000 px is far below any practical use.
 inline constexpr double kConverged = 1e-13;
-/// Largest residual after the steps stall, from rounding; 1e-7 px at f = 1000 px.
+/// Largest valid residual if rounding stops the steps earlier; 1e-7 px at f = 1000 px.
 inline constexpr double kStalled = 1e-10;
 
 struct Distorted {
@@ -48,7 +48,7 @@ struct Intrinsics {
     return J.determinant() > 0.0 && J.trace() > 0.0;
 }
 
-/// Newton from the centre outward. Halves steps that leave the domain or do not improve.
+/// Newton's method from the centre outward. Halves steps that leave the domain or do not improve.
 template <typename Distort>
 std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Vector2d& target) {
     Eigen::Vector2d p = target;
@@ -73,12 +73,12 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
         }
         if (!improved) break;
     }
-    // The form with ! also rejects NaN. Far off axis the rounding grows with the point itself.
+    // The comparison with ! also rejects NaN. Far off the axis the rounding grows with |p|.
     if (!(error <= kStalled * (1.0 + target.norm()))) return std::nullopt;
     return p;
 }
 
-/// Pixel of a point in the optical frame; nullopt for a point at or behind the camera plane.
+/// Returns the pixel of a point, or nullopt for a point at or behind the camera plane.
 template <typename Distort>
 std::optional<Eigen::Vector2d> project(const Intrinsics& k,
                                        const Distort& distort,
@@ -98,7 +98,7 @@ std::optional<Eigen::Vector2d> project(const Intrinsics& k,
     return Eigen::Vector2d(k.fx_px * d->m.x() + k.cx_px, k.fy_px * d->m.y() + k.cy_px);
 }
 
-/// Unit ray of a pixel. `has_distortion` = false skips the iterations.
+/// Returns the unit ray of a pixel. `has_distortion` = false skips the iterations.
 template <typename Distort>
 std::optional<Eigen::Vector3d> unproject(const Intrinsics& k,
                                          const Distort& distort,

@@ -14,7 +14,7 @@ namespace surefoot::camera {
 namespace {
 
 constexpr int kBorderSamples = 128;  ///< samples per side of an image
-constexpr double kZoomStep = 1.002;  ///< zoom per step until the source covers the view
+constexpr double kZoomStep = 1.002;  ///< zoom factor per step until the source covers the view
 constexpr int kMaxZoomSteps = 700;   ///< 1.002^700 = 4 times
 /// In a plane image of a wider view most pixels are near the border: at 150 deg the outermost pixel
 /// covers 1/15 of the angle of the middle pixel.
@@ -184,7 +184,7 @@ std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_h
     }
     if (!(max_view_deg >= 10.0 && max_view_deg <= kWidestPlane_deg)) {
         return fmt::format(
-            "camera.max_view_deg = {} must be from 10 to {}", max_view_deg, kWidestPlane_deg);
+            "camera.max_view_deg = {} must be 10 to {} deg", max_view_deg, kWidestPlane_deg);
     }
     if (rectified_focal_px == 0.0) return std::nullopt;
     const double longest = std::max(width, height) - 1;

@@ -11,8 +11,8 @@ namespace surefoot::camera {
 
 /// Parameters of the virtual pinhole cameras of rectified images.
 struct RectificationConfig {
-    double rectified_focal_px = 0.0;  ///< smallest one without black pixels if 0
-    int rectified_width_px = 0;       ///< width of the raw images if 0
+    double rectified_focal_px = 0.0;  ///< 0 = smallest without black pixels
+    int rectified_width_px = 0;       ///< 0 = width of the raw images
     int rectified_height_px = 0;
     /// Largest view angle across and down, if the focal length is chosen automatically. A wider
     /// view would reduce the resolution in the middle of a fisheye image, where the ground is.
@@ -20,7 +20,7 @@ struct RectificationConfig {
 
     [[nodiscard]] bool operator==(const RectificationConfig&) const = default;
     void describe(ConfigVisitor& visitor);
-    /// First problem for raw images of this size, or nullopt.
+    /// Returns the first problem for raw images of this size, or nullopt.
     [[nodiscard]] std::optional<std::string> problem(int raw_width, int raw_height) const;
 };
 
@@ -28,7 +28,7 @@ struct RectificationConfig {
 struct RectifiedCamera {
     Camera camera;
     Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< optical frames
-    double offset_x_m = 0.0;  ///< x of its centre in the rectified left frame
+    double offset_x_m = 0.0;  ///< x of the camera centre in the rectified left frame
 };
 
 /// Result of the planning: the rotation of each camera, and the ideal rig of the rectified images.
@@ -36,7 +36,7 @@ struct Rectification {
     RectifiedRig rig;
     RectifiedCamera left;
     std::optional<RectifiedCamera> right;
-    bool identity = false;  ///< raw and rectified images are equal
+    bool identity = false;  ///< true if raw and rectified images are equal
 };
 
 /// `rig` and `config` must have no problem(). A rectified rig stays unchanged unless `config` sets
@@ -46,7 +46,7 @@ struct Rectification {
                                                const RectificationConfig& config,
                                                double virtual_baseline_m);
 
-/// Raw pixel that shows the direction `ray` of the rectified frame; nullopt outside the lens.
+/// Returns the raw pixel that shows the direction `ray`, or nullopt outside the lens.
 [[nodiscard]] std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedCamera& this_camera,
                                                           const Eigen::Vector3d& ray);
 

@@ -108,7 +108,8 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
             const auto raw = raw_from_ray(impl_->plan.left, ray_of(rig, u, v));
-            // Averaging across an edge would create a false surface: use the nearest pixel or none.
+            // Averaging across an edge would create a false surface: use the nearest pixel or no
+            // pixel.
             const auto nearest =
                 raw ? nearest_pixel(raw->x(), raw->y(), camera.width, camera.height) : std::nullopt;
             out.at(u, v) = nearest ? raw_depth_m.at(nearest->u, nearest->v)

@@ -30,7 +30,7 @@ class Rectifier {
     /// Baseline that converts RGB-D depth to disparity.
     static constexpr double kVirtualBaseline_m = 0.08;
 
-    /// Returns the problem of the rig or of the configuration as an error.
+    /// Makes a rectifier. Returns an error if the rig or the configuration has a problem.
     [[nodiscard]] static Result<Rectifier> make(const StereoRig& rig,
                                                 const RectificationConfig& config = {});
 
@@ -43,12 +43,12 @@ class Rectifier {
     /// Images must have the size of the rig; the source checks that. Pixels without a source
     /// become 0.
     void rectify(const StereoFrame& frame, RectifiedPair& out) const;
-    /// RGB-D: depth along z [m] of every rectified pixel, from the nearest raw pixel; NaN = unknown
-    /// depth.
+    /// Computes the depth along z [m] of every rectified pixel of an RGB-D frame, from the nearest
+    /// raw pixel; NaN = unknown depth.
     void rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const;
-    /// True if images stay unchanged.
+    /// True if rectification leaves the images unchanged.
     [[nodiscard]] bool is_identity() const noexcept;
-    /// Rectified pixel of a raw pixel; nullopt if the lens model has no ray.
+    /// Rectified pixel of a raw pixel; nullopt if the lens model has no ray for the raw pixel.
     [[nodiscard]] std::optional<Eigen::Vector2d> rectified_from_raw(
         Side side, const Eigen::Vector2d& raw) const;
     /// Raw pixel, in the camera `side`, of a point in the *rectified left* optical frame.

@@ -22,8 +22,8 @@ class RemapTable {
     /// Starts with no source for any pixel. `source_*`: size of the image to read, at least 2x2.
     RemapTable(int width, int height, int source_width, int source_height);
 
-    /// Sets the source position of pixel (u, v). It must lie inside the source: 0 <= x_px <=
-    /// source_width - 1, and y_px likewise.
+    /// Sets the source position of pixel (u, v). This position must lie inside the source: 0 <=
+    /// x_px <= source_width - 1, and y_px likewise.
     void set(int u, int v, float x_px, float y_px);
 
     [[nodiscard]] int width() const noexcept { return width_; }
@@ -32,14 +32,14 @@ class RemapTable {
     /// `source` must have the size given to the constructor. `out` gets the size of the table.
     /// Pixels without a source become 0.
     void remap(ImageView<const std::uint8_t> source, GreyImage& out) const;
-    /// The same, pixel by pixel: defines the result and is the oracle of the tests.
+    /// Remaps pixel by pixel in plain code. Defines the result; tests compare `remap` with it.
     void remap_reference(ImageView<const std::uint8_t> source, GreyImage& out) const;
 
     /// The table as flat rows, one entry per pixel.
     struct View {
-        const std::int32_t* offset;      ///< y * source_width + x, of the upper left neighbour
+        const std::int32_t* offset;      ///< index y * source_width + x of the upper left neighbour
         const std::uint8_t* fraction_x;  ///< 0 to 32
-        const std::uint8_t* fraction_y;  ///< 0 to 32, or kNoSource
+        const std::uint8_t* fraction_y;  ///< 0 to 32; kNoSource = no source
     };
     static constexpr std::uint8_t kNoSource = 255;
 

@@ -18,7 +18,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/camera/remap_simd.cpp"
 #include <hwy/foreach_target.h>
-// Must come after foreach_target.h.
+// This include must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -28,7 +28,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kBlock = 512;
 constexpr int kShift = 5;  // 32 units per pixel
 static_assert(RemapTable::kUnits == 1 << kShift);
-static_assert(std::endian::native == std::endian::little, "the left neighbour is the low byte");
+static_assert(std::endian::native == std::endian::little,
+              "remap loads two neighbours as one word: the left neighbour must be the low byte");
 
 using D16 = hn::CappedTag<std::uint16_t, kBlock>;
 using V16 = hn::Vec<D16>;
@@ -56,7 +57,7 @@ HWY_INLINE V16 mixed(V16 p, V16 q, V16 fraction) {
     return hn::Add(hn::ShiftLeft<kShift>(p), hn::Mul(hn::Sub(q, p), fraction));
 }
 
-/// h of a row from pairs of neighbours.
+/// Returns h of a row from pairs of neighbours.
 HWY_INLINE V16 along_row(V16 pairs, V16 fraction_x) {
     return mixed(hn::And(pairs, hn::Set(D16(), 0xFF)), hn::ShiftRight<8>(pairs), fraction_x);
 }

@@ -21,8 +21,8 @@ class Reprojector {
 
   private:
     float depth_to_disparity_px_m_;
-    std::vector<float> ray_x_;  ///< per column, on the plane z = 1
-    std::vector<float> ray_y_;  ///< per row, on the plane z = 1
+    std::vector<float> ray_x_;  ///< x of the ray of each column, at z = 1
+    std::vector<float> ray_y_;  ///< y of the ray of each row, at z = 1
 };
 
 }  // namespace surefoot::camera

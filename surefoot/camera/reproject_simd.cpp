@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One division and two products per pixel, no sum: all targets round equally.
+// Each pixel needs one division and two products, but no sum. So all targets round equally.
 #include "surefoot/camera/reproject_simd.hpp"
 
 #include <limits>
@@ -7,14 +7,15 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/camera/reproject_simd.cpp"
 #include <hwy/foreach_target.h>
-// Must come after foreach_target.h.
+// This include must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::camera::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float), "points are written as plain floats");
+static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float),
+              "points are written as three plain floats without padding");
 
 /// Computes as many whole vectors of D as fit, from `first`; returns the first remaining pixel.
 template <class D>

@@ -47,7 +47,11 @@ Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height) {
     out.left = scaled(rig.left, width, height);
     if (rig.right) out.right = scaled(*rig.right, width, height);
     if (const auto problem = out.problem()) {
-        return input_error(fmt::format("scaled to {} x {} px: {}", width, height, *problem));
+        return input_error(
+            fmt::format("the calibration is not valid after scaling to {} x {} px: {}",
+                        width,
+                        height,
+                        *problem));
     }
     return out;
 }

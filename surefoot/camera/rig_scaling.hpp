@@ -15,7 +15,7 @@ namespace surefoot::camera {
 /// crop of its 2K). The caller must make sure that the image is resized.
 [[nodiscard]] Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height);
 
-/// True if one size is an integer multiple of the other, equal for both sides, as with binning.
+/// True if one size is the same integer multiple of the other on both sides, as with binning.
 [[nodiscard]] bool is_binning(const Camera& camera, int width, int height) noexcept;
 
 }  // namespace surefoot::camera

@@ -91,8 +91,9 @@ TEST(RigScaling, OtherShapesAreRefusedInWords) {
     EXPECT_NE(message(scaled_to(rig, 752 * 30, 480 * 30)), "accepted");  // larger than any camera
     StereoRig broken = rig;
     broken.right->width = 640;
-    EXPECT_EQ(message(scaled_to(broken, 376, 240)),
-              "image sizes differ: left 752x480, right 640x480 px");
+    EXPECT_EQ(
+        message(scaled_to(broken, 376, 240)),
+        "image sizes differ: left 752x480, right 640x480 px; both cameras need the same size");
 }
 
 TEST(RigScaling, BinningIsAWholeNumber) {

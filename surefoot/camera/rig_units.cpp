@@ -9,8 +9,8 @@
 namespace surefoot::camera {
 namespace {
 
-/// Usual baselines of cameras that people carry or mount on a machine: 18 mm on a ZED-X Nano, 0.6 m
-/// on a car.
+/// Usual baselines of cameras that people carry or mount on a machine. For example, a ZED-X Nano
+/// has 18 mm, and cameras on a car have 0.6 m.
 constexpr double kUsualMin_m = 0.01;
 constexpr double kUsualMax_m = 1.0;
 /// A calibration with squares of side 1 gives the baseline in squares. Real squares are 20-100 mm.
@@ -21,7 +21,7 @@ bool is_usual(double length_m) {
     return length_m >= kUsualMin_m && length_m <= kUsualMax_m;
 }
 
-/// ": is it in mm (then 60.8 mm)?", or "." if no unit gives a usual baseline.
+/// Returns ": is it in mm (then 60.8 mm)?", for example, or "." if no unit gives a usual baseline.
 std::string likely_units(double number) {
     struct Unit {
         const char* name;
@@ -70,7 +70,8 @@ std::optional<std::string> baseline_warning(double length_m) {
 std::optional<std::string> focal_problem(double focal_px) {
     constexpr double kMaxFocal_px = 1e6;
     if (focal_px <= kMaxFocal_px) return std::nullopt;
-    return fmt::format("focal length {:g} px exceeds {:g} px", focal_px, kMaxFocal_px);
+    return fmt::format(
+        "focal length {:g} px exceeds {:g} px: give it in pixels", focal_px, kMaxFocal_px);
 }
 
 std::optional<std::string> focal_warning(double focal_px, int width_px) {

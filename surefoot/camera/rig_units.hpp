@@ -5,32 +5,32 @@
 #include <string>
 #include <string_view>
 
-/// Checks whether a baseline can be in metres: the only check of the unit of a calibration. Every
-/// rig passes `baseline_problem` (in StereoRig::problem); every file that is read also passes
+/// Checks whether a baseline can be in metres. A calibration offers no other check of its unit.
+/// Every rig passes `baseline_problem` (in StereoRig::problem). Every file that is read also passes
 /// `baseline_warning`.
 namespace surefoot::camera {
 
 inline constexpr double kMinBaseline_m = 1e-3;
-/// Wider than any stereo camera on a walking machine; narrower than all baselines in millimetres.
+/// Largest valid baseline: above every camera of a walking machine, below every baseline in mm.
 inline constexpr double kMaxBaseline_m = 5.0;
 
-/// Why a baseline cannot be used, with its probable unit: "is it in mm (then 60.8 mm)?". nullopt
-/// from kMinBaseline_m to kMaxBaseline_m.
+/// Returns why a baseline cannot be used and its probable unit: "is it in mm (then 60.8 mm)?".
+/// Returns nullopt from kMinBaseline_m to kMaxBaseline_m.
 [[nodiscard]] std::optional<std::string> baseline_problem(double length_m);
 
-/// Warning about a valid but unusual baseline (shorter than 10 mm or longer than 1 m), with the
-/// unit to check. nullopt otherwise.
+/// Returns a warning about a valid but unusual baseline (shorter than 10 mm or longer than 1 m),
+/// with the unit to check. Returns nullopt otherwise.
 [[nodiscard]] std::optional<std::string> baseline_warning(double length_m);
 
-/// Error text for an impossible focal length: above a million pixels (a telescope of 3 m in front
-/// of pixels of 3 um). Camera::problem calls it.
+/// Returns an error text for an impossible focal length: above a million pixels (a telescope of 3 m
+/// in front of pixels of 3 um). Camera::problem calls this function.
 [[nodiscard]] std::optional<std::string> focal_problem(double focal_px);
 
-/// Warning if a focal length is so short for the image width [px] that its unit must be wrong: a
-/// field of view beyond 168 deg. Fisheyes have such views, pinholes do not.
+/// Returns a warning if a focal length is so short for the image width [px] that its unit must be
+/// wrong: a field of view beyond 168 deg. Fisheyes have such views, pinholes do not.
 [[nodiscard]] std::optional<std::string> focal_warning(double focal_px, int width_px);
 
-/// Error text if a sensor is farther than 10 m from base_link: its position is not in metres.
+/// Returns an error if a sensor is farther than 10 m from base_link: its position is not in metres.
 /// `name` is the name of the pose, for example "T_body_left".
 [[nodiscard]] std::optional<std::string> mount_problem(std::string_view name, double distance_m);
 

@@ -21,7 +21,7 @@ StereoRig with_right_camera(const StereoRig& nominal, const RightCameraCorrectio
             lens.fy_px *= longer;
         },
         rig.right->model);
-    rig.rectified = false;  // its rows no longer match the rows of the left camera
+    rig.rectified = false;  // after the correction, the rows of the two images do not match
     return rig;
 }
 

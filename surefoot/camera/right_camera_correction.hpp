@@ -5,16 +5,16 @@
 
 namespace surefoot::camera {
 
-/// Deviation of the right camera from its calibration, for example after warming up, a shock or a
-/// long time. Rotations are about the axes of the left camera.
+/// Deviation of the right camera from its calibration, for example after warm-up, after a shock or
+/// after a long time. Rotations are about the axes of the left camera.
 struct RightCameraCorrection {
-    double roll_rad = 0.0;     ///< about z, forward: rows cross
-    double pitch_rad = 0.0;    ///< about x, to the right: rows are shifted
-    double yaw_rad = 0.0;      ///< about y, down: a bias of every disparity
+    double roll_rad = 0.0;     ///< about z (forward): makes the rows cross
+    double pitch_rad = 0.0;    ///< about x (to the right): shifts the rows
+    double yaw_rad = 0.0;      ///< about y (down): biases every disparity
     double focal_share = 0.0;  ///< relative increase of the focal lengths
 };
 
-/// The rig with a corrected right camera. Its images are no longer rectified.
+/// Returns the rig with a corrected right camera. The images of this rig are not rectified.
 [[nodiscard]] StereoRig with_right_camera(const StereoRig& nominal,
                                           const RightCameraCorrection& this_camera);
 

@@ -15,18 +15,22 @@ using Problem = std::optional<std::string>;
 /// Largest norm error of a quaternion that was read with seven decimals.
 constexpr double kUnitTolerance = 1e-6;
 constexpr double kMaxRelativeRotation_deg = 45.0;
-/// Limits for rigs marked rectified: at 2000 px from the centre they bend a row by less than 0.01
-/// px.
+/// Limits for rigs marked rectified. Within these limits an error moves a row by less than 0.01 px
+/// at 2000 px from the centre.
 constexpr double kRectifiedRotation_rad = 5e-6;
 constexpr double kRectifiedPixel_px = 1e-3;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 Problem pose_problem(const Pose& pose, const char* name) {
-    if (!pose.all_finite()) return fmt::format("{} holds a value that is not finite", name);
+    if (!pose.all_finite())
+        return fmt::format("{} holds a value that is not finite: correct the calibration", name);
     const double norm = pose.rotation.norm();
     if (std::abs(norm - 1.0) > kUnitTolerance) {
         return fmt::format(
-            "{} is not rigid: its rotation quaternion has norm {:.6f}, not 1", name, norm);
+            "{} is not rigid: its rotation quaternion has norm {:.6f}, not 1; correct the "
+            "calibration",
+            name,
+            norm);
     }
     return std::nullopt;
 }
@@ -53,7 +57,7 @@ Problem pair_pose_problem(const Pose& T_left_right) {
             "swap the cameras or invert T_left_right",
             -t.x());
     }
-    // Above 45 deg from the x axis the cameras lie above each other rather than side by side.
+    // More than 45 deg from the x axis, the cameras lie above each other rather than side by side.
     if (t.x() * t.x() < 0.5 * length_m * length_m) {
         return fmt::format(
             "baseline ({:.3f}, {:.3f}, {:.3f}) m must point along x of the left camera; "
@@ -69,14 +73,16 @@ Problem ideal_lens_problem(const Camera& camera, const char* name) {
     const auto* pinhole = std::get_if<PinholeRadTan>(&camera.model);
     if (pinhole == nullptr) {
         return fmt::format(
-            "the rig is marked rectified but its {} camera has a {} model",
+            "the rig is marked rectified but its {} camera has a {} model; give the calibration of "
+            "the rectified images, or do not mark the rig rectified",
             name,
             std::holds_alternative<KannalaBrandt>(camera.model) ? "fisheye" : "rational pinhole");
     }
     if (pinhole->has_distortion()) {
         return fmt::format(
             "the rig is marked rectified but its {} camera has distortion "
-            "(k1 = {}, k2 = {}, p1 = {}, p2 = {}, k3 = {})",
+            "(k1 = {}, k2 = {}, p1 = {}, p2 = {}, k3 = {}); give the calibration of the rectified "
+            "images, or do not mark the rig rectified",
             name,
             pinhole->k1,
             pinhole->k2,
@@ -99,10 +105,12 @@ Problem equal_intrinsics_problem(const PinholeRadTan& left, const PinholeRadTan&
     };
     for (const auto& row : rows) {
         if (std::abs(row.left - row.right) > kRectifiedPixel_px) {
-            return fmt::format("the rig is marked rectified but {} differs: {} left, {} right",
-                               row.name,
-                               row.left,
-                               row.right);
+            return fmt::format(
+                "the rig is marked rectified but {} differs: {} left, {} right; give the "
+                "calibration of the rectified images, or do not mark the rig rectified",
+                row.name,
+                row.left,
+                row.right);
         }
     }
     return std::nullopt;
@@ -113,13 +121,15 @@ Problem rectified_pose_problem(const Pose& T_left_right) {
     if (turn_rad > kRectifiedRotation_rad) {
         return fmt::format(
             "the rig is marked rectified but its cameras are turned {:.5f} deg "
-            "against each other",
+            "against each other; give the calibration of the rectified images, or do not mark the "
+            "rig rectified",
             turn_rad * kDegreesPerRadian);
     }
     const Eigen::Vector3d& t = T_left_right.translation_m;
     if (std::hypot(t.y(), t.z()) > kRectifiedRotation_rad * std::abs(t.x())) {
         return fmt::format(
-            "the rig is marked rectified but its baseline ({}, {}, {}) m is not along x",
+            "the rig is marked rectified but its baseline ({}, {}, {}) m is not along x; give the "
+            "calibration of the rectified images, or do not mark the rig rectified",
             t.x(),
             t.y(),
             t.z());
@@ -141,11 +151,12 @@ Problem rectified_problem(const StereoRig& rig) {
 Problem pair_problem(const StereoRig& rig) {
     if (auto found = rig.right->problem()) return "right camera: " + *found;
     if (rig.left.width != rig.right->width || rig.left.height != rig.right->height) {
-        return fmt::format("image sizes differ: left {}x{}, right {}x{} px",
-                           rig.left.width,
-                           rig.left.height,
-                           rig.right->width,
-                           rig.right->height);
+        return fmt::format(
+            "image sizes differ: left {}x{}, right {}x{} px; both cameras need the same size",
+            rig.left.width,
+            rig.left.height,
+            rig.right->width,
+            rig.right->height);
     }
     if (auto found = pose_problem(rig.T_left_right, "T_left_right")) return found;
     return pair_pose_problem(rig.T_left_right);

@@ -9,7 +9,7 @@
 
 namespace surefoot::camera {
 
-/// An IMU that is fixed to the rig.
+/// An IMU that is fixed to the rig, with its sample rate.
 struct ImuMount {
     Pose T_body_imu;
     double rate_hz = 200.0;
@@ -20,7 +20,7 @@ struct StereoRig {
     std::string name;
     Camera left;
     std::optional<Camera> right;  ///< empty for RGB-D
-    Pose T_left_right;            ///< right optical frame in the left one; baseline along +x
+    Pose T_left_right;  ///< right optical frame in the left optical frame; baseline along +x
     /// Left optical frame in base_link, if the rig knows it (EuRoC T_BS) or a machine file sets
     /// it.
     std::optional<Pose> T_body_left;
@@ -31,9 +31,9 @@ struct StereoRig {
     double readout_s = 0.0;
     bool rectified = false;  ///< images are already rectified: rows match, no distortion
 
-    /// First problem of the rig, with the value; nullopt if it is valid.
+    /// Returns the first problem of the rig, with the value, or nullopt if the rig is valid.
     [[nodiscard]] std::optional<std::string> problem() const;
-    /// base_link of this rig: `T_body_left`, otherwise the optical frame in body axes.
+    /// Returns `T_body_left`; without it, base_link is the left camera in body axes.
     [[nodiscard]] Pose body_from_left() const;
 };
 
@@ -46,8 +46,8 @@ struct RectifiedRig {
     double fy_px = 0.0;
     double cx_px = 0.0;
     double cy_px = 0.0;
-    double baseline_m = 0.0;  ///< a virtual baseline for RGB-D
-    Pose T_body_camera;       ///< rectified left optical frame in base_link
+    double baseline_m = 0.0;  ///< for RGB-D: a virtual baseline
+    Pose T_body_camera;       ///< pose of the rectified left optical frame in base_link
 
     [[nodiscard]] double depth_to_disparity_px_m() const noexcept { return fx_px * baseline_m; }
     /// Point of a pixel in the rectified left optical frame, from its disparity (> 0).

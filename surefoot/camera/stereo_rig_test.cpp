@@ -37,8 +37,9 @@ TEST(StereoRig, NamesTheCameraThatIsWrong) {
     EXPECT_EQ(
         problem_after(test::euroc_rig(), [](StereoRig& r) { pinhole(*r.right).fx_px = -1.0; }),
         "right camera: pinhole fx_px = -1 must be > 0 px");
-    EXPECT_EQ(problem_after(test::euroc_rig(), [](StereoRig& r) { r.right->height = 481; }),
-              "image sizes differ: left 752x480, right 752x481 px");
+    EXPECT_EQ(
+        problem_after(test::euroc_rig(), [](StereoRig& r) { r.right->height = 481; }),
+        "image sizes differ: left 752x480, right 752x481 px; both cameras need the same size");
 }
 
 TEST(StereoRig, RefusesImpossibleGeometry) {
@@ -50,10 +51,11 @@ TEST(StereoRig, RefusesImpossibleGeometry) {
         "baseline 110.078 m exceeds 5 m: is it in mm (then 110.1 mm)? Give it in metres");
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.translation_m.y() = kNan; }),
-              "T_left_right holds a value that is not finite");
+              "T_left_right holds a value that is not finite: correct the calibration");
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.rotation.coeffs() *= 1.1; }),
-              "T_left_right is not rigid: its rotation quaternion has norm 1.100000, not 1");
+              "T_left_right is not rigid: its rotation quaternion has norm 1.100000, not 1; "
+              "correct the calibration");
     EXPECT_EQ(
         problem_after(test::zed_rig(), [](StereoRig& r) { r.T_left_right.translation_m *= -1.0; }),
         "the right camera lies 0.120 m to the left of the left one; swap the cameras or "
@@ -75,26 +77,31 @@ TEST(StereoRig, RefusesImpossibleGeometry) {
 TEST(StereoRig, ChecksTheClaimOfBeingRectified) {
     EXPECT_EQ(problem_after(test::zed_rig(), [](StereoRig& r) { pinhole(*r.right).k1 = 0.1; }),
               "the rig is marked rectified but its right camera has distortion (k1 = 0.1, k2 = 0, "
-              "p1 = 0, p2 = 0, k3 = 0)");
+              "p1 = 0, p2 = 0, k3 = 0); give the calibration of the rectified images, or do not "
+              "mark the rig rectified");
     EXPECT_EQ(problem_after(test::zed_rig(), [](StereoRig& r) { pinhole(*r.right).cx_px = 340.0; }),
-              "the rig is marked rectified but cx_px differs: 336 left, 340 right");
+              "the rig is marked rectified but cx_px differs: 336 left, 340 right; give the "
+              "calibration of the rectified images, or do not mark the rig rectified");
     EXPECT_EQ(
         problem_after(test::zed_rig(),
                       [](StereoRig& r) {
                           r.T_left_right.rotation = exp_so3({0.0, 0.001, 0.0});
                       }),
-        "the rig is marked rectified but its cameras are turned 0.05730 deg against each other");
+        "the rig is marked rectified but its cameras are turned 0.05730 deg against each other; "
+        "give the calibration of the rectified images, or do not mark the rig rectified");
     EXPECT_EQ(problem_after(test::zed_rig(),
                             [](StereoRig& r) { r.T_left_right.translation_m.y() = 0.01; }),
-              "the rig is marked rectified but its baseline (0.12, 0.01, 0) m is not along x");
+              "the rig is marked rectified but its baseline (0.12, 0.01, 0) m is not along x; give "
+              "the calibration of the rectified images, or do not mark the rig rectified");
     EXPECT_EQ(problem_after(test::fisheye_rig(), [](StereoRig& r) { r.rectified = true; }),
-              "the rig is marked rectified but its left camera has a fisheye model");
+              "the rig is marked rectified but its left camera has a fisheye model; give the "
+              "calibration of the rectified images, or do not mark the rig rectified");
 }
 
 TEST(StereoRig, ChecksMountsAndTimes) {
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_body_left->translation_m.x() = kNan; }),
-              "T_body_left holds a value that is not finite");
+              "T_body_left holds a value that is not finite: correct the calibration");
     EXPECT_EQ(problem_after(test::euroc_rig(), [](StereoRig& r) { r.imu.emplace().rate_hz = 0.0; }),
               "imu.rate_hz = 0 must be between 1 and 100000 Hz");
     EXPECT_EQ(problem_after(test::euroc_rig(), [](StereoRig& r) { r.rate_hz = kNan; }),

@@ -3,7 +3,7 @@
 
 namespace surefoot::detail {
 
-/// Prints the broken invariant to stderr and aborts: a bug in our code, never an input error.
+/// Prints the broken invariant to stderr and aborts. It is a bug in our code, not an input error.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
 }  // namespace surefoot::detail

@@ -8,7 +8,7 @@ namespace surefoot {
 /// State of the camera, derived from its frames (hazards H1, H2, H4 and H6 of the gate). Only `ok`
 /// lets the gate say OK. The numeric values are part of the snapshot file format.
 enum class CameraState : std::uint8_t {
-    unknown = 0,  ///< no image yet
+    unknown = 0,  ///< the camera has not delivered an image
     frozen = 1,   ///< the camera delivers the same images again
     corrupt = 2,  ///< torn or damaged images
     ok = 3,

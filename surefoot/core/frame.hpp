@@ -17,14 +17,14 @@ namespace surefoot {
 struct ImuSample {
     std::int64_t time_ns = 0;
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  ///< +g upward at rest
+    Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  ///< is +g upward at rest
 };
 
 enum class Health : std::uint8_t { ok, degraded, lost };
 [[nodiscard]] const char* to_string(Health health) noexcept;
 
-/// Why the health is not ok. The first reason that applies is reported. Only `imu_gap` can come
-/// with a health that is ok.
+/// Reason why the health is not ok: the first reason that applies. Only `imu_gap` can come with a
+/// health that is ok.
 enum class HealthReason : std::uint8_t {
     none,
     first_frame,           ///< no earlier frame to compare with
@@ -38,9 +38,9 @@ enum class HealthReason : std::uint8_t {
     cameras_swapped,       ///< the left and right images are swapped
     imu_disagreement,      ///< the IMU contradicts the images; vision continues without it
     machine_disagreement,  ///< the motion that the machine reports contradicts the images
-    beyond_machine,        ///< faster than the machine can move; the motion is rejected
+    beyond_machine,        ///< motion faster than the machine allows; it is rejected
     moving_scene,          ///< many points agree on another motion, e.g. of a person in view
-    recovered,             ///< found again after LOST: the motion in between is unknown
+    recovered,             ///< motion estimated again after LOST; the motion in between is unknown
     imu_gap,               ///< IMU samples are missing or invalid; vision continues without it
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
@@ -48,27 +48,27 @@ enum class HealthReason : std::uint8_t {
 /// Pose of the machine with its uncertainty.
 struct MotionEstimate {
     std::int64_t time_ns = 0;
-    Pose T_odom_body;                               ///< continuous: odom never jumps
+    Pose T_odom_body;                               ///< pose in odom; it never jumps
     Pose T_previous_body;                           ///< motion since the previous frame
     Matrix6 relative_covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
     Health health = Health::lost;
     HealthReason reason = HealthReason::first_frame;
-    int tracks = 0;            ///< points tracked into this frame
-    int inliers = 0;           ///< tracked points that agree with the motion
+    int tracks = 0;            ///< number of points tracked into this frame
+    int inliers = 0;           ///< number of tracked points that agree with the motion
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
 };
 
-/// Motion of base_link since the previous frame in time order, every frame included. The machine
+/// Motion of base_link since the previous frame in time order; no frame is left out. The machine
 /// measures it: with its joints over the standing foot, or with its wheels.
 struct MachineMotion {
     Pose T_previous_body;
     Matrix6 covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
 };
 
-/// How a frame was delivered: the evidence for a stopped, frozen or torn camera (hazards H1 and H2
-/// of the gate). It says nothing about the scene. Counts start at the source's previous frame.
+/// Delivery of a frame: the evidence for a stopped, frozen or torn camera (hazards H1 and H2 of the
+/// gate). It says nothing about the scene. Counts start at the source's previous frame.
 struct FrameStatus {
-    int dropped = 0;      ///< frames lost before delivery, by the device's own frame counter
+    int dropped = 0;      ///< frames lost before delivery; the device counts them
     int skipped = 0;      ///< frames discarded because newer ones were waiting
     int damaged = 0;      ///< frames too short or impossible to decode
     int reconnected = 0;  ///< number of times the device was reopened
@@ -85,13 +85,13 @@ struct FrameStatus {
 /// The pipeline does not compute values that the frame carries already.
 struct StereoFrame {
     std::int64_t time_ns = 0;
-    int index = 0;               ///< position in the source, from 0
+    int index = 0;               ///< position in the source, counted from 0
     GreyImage left;              ///< raw (not rectified) 8-bit grey; empty with `known_depth`
     GreyImage right;             ///< empty for RGB-D
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
     std::optional<MachineMotion> machine_motion;
-    std::optional<DepthImage> known_depth;  ///< in the frame of the rectified rig
+    std::optional<DepthImage> known_depth;  ///< depth in the frame of the rectified rig
     /// Known motion. Its odom frame begins at the first base_link of the source.
     std::optional<MotionEstimate> known_motion;
     FrameStatus frame_status;

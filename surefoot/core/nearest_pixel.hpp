@@ -11,8 +11,8 @@ struct NearestPixel {
     int v = 0;
 };
 
-/// The pixel nearest to an image position. It and all pixels up to `margin` columns and rows away
-/// must lie in the image; otherwise nullopt. Also nullopt for NaN and infinity.
+/// Returns the pixel nearest to an image position. This pixel and all pixels up to `margin` columns
+/// and rows away must lie in the image; otherwise nullopt. Also nullopt for NaN and infinity.
 [[nodiscard]] inline std::optional<NearestPixel> nearest_pixel(
     double u_px, double v_px, int width, int height, int margin = 0) noexcept {
     const double u = std::round(u_px);

@@ -8,13 +8,13 @@
 
 namespace surefoot {
 
-/// Number of pieces of `size` elements that cover `count` elements; the last may be smaller.
+/// Returns the number of pieces of `size` elements for `count` elements; the last may be smaller.
 [[nodiscard]] constexpr std::size_t pieces_of(std::size_t count, std::size_t size) noexcept {
     return (count + size - 1) / size;
 }
 
 /// Calls `work(begin, end, piece)` once for each piece. The pieces do not depend on the number of
-/// threads, so sums per piece, added in order of the pieces, do not depend on it either.
+/// threads. So sums per piece, added in order of the pieces, are the same for every number.
 template <typename Work>
 void in_pieces(std::size_t count, std::size_t size, Executor& executor, const Work& work) {
     executor.parallel_for(static_cast<int>(pieces_of(count, size)), [&](int number) {

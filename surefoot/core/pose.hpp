@@ -23,7 +23,7 @@ struct Pose {
     [[nodiscard]] Pose inverse() const;
     [[nodiscard]] Eigen::Matrix3d R() const { return rotation.toRotationMatrix(); }
     [[nodiscard]] Eigen::Matrix4d matrix() const;
-    /// Nearest pose of a 4x4 rigid matrix; normalises the rotation.
+    /// Returns the pose nearest to a 4x4 rigid matrix; normalises the rotation.
     [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& T_a_b);
     [[nodiscard]] bool all_finite() const;
 };
@@ -38,19 +38,19 @@ using Trajectory = std::vector<StampedPose>;
 [[nodiscard]] Pose operator*(const Pose& T_a_b, const Pose& T_b_c);
 [[nodiscard]] Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b);
 
-/// Cross-product matrix: skew(a) * b = a x b.
+/// Returns the cross-product matrix: skew(a) * b = a x b.
 [[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& v);
-/// Rotation by the vector `theta_rad` (axis times angle).
+/// Returns the rotation by the vector `theta_rad` (axis times angle).
 [[nodiscard]] Eigen::Quaterniond exp_so3(const Eigen::Vector3d& theta_rad);
-/// Rotation vector of shortest length, |theta| <= pi.
+/// Returns the rotation vector of shortest length, |theta| <= pi.
 [[nodiscard]] Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation);
 
-/// T perturbed on the right by (dp, theta); `difference` is its inverse.
+/// Returns T perturbed on the right by (dp, theta); `difference` is its inverse.
 [[nodiscard]] Pose perturbed(const Pose& T, const Vector6& delta);
-/// The (dp, theta) with `to == perturbed(from, difference(from, to))`.
+/// Returns the (dp, theta) with `to == perturbed(from, difference(from, to))`.
 [[nodiscard]] Vector6 difference(const Pose& from, const Pose& to);
 
-/// Pose between `a` (s = 0) and `b` (s = 1): linear in translation, slerp in rotation.
+/// Returns the pose between `a` (s = 0) and `b` (s = 1): linear translation, slerp rotation.
 [[nodiscard]] Pose interpolate(const Pose& a, const Pose& b, double s);
 
 /// Covariance of T_a_c = T_a_b * T_b_c if the errors of the two motions are independent.
@@ -62,7 +62,7 @@ using Trajectory = std::vector<StampedPose>;
 /// z up); REP-103.
 [[nodiscard]] Pose T_body_optical();
 
-/// Yaw of a pose whose frames have z up [rad].
+/// Returns the yaw [rad] of a pose whose frames have z up.
 [[nodiscard]] double yaw_rad(const Pose& T);
 
 }  // namespace surefoot

@@ -20,7 +20,7 @@ struct PrintedSheet {
         double y_m = 0.0;
         double radius_m = 0.0;
     };
-    Rectangle paper;  ///< including its white margin
+    Rectangle paper;  ///< outline of the sheet, including its white margin
     std::vector<Rectangle> rectangles;
     std::vector<Disc> discs;
 };

@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-/// How much of the pipeline runs for a frame: odometry alone, or also depth and map.
+/// Part of the pipeline that runs for a frame: odometry alone, or also depth and map.
 enum class Work : std::uint8_t { odometry, full };
 
 enum class Stage : std::uint8_t { rectify, odometry, stereo, ground, fuse, traversability, stairs };
@@ -21,9 +21,9 @@ struct FusionCounts {
     std::int64_t points = 0;            ///< valid depth values of the frame
     std::int64_t gated_range = 0;       ///< points rejected: too near or too far
     std::int64_t gated_height = 0;      ///< points rejected: above or below the height limits
-    std::int64_t gated_confidence = 0;  ///< disparity jump, grazing incidence or likely outlier
+    std::int64_t gated_confidence = 0;  ///< rejected: disparity jump, grazing ray, likely outlier
     std::int64_t gated_density = 0;     ///< points rejected by radius outlier removal
-    std::int64_t gated_border = 0;      ///< points in cells that extend beyond the image
+    std::int64_t gated_border = 0;      ///< points rejected: their cell extends beyond the image
     std::int64_t outside = 0;           ///< points outside the map
     std::int64_t cells_measured = 0;    ///< cells that received a measurement
     std::int64_t cells_new = 0;         ///< measured cells that were unknown before
@@ -36,7 +36,7 @@ struct FusionCounts {
 /// Delivery of the frames of a run, summed up; see FrameStatus.
 struct FrameStatusCounts {
     std::int64_t repeated_frames = 0;        ///< frames whose image is not new
-    std::int64_t longest_freeze_frames = 0;  ///< longest sequence of such frames
+    std::int64_t longest_freeze_frames = 0;  ///< longest sequence of repeated frames
     std::int64_t torn_frames = 0;
     std::int64_t dropped_frames = 0;
     std::int64_t skipped_frames = 0;
@@ -60,15 +60,15 @@ struct FrameReport {
     int index = 0;
     Work work = Work::odometry;
     FrameStatus frame_status;
-    CameraState camera = CameraState::unknown;  ///< from all frames up to this one
+    CameraState camera = CameraState::unknown;  ///< state from all frames up to this frame
     /// For a repeated or torn frame: the last pose, health lost, and the covariance of unobserved
     /// motion.
     MotionEstimate motion;
     std::int64_t depth_pixels = 0;  ///< pixels with a disparity
     std::int64_t image_pixels = 0;
-    GroundObservation ground;  ///< in the body frame
+    GroundObservation ground;  ///< ground plane in the body frame
     FusionCounts fusion;
-    std::int64_t known_cells = 0;  ///< after this frame
+    std::int64_t known_cells = 0;  ///< known map cells after this frame
     /// Wall time per stage [ms]. The only values that differ between equal runs.
     std::array<double, kStageCount> stage_ms{};
 };

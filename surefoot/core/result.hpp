@@ -24,9 +24,9 @@ struct Error {
     std::string message;
 };
 
-/// A value, or the reason for its absence. It carries failures of the user's files, configuration
-/// and messages. A broken invariant of the code is SUREFOOT_ASSERT instead. Events in the scene
-/// (blur, gaps) are enum values in a report.
+/// A value, or the reason for its absence. The reason is a failure of the user's files,
+/// configuration or messages. A broken invariant of the code is SUREFOOT_ASSERT instead. Events in
+/// the scene (blur, gaps) are enum values in a report.
 template <typename T>
 class [[nodiscard]] Result {
   public:

@@ -12,12 +12,12 @@ class Rng {
     explicit Rng(std::uint64_t seed) noexcept;
 
     [[nodiscard]] std::uint64_t next_u64() noexcept;
-    /// Uniform in [0, 1) with 53 random bits.
+    /// Returns a uniform number in [0, 1) with 53 random bits.
     [[nodiscard]] double uniform() noexcept;
     [[nodiscard]] double uniform(double low, double high) noexcept;
-    /// Uniform integer in [0, n), n > 0, without modulo bias.
+    /// Returns a uniform integer in [0, n), n > 0, without modulo bias.
     [[nodiscard]] std::uint64_t below(std::uint64_t n) noexcept;
-    /// Standard normal (Marsaglia's polar method).
+    /// Returns a standard normal number (Marsaglia's polar method).
     [[nodiscard]] double normal() noexcept;
 
   private:

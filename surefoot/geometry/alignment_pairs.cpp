@@ -21,8 +21,8 @@ constexpr std::size_t kBorderNeighbours = 31;
 /// at the first share and counts fully at the second, so that small steps change little.
 constexpr double kBegins = 0.3;
 constexpr double kWhole = 0.35;
-/// Share from which a point of one cloud is a candidate: with half a disc of the other cloud its
-/// pair just counts.
+/// Smallest share at which a point of one cloud is a candidate. If half a disc of the other cloud
+/// is there, the pair of this point just counts.
 constexpr double kCandidate = 0.18;
 
 std::optional<Vector3d> to_middle(const KdTree& cloud, const Vector3f& at_m, float radius_m) {

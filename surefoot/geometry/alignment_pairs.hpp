@@ -20,24 +20,24 @@ struct AlignmentConfig;
 /// Number of points of one piece of work. A thread takes a piece and sums it up at once.
 inline constexpr std::size_t kAlignmentPiece = 2048;
 
-/// A point or border of the moved cloud, paired with the place of the reference cloud on which it
-/// should lie.
+/// A point or border of the moved cloud, paired with the position of the reference cloud on which
+/// it should lie.
 struct Pair {
     Eigen::Vector3d at_m = Eigen::Vector3d::Zero();  ///< moved point at its current position
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double across_m = 0.0;
     double sq_apart_m2 = 0.0;
     double weight = 1.0;
-    /// Share of an edge between two surfaces in [0, 1]. At an edge the normal belongs to neither
-    /// surface.
+    /// Degree in [0, 1] to which the pair lies at an edge between two surfaces. At an edge the
+    /// normal belongs to neither surface.
     double edge = 0.0;
-    double ball_m = 0.0;       ///< radius of the neighbours behind the normal or the border
-    double thickness_m = 0.0;  ///< rms of those neighbours across the surface
+    double ball_m = 0.0;       ///< radius of the ball that gives the normal or the border
+    double thickness_m = 0.0;  ///< rms of the points in the ball across the surface
     std::uint32_t reference = Neighbour::kNone;
     bool counts = false;
 };
 
-/// Point distance in a square lattice with `others` further points in a ball of that radius.
+/// Returns the spacing of a square lattice with `others` more points in a ball of that radius.
 [[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
 /// Median over the pairs that count; 0 if no pair counts.
 [[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);
@@ -70,7 +70,7 @@ class SurfacePairs {
     const AlignmentConfig& config_;
     Executor& executor_;
     std::vector<Pair> pairs_;
-    std::vector<Known> nearest_;  ///< one per moved point, mostly valid for the next step too
+    std::vector<Known> nearest_;  ///< one per moved point; usually still valid in the next step
 };
 
 /// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the mean of

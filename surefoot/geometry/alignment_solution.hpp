@@ -20,16 +20,16 @@ struct Lever {
     Eigen::Vector3d pivot_m = Eigen::Vector3d::Zero();
     double length_m = 1.0;
 
-    /// Derivative of the distance across a pair by the six unknowns.
+    /// Returns the derivative of the distance across a pair by the six unknowns.
     [[nodiscard]] Vector6d row(const Pair& pair) const;
 };
 
 /// Kinds of evidence that fix a direction. Each kind fixes only directions that earlier kinds leave
-/// free. Surfaces err by their noise. Edges, where both surfaces end between two points, err by the
-/// point spacing. Borders may be only the ends of a scan.
+/// free. Surfaces err by their noise. Edges (both surfaces end between two points) err by the point
+/// spacing. Borders may be only the ends of a scan.
 enum class HeldBy : std::uint8_t { surfaces, edges, borders };
 inline constexpr std::size_t kHolds = 3;
-/// Weight of a pair from `SurfacePairs` (surfaces, edges) or `BorderPairs`; 0 if not counted.
+/// Returns the weight of a pair from `SurfacePairs` (surfaces, edges) or `BorderPairs`, or 0.
 [[nodiscard]] double weight_as(HeldBy kind, const Pair& pair) noexcept;
 
 /// Normal equations of the distances across the pairs of one kind of evidence.
@@ -63,12 +63,12 @@ struct AlignmentSigma {
     double place_m = 0.0;
     double turn_rad = 0.0;
 };
-/// Adds two kinds of error. First the scatter: squared distances of the pairs (White 1980), times
-/// the correlation of pairs in one block (Liang and Zeger 1986), because neighbouring pairs share
-/// the noise of a normal. Second the errors that more pairs do not reduce. Edges and borders lie up
-/// to half a point spacing off in each cloud, perhaps all in one direction (`cell_var_m2`, variance
-/// per fixed direction). A scan that ends elsewhere shifts a border by up to a tenth of its balls'
-/// radius.
+/// Adds two kinds of error. First, the scatter: squared distances of the pairs (White 1980), times
+/// the correlation of pairs in one block (Liang and Zeger 1986). Neighbouring pairs share the
+/// noise of a normal. Second, the errors that more pairs do not reduce. Edges and borders lie up
+/// to half a point spacing off in each cloud, perhaps all in one direction (`cell_var_m2`,
+/// variance per fixed direction). A scan with another end shifts a border by up to a tenth of its
+/// balls' radius.
 [[nodiscard]] AlignmentSigma alignment_sigma(std::span<const Pair> surface,
                                              std::span<const Pair> border,
                                              const Lever& lever,

@@ -84,8 +84,8 @@ double cell_var_m2(const KdTree& cloud) {
     return cell_m * cell_m / 12.0;
 }
 
-/// Decides whether the result is valid. With 30 spare points the scatter gives its sigma to 13 %; a
-/// normal uses 30 neighbours too.
+/// Decides whether the result is valid. With 30 points more than unknowns, the scatter gives sigma
+/// to 13 %. A normal also uses 30 neighbours.
 AlignmentOutcome outcome_of(const CloudAlignment& found, bool settled, std::int64_t points) {
     constexpr std::int64_t kFewestToSpare = 30;
     constexpr double kLeastOverlap = 0.05;
@@ -148,8 +148,8 @@ CloudAlignment align_clouds(const KdTree& reference,
     if (!result.steps.empty()) {
         const AlignmentStep& last = result.steps.back();
         result.overlap = overlap_of(pairs.last(), last.rms_m);
-        // Pairs that switch back and forth would never settle. The result counts as settled if the
-        // step is small against its sigma.
+        // Pairs that switch back and forth would never stop. So the alignment also counts as
+        // converged if the step is small against its sigma.
         constexpr double kShare = 0.1;
         settled = settled || (last.step_m < kShare * result.sigma_m &&
                               last.step_rad < kShare * result.sigma_rad);

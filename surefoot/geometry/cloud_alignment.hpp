@@ -16,24 +16,24 @@ namespace surefoot::geometry {
 
 struct AlignmentConfig {
     int most_iterations = 100;
-    /// Largest number of moved points in use; from a larger cloud an even selection is taken.
+    /// Largest number of moved points in use. A larger cloud is thinned out evenly.
     int most_points = 100000;
-    int normal_neighbours = 30;  ///< reference points behind each normal
-    /// Pairs farther apart than this do not count [m]; 0 = all do.
+    int normal_neighbours = 30;  ///< number of reference points for each normal
+    /// Pairs farther apart than this [m] do not count; 0 = all pairs count.
     double reach_m = 0.0;
-    /// Share of pairs that count, nearest first, in (0, 1]. Less than 1 for clouds that do not
-    /// cover each other; it can also remove the few pairs that fix a weak direction.
+    /// Share of pairs that count, nearest first, in (0, 1]. Use less than 1 for clouds that do not
+    /// cover each other. A small share can also remove the few pairs that fix a weak direction.
     double kept_share = 1.0;
     /// Whether common borders of both clouds fix the directions along all surfaces.
     bool borders = true;
-    double smallest_step_m = 1e-5;  ///< the alignment has converged below both limits
+    double smallest_step_m = 1e-5;  ///< converged if a step is below this and the next limit
     double smallest_step_rad = 1e-5;
 };
 
-/// One iteration: the state of its pairs before the step, and the step.
+/// One iteration: its pairs before the step, and the step.
 struct AlignmentStep {
     std::int64_t pairs = 0;
-    std::int64_t borders = 0;    ///< points on a border of both clouds
+    std::int64_t borders = 0;    ///< number of points on a border of both clouds
     double rms_m = 0.0;          ///< rms of the distances across the surface of the reference
     double nearest_rms_m = 0.0;  ///< rms of the distances between the points of a pair
     double step_m = 0.0;
@@ -43,8 +43,8 @@ struct AlignmentStep {
 /// Result class of an alignment: success, or the reason of failure.
 enum class AlignmentOutcome : std::uint8_t {
     converged,
-    no_pairs,        ///< no pair counts: all too far apart, or no surface found
-    too_few_points,  ///< hardly more points than unknowns: a wrong result would not show
+    no_pairs,        ///< no pair counts: all pairs are too far apart, or no surface was found
+    too_few_points,  ///< hardly more points than unknowns: an error would not be visible
     no_overlap,      ///< fewer than 5 % of the moved points lie where the reference has points
     not_settled,     ///< still moving after `most_iterations`
 };
@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Numbers of directions of the six (three of them rotations) that surfaces do not fix. First:
-    /// directions fixed by edges, where surfaces end between points (faces of steps in a height
-    /// map). Second: fixed only by borders of the clouds. Third: free, the guess stays unchanged.
-    /// On a bare floor the three numbers add up to three.
+    /// Directions that surfaces do not fix, out of six (three of them are rotations). Edges fix
+    /// some: ends of surfaces between points (faces of steps in a height map). Only borders of the
+    /// clouds fix others. In free directions the guess stays unchanged. On a bare floor the three
+    /// numbers add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;
@@ -72,12 +72,12 @@ struct CloudAlignment {
     [[nodiscard]] bool converged() const noexcept { return outcome == AlignmentOutcome::converged; }
 };
 
-/// Iterative closest point with point-to-plane distances (Chen and Medioni 1992; pairs as
-/// in Besl and McKay 1992). Point-to-point distances on stairs and floors would slip by
-/// the point spacing. On stairs without side walls surfaces leave the sideways direction
-/// free; the borders of both clouds then fix it, if the guess is within some spacings. The
-/// result does not depend on threads or runs. The clouds must not be empty; points are
-/// finite.
+/// Iterative closest point with point-to-plane distances (Chen and Medioni 1992; pairs as in
+/// Besl and McKay 1992). Point-to-point distances on stairs and floors would slip by the point
+/// spacing. On stairs without side walls, surfaces leave the sideways direction free. The
+/// borders of both clouds then fix it, if the guess is within some point spacings. The result is
+/// the same for every number of threads and in every run. The clouds must not be empty; points
+/// are finite.
 [[nodiscard]] CloudAlignment align_clouds(const KdTree& reference,
                                           std::span<const Eigen::Vector3f> moved_m,
                                           const Pose& T_reference_moved_guess,

@@ -220,7 +220,8 @@ SearchWork KdTree::work_of_nearest(const Vector3f& query_m, std::size_t neighbou
     return search.work;
 }
 
-/// Compares coordinates only: squared distances below 1e-23 m are zero for different points.
+/// Compares coordinates, not distances: below 1e-23 m the squared distance of different points is
+/// zero.
 std::uint32_t KdTree::find_below(std::uint32_t node,
                                  const Vector3f& point_m,
                                  SearchWork& work) const {
@@ -313,8 +314,8 @@ class CylinderRegion {
   private:
     Vector3f middle_m_;
     Eigen::Matrix3f axes_;
-    Vector3f reach_m_;  ///< along the axes
-    Vector3f box_m_;    ///< along the axes of the box
+    Vector3f reach_m_;  ///< reach along each axis
+    Vector3f box_m_;    ///< reach along the axes of the box
     float slack_m_ = 0.0F;
 };
 

@@ -15,11 +15,11 @@ namespace surefoot::geometry {
 /// A point of a tree with its squared distance from the query.
 struct Neighbour {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t index = kNone;  ///< in `KdTree::points_m`
+    std::uint32_t index = kNone;  ///< index in `KdTree::points_m`
     float sq_distance_m2 = std::numeric_limits<float>::infinity();
 };
 
-/// How many nodes a search entered and how many points it compared.
+/// Number of nodes that a search entered, and number of points that it compared.
 struct SearchWork {
     std::size_t nodes = 0;
     std::size_t points = 0;
@@ -41,11 +41,11 @@ struct Cylinder {
 ///
 /// Equal points form one leaf of any size, so that a cloud of copies is not slower than others.
 ///
-/// No errors. Points must be finite, within `kFarthest_m` of zero along each axis, and fewer than
-/// 2^32 - 1.
+/// The points must be finite and within `kFarthest_m` of zero along each axis. Their number must be
+/// less than 2^32 - 1.
 class KdTree {
   public:
-    /// Squares of distances up to this one are finite as floats.
+    /// Distances up to this one [m] have finite squares as floats.
     static constexpr float kFarthest_m = 1e18F;
 
     explicit KdTree(std::vector<Eigen::Vector3f> points_m, Executor& executor = serial());
@@ -54,22 +54,22 @@ class KdTree {
     /// All points, in the order of the tree.
     [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const noexcept { return points_m_; }
 
-    /// The nearest point; `start` if no point is nearer. Also `start` if the query is so far away
-    /// that the squared distance is not a finite float. A near start (for example the result of the
-    /// previous query) makes the search short.
+    /// Returns the nearest point, or `start` if no point is nearer. Also returns `start` if the
+    /// query is so far away that the squared distance is not a finite float. A near start (for
+    /// example the result of the previous query) makes the search short.
     [[nodiscard]] Neighbour nearest(const Eigen::Vector3f& query_m, Neighbour start = {}) const;
-    /// Makes a `start` for `nearest`: point `index` as a neighbour of `query_m`.
+    /// Makes a `start` for `nearest` from point `index` and the query.
     [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
 
-    /// The nearest points, ascending. A query that is a point of the tree finds itself too. Returns
-    /// their number: `found.size()`, or the number of all points if smaller.
+    /// Finds the nearest points, in order of distance; a query that is a tree point finds itself.
+    /// Returns their number: `found.size()`, or the number of all points if that is smaller.
     std::size_t nearest(const Eigen::Vector3f& query_m, std::span<Neighbour> found) const;
 
     /// Index of a point with exactly these coordinates; `Neighbour::kNone` if none exists.
     [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
 
-    /// Nodes and points that a search for `neighbours` points, or `find`, visits. Tests use it:
-    /// unlike a time it does not depend on the computer.
+    /// Counts the nodes and points that a search for `neighbours` points, or `find`, visits. Tests
+    /// use these counts: unlike times, they do not depend on the computer.
     [[nodiscard]] SearchWork work_of_nearest(const Eigen::Vector3f& query_m,
                                              std::size_t neighbours) const;
     [[nodiscard]] SearchWork work_of_find(const Eigen::Vector3f& point_m) const;

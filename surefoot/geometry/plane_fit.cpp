@@ -9,7 +9,7 @@
 namespace surefoot::geometry {
 namespace {
 
-constexpr double kCollinearRatio = 1e-12;  // ratio of variances: a millionth in length
+constexpr double kCollinearRatio = 1e-12;  // ratio of variances; as a ratio of lengths a millionth
 
 /// `point_at(i)` returns point i, for i in [0, count).
 template <typename PointAt>

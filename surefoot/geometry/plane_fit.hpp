@@ -12,7 +12,7 @@ struct Plane {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
     double offset_m = 0.0;
 
-    /// Positive on the side that the normal points to.
+    /// Returns the distance from the plane: positive on the side to which the normal points.
     [[nodiscard]] double signed_distance_m(const Eigen::Vector3d& p) const {
         return normal.dot(p) + offset_m;
     }
@@ -30,12 +30,12 @@ struct PlaneFit {
     double rms_m = 0.0;           ///< scatter across the plane
     double narrow_sigma_m = 0.0;  ///< smaller scatter in the plane
     double wide_sigma_m = 0.0;    ///< larger scatter in the plane
-    int count = 0;                ///< finite points used
+    int count = 0;                ///< number of finite points used
 };
 
 /// Total least squares (smallest eigenvector of the covariance about the centroid). Ignores points
-/// that are not finite. nullopt for fewer than three points or for points on one line (scatter
-/// across the line below a millionth of that along it).
+/// that are not finite. Returns nullopt for fewer than three points or for points on one line
+/// (scatter across the line below a millionth of the scatter along it).
 [[nodiscard]] std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points);
 
 /// Fits a plane to the points at `indices`, with the rules of the function above.

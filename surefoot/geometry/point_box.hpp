@@ -14,7 +14,7 @@ struct PointBox {
     Eigen::Vector3f high_m = Eigen::Vector3f::Zero();
 };
 
-/// The bounding box of at least one point.
+/// Returns the bounding box of at least one point.
 [[nodiscard]] inline PointBox box_of(std::span<const Eigen::Vector3f> points_m) {
     SUREFOOT_ASSERT(!points_m.empty());
     PointBox box{points_m.front(), points_m.front()};

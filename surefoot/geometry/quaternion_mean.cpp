@@ -22,7 +22,7 @@ std::optional<Eigen::Quaterniond> quaternion_mean(std::span<const Eigen::Quatern
     if (!(total > 0.0) || !M.allFinite()) return std::nullopt;
 
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(M / total);
-    const Eigen::Vector4d& values = solver.eigenvalues();  // ascending, they sum to 1
+    const Eigen::Vector4d& values = solver.eigenvalues();  // in ascending order; their sum is 1
     constexpr double kMinGap = 1e-9;
     if (!(values[3] - values[2] > kMinGap)) return std::nullopt;
     Eigen::Quaterniond mean(Eigen::Vector4d(solver.eigenvectors().col(3)));

@@ -27,7 +27,7 @@ Admissible admissible(const RansacPlaneOptions& options) {
     return {options.cone->direction.normalized(), std::cos(options.cone->max_angle_rad)};
 }
 
-/// Plane through three points; nullopt if they are (nearly) on one line.
+/// Returns the plane through three points, or nullopt if the points are (nearly) on one line.
 std::optional<Plane> plane_through(const Eigen::Vector3d& a,
                                    const Eigen::Vector3d& b,
                                    const Eigen::Vector3d& c) {

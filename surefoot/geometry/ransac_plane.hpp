@@ -20,26 +20,26 @@ struct NormalCone {
 
 struct RansacPlaneOptions {
     double tolerance_m = 0.05;  ///< a point within this distance of the plane is an inlier
-    /// Tolerance per point, nearer inliers count more; empty = `tolerance_m` for all points.
+    /// Tolerance per point; nearer inliers count more. Empty = `tolerance_m` for all points.
     std::span<const double> tolerance_of_m;
-    double confidence = 0.9999;  ///< probability of one all-inlier triple; ends the search
+    double confidence = 0.9999;  ///< sought probability of a triple of inliers only
     int max_iterations = 1000;
-    /// Share of the points. The search also ends when it would have found a plane with that many.
+    /// The search also ends when it would have found a plane with this share of the points.
     double least_inlier_ratio = 0.0;
     int max_refinements = 8;  ///< largest number of refits on the inliers
     std::optional<NormalCone> cone;
 };
 
 struct RansacPlane {
-    PlaneFit fit;  ///< of the inliers; normal on the side of the cone's direction, else z >= 0
+    PlaneFit fit;  ///< fit to the inliers; normal on the side of the cone, or z >= 0 without cone
     std::vector<int> inliers;   ///< indices into the points, ascending
     double inlier_ratio = 0.0;  ///< share of the finite points
     int iterations = 0;         ///< number of triples drawn
 };
 
-/// The plane with the most inliers (Fischler and Bolles 1981), refitted to them by least squares.
-/// nullopt if no admissible triple was drawn or the refined plane leaves the cone. Deterministic
-/// for equal points, options and generator state. Points that are not finite are never inliers.
+/// Returns the plane with the most inliers (Fischler and Bolles 1981), refitted by least squares.
+/// Returns nullopt if no admissible triple was drawn or the refined plane leaves the cone.
+/// Deterministic for equal points, options and generator state. Only finite points can be inliers.
 [[nodiscard]] std::optional<RansacPlane> ransac_plane(std::span<const Eigen::Vector3d> points,
                                                       const RansacPlaneOptions& options,
                                                       Rng& rng);

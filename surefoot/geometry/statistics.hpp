@@ -9,8 +9,8 @@
 
 namespace surefoot {
 
-/// The median; of an even number of values the greater of the two in the middle. Reorders `values`,
-/// which must not be empty. O(n).
+/// Returns the median; for an even number of values, the greater of the two middle values. Reorders
+/// `values`, which must not be empty. O(n).
 template <typename T>
 [[nodiscard]] T upper_median_in_place(std::vector<T>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -18,15 +18,15 @@ template <typename T>
     return *middle;
 }
 
-/// The median of a copy, so that the caller's values keep their order.
+/// Returns the median of a copy, so that the caller's values keep their order.
 template <typename T>
 [[nodiscard]] T upper_median(std::vector<T> values) {
     return upper_median_in_place(values);
 }
 
-/// Standard deviation about `middle` that a few outliers do not change: 1.4826 times the median
-/// distance, which is right for normally distributed values. Replaces `values` by their distances;
-/// they must not be empty.
+/// Returns the standard deviation about `middle`; a few outliers do not change it. It is 1.4826
+/// times the median distance, which is right for a normal distribution. Replaces `values` by their
+/// distances. `values` must not be empty.
 template <typename T>
 [[nodiscard]] double robust_sigma_about(T middle, std::vector<T>& values) {
     constexpr double kSigmaPerMedian = 1.4826;

@@ -9,9 +9,9 @@
 
 namespace surefoot::geometry {
 
-/// Unit normal of the surface around `middle_m`: the direction in which the points of the ball are
-/// thinnest. It points up (z > 0); on a wall, along the larger of x and y. nullopt for fewer than
-/// three points, or for points on one line or at one position.
+/// Returns the unit normal of the surface around `middle_m`: the direction in which the points of
+/// the ball are thinnest. It points up (z > 0), on a wall along the larger of x and y. Returns
+/// nullopt for fewer than three points, or for points on one line or at one position.
 [[nodiscard]] std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
                                                             const Eigen::Vector3f& middle_m,
                                                             float radius_m);
@@ -19,11 +19,11 @@ namespace surefoot::geometry {
 /// A surface through a few points.
 struct LocalSurface {
     Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< result of `surface_normal`
-    float thickness_m = 0.0F;  ///< rms of the points across it: noise, or an edge
+    float thickness_m = 0.0F;  ///< rms of the points across the surface: noise, or an edge
 };
 
-/// The same, from the neighbours that a search found around `middle_m`. Other points at equal
-/// distance are ignored, so that the cost does not depend on the density of the cloud.
+/// Returns the surface through the neighbours that a search found around `middle_m`. Other points
+/// at equal distance are ignored, so that the cost does not depend on the density of the cloud.
 [[nodiscard]] std::optional<LocalSurface> surface_of_neighbours(const KdTree& cloud,
                                                                 const Eigen::Vector3f& middle_m,
                                                                 std::span<const Neighbour> near);

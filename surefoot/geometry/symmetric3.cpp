@@ -8,8 +8,8 @@
 namespace surefoot::geometry {
 namespace {
 
-constexpr int kMaxSweeps = 16;       // Jacobi converges quadratically: 4 to 6 are usual
-constexpr int kMaxNewtonSteps = 12;  // well separated roots need 2 to 6
+constexpr int kMaxSweeps = 16;       // Jacobi converges quadratically: 4 to 6 sweeps are usual
+constexpr int kMaxNewtonSteps = 12;  // well separated roots need 2 to 6 steps
 
 /// One Jacobi rotation that annihilates A(p, q) and updates the eigenvectors V.
 void rotate(Eigen::Matrix3d& A, Eigen::Matrix3d& V, int p, int q) noexcept {

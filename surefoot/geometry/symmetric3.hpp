@@ -17,25 +17,25 @@ struct Symmetric3 {
     [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
-/// All eigenvalues, ascending, with their unit eigenvectors as columns.
+/// All eigenvalues in ascending order, with their unit eigenvectors as columns.
 struct EigenSystem3 {
     Eigen::Vector3d values = Eigen::Vector3d::Zero();
     Eigen::Matrix3d vectors = Eigen::Matrix3d::Identity();
 };
 
 /// Cyclic Jacobi rotations (Golub and Van Loan, section 8.5): accurate for every finite matrix.
-/// Plain IEEE arithmetic, so the bits are the same on every machine.
+/// Uses plain IEEE arithmetic, so the bits are the same on every machine.
 [[nodiscard]] EigenSystem3 eigen_system(const Symmetric3& m) noexcept;
 
 /// The direction in which a cloud of points is thinnest.
 struct SmallestAxis {
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit; its sign is arbitrary
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit vector; its sign is arbitrary
     double smallest = 0.0;                                 ///< eigenvalue of `direction`
     double middle = 0.0;                                   ///< the next larger eigenvalue
 };
 
-/// Smallest eigenvector of a finite positive semi-definite matrix. Fast if well separated (surface
-/// patches), otherwise Jacobi. Direction error <= 1e-9 rad if the direction is unique.
+/// Returns the smallest eigenvector of a finite positive semi-definite matrix. Uses Jacobi only if
+/// it is not well separated. Direction error <= 1e-9 rad if the direction is unique.
 [[nodiscard]] SmallestAxis smallest_axis(const Symmetric3& m) noexcept;
 
 }  // namespace surefoot::geometry

@@ -17,7 +17,7 @@ struct CellRun {
     [[nodiscard]] std::int64_t cells() const noexcept {
         return std::max<std::int64_t>(end - first, 0);
     }
-    /// The part of the run inside the grid; without cells if it lies outside.
+    /// Returns the part of the run inside the grid. It has no cells if the run lies outside.
     [[nodiscard]] CellRun clipped(const GridGeometry& grid) const noexcept {
         if (iy < 0 || iy >= grid.ny) return {iy, first, first};
         const CellRun part{

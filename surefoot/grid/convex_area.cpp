@@ -8,10 +8,10 @@
 namespace surefoot::grid {
 namespace {
 
-/// Edges that rise less are skipped: their neighbours and corners cover them.
+/// Edges that rise less than this are skipped: neighbouring edges and corners cover them.
 constexpr double kLevel_cells = 1e-9;
 /// Largest gap between neighbouring pieces of the rim, from rounding (1e-10 at kMaxReach_cells) and
-/// skipped level edges. Far below a sliver.
+/// skipped level edges. It is far smaller than kSliver_cells.
 constexpr double kSlack_cells = 1e-7;
 static_assert(kSlack_cells > ConvexArea::kMaxPoints * kLevel_cells);
 
@@ -32,7 +32,7 @@ struct Cells {
     std::int64_t end = 0;
 };
 
-/// The cells that [low, high] overlaps by more than a sliver; at least one.
+/// Returns the cells that [low, high] overlaps by more than a sliver; at least one cell.
 Cells cells_between(double low, double high) noexcept {
     const double middle = 0.5 * (low + high);
     return {floor_of(std::min(low + ConvexArea::kSliver_cells, middle)),
@@ -53,7 +53,7 @@ ConvexArea::ConvexArea(std::span<const Eigen::Vector2d> points_m,
     for (int i = 0; i < count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         points[k] = (points_m[k] - geometry.origin_m) / geometry.resolution_m;
-        // This form also rejects NaN.
+        // The comparison with ! also rejects NaN.
         if (!(points[k].cwiseAbs().maxCoeff() + radius_ <= kMaxReach_cells)) return;
         if (!points[k].allFinite()) return;
     }
@@ -120,8 +120,8 @@ void ConvexArea::take_rows() noexcept {
     end_row_ = rows.end;
 }
 
-/// Reach of the area at y, to the right (side = 1) or to the left (-1). This is the farthest point
-/// at that y of an edge or of a circle around a corner.
+/// Returns the reach of the area at y, to the right (side = 1) or to the left (-1): the farthest
+/// point at that y on an edge or on a circle around a corner.
 double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) const noexcept {
     double farthest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < count; ++i) {
@@ -143,7 +143,8 @@ double ConvexArea::rim_x(const Edge* edges, int count, double side, double y) co
 }
 
 CellRun ConvexArea::row(std::int64_t iy) const noexcept {
-    // The rim is convex: within the row it reaches farthest at the y nearest to the extreme point.
+    // The rim is convex. So within the row the rim reaches farthest at the y nearest to the extreme
+    // point.
     const auto low = static_cast<double>(iy);
     const double left_y = std::clamp(leftmost_y_, low, low + 1.0);
     const double right_y = std::clamp(rightmost_y_, low, low + 1.0);

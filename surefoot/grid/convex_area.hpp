@@ -15,14 +15,14 @@ namespace surefoot::grid {
 /// on all sides: one point gives a circle, two a swept circle, more a rounded polygon. The cells of
 /// a row form one run, because the area is convex.
 ///
-/// A cell counts if it overlaps by at least `kSliver_cells` in x and in y. Less is rounding: it
-/// would decide whether a foot that ends on a cell border covers one more row. Uses doubles, for
-/// reports and pictures only; the gate decides with fixed_polygon.hpp.
+/// A cell counts if it overlaps by at least `kSliver_cells` in x and in y. Otherwise rounding would
+/// decide whether a foot that ends on a cell border covers one more row. Uses doubles, for reports
+/// and pictures only; the gate decides with fixed_polygon.hpp.
 class ConvexArea {
   public:
     static constexpr int kMaxPoints = 32;
     static constexpr double kSliver_cells = 1e-5;
-    /// Largest distance from the grid's origin, so that counting cells has no rounding.
+    /// Largest distance from the grid's origin at which cells are counted without rounding.
     static constexpr double kMaxReach_cells = 1 << 20;
 
     /// The area is empty (no rows) without points, with more than kMaxPoints or with a negative
@@ -34,12 +34,12 @@ class ConvexArea {
     [[nodiscard]] bool empty() const noexcept { return first_row_ >= end_row_; }
     [[nodiscard]] std::int64_t first_row() const noexcept { return first_row_; }
     [[nodiscard]] std::int64_t end_row() const noexcept { return end_row_; }
-    /// Overlapped cells of a row in [first_row, end_row), at least one. The run may extend beyond
-    /// the grid. Cost: proportional to the number of points.
+    /// Returns the overlapped cells of a row in [first_row, end_row): at least one cell. The run
+    /// may extend beyond the grid. Cost: proportional to the number of points.
     [[nodiscard]] CellRun row(std::int64_t iy) const noexcept;
 
   private:
-    /// A straight piece of the rim, outward by the radius: x as a function of y, in cells.
+    /// An edge of the hull, moved outward by the radius: x as a function of y [cells].
     struct Edge {
         double low = 0.0;
         double high = 0.0;
@@ -54,7 +54,7 @@ class ConvexArea {
     void take_rows() noexcept;
     [[nodiscard]] double rim_x(const Edge* edges, int count, double side, double y) const noexcept;
 
-    std::array<Eigen::Vector2d, kMaxPoints> hull_;  ///< counter-clockwise [cells]
+    std::array<Eigen::Vector2d, kMaxPoints> hull_;  ///< corners, counter-clockwise [cells]
     std::array<Edge, kMaxPoints> right_;            ///< edges that go up
     std::array<Edge, kMaxPoints> left_;             ///< edges that go down
     int hull_count_ = 0;

@@ -80,10 +80,10 @@ struct FixedRun {
     }
 };
 
-/// Cells of row `iy`, limited to `within`, whose open square overlaps the open polygon (separating
-/// axes; touching along an edge does not count). They form one run, because the polygon is convex.
-/// Exact; costs one division per edge that is not parallel to the row. `relative` counts from the
-/// grid's origin and has an area; row and cells lie within its bounds.
+/// Returns the cells of row `iy`, limited to `within`, whose open square overlaps the open polygon
+/// (separating axes; touching an edge does not count). They form one run, because the polygon is
+/// convex. Exact; costs one division per edge that is not parallel to the row. `relative` is
+/// relative to the grid's origin and has an area; row and cells lie within its bounds.
 [[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
                                              std::int64_t side,
                                              std::int64_t iy,
@@ -109,7 +109,7 @@ struct FixedRun {
     return within;
 }
 
-/// A polygon as runs of cells, exact integers. A polygon without area has no rows.
+/// A polygon as runs of cells, in exact integers. A polygon without area has no rows.
 class RowRuns {
   public:
     RowRuns() = default;
@@ -128,7 +128,7 @@ class RowRuns {
         rows_ = {floor_div(low.y, side_), floor_div(high.y - 1, side_)};
     }
     [[nodiscard]] FixedRun rows() const noexcept { return rows_; }
-    /// Cells of row `iy` whose interior overlaps the polygon. Every `iy` is valid.
+    /// Returns the cells of row `iy` whose interior overlaps the polygon. Every `iy` is valid.
     [[nodiscard]] FixedRun run(std::int64_t iy) const noexcept {
         if (iy < rows_.first || iy > rows_.last) return {};
         return overlapped_run(relative_, side_, iy, columns_);

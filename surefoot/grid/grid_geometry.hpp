@@ -33,7 +33,7 @@ struct GridGeometry {
     [[nodiscard]] bool contains(Cell cell) const noexcept {
         return cell.ix >= 0 && cell.iy >= 0 && cell.ix < nx && cell.iy < ny;
     }
-    /// The cell of a point; nullopt outside the grid and for NaN.
+    /// Returns the cell of a point, or nullopt outside the grid and for NaN.
     [[nodiscard]] std::optional<Cell> cell_at(double x_m, double y_m) const noexcept {
         const double ix = std::floor((x_m - origin_m.x()) / resolution_m);
         const double iy = std::floor((y_m - origin_m.y()) / resolution_m);

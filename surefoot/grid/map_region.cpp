@@ -42,20 +42,21 @@ std::optional<std::string> problem_of_known(const MapRegion& r, std::size_t i) {
     const auto is_height = [](float z_m) { return z_m >= -kHighest_m && z_m <= kHighest_m; };
     if (!is_height(height_m)) return fault("elevation", height_m, "it must be -1e6 to 1e6 m");
     if (!(std::isfinite(var_m2) && var_m2 > 0.0F))
-        return fault("variance", var_m2, "it must be positive");
+        return fault("variance", var_m2, "it must be finite and above 0 m2");
     if (!(std::isfinite(drift_m) && drift_m >= 0.0F))
-        return fault("drift", drift_m, "it must be 0 or more");
+        return fault("drift", drift_m, "it must be finite and 0 m or more");
     if (!is_height(highest_m)) return fault("highest", highest_m, "it must be -1e6 to 1e6 m");
-    // Not compared with `highest`: both are robust values, and with few points the lowest may
-    // exceed the highest.
+    // `lowest` is not compared with `highest`: both are robust values, and with few points the
+    // lowest may exceed the highest.
     if (!is_height(lowest_m)) return fault("lowest", lowest_m, "it must be -1e6 to 1e6 m");
     if (!(std::isnan(clearance_m) || is_height(clearance_m)))
         return fault("clearance", clearance_m, "it must be -1e6 to 1e6 m");
     if (!(confidence >= 0.0F && confidence <= 1.0F))
         return fault("confidence", confidence, "it must be 0 to 1");
     if (!absent_or_not_negative(density))
-        return fault("density_ratio", density, "it must be 0 or more and finite");
-    if (r.count.data()[i] == 0) return "count 0, although its height is known";
+        return fault("density_ratio", density, "it must be finite and 0 or more");
+    if (r.count.data()[i] == 0)
+        return "count 0, although its height is known; it must be 1 or more";
     return std::nullopt;
 }
 
@@ -66,14 +67,18 @@ std::optional<std::string> problem_of_unknown(const MapRegion& r, std::size_t i)
         // NaN is not equal to itself, so `unknown == unknown` is false for NaN.
         const bool is_unknown = unknown == unknown ? value == unknown : value != value;
         if (!is_unknown && !problem)
-            problem = fmt::format("{} {} where the height is unknown", layer.name, value);
+            problem = fmt::format(
+                "{} {} where the height is unknown; a cell without a height must have no other "
+                "value",
+                layer.name,
+                value);
     });
     return problem;
 }
 
 std::optional<std::string> problem_of_head(const MapRegion& r) {
     if (!(r.resolution_m >= kFinest_m && r.resolution_m <= kCoarsest_m)) {
-        return fmt::format("cells of {:g} m; a cell must be {:g} to {:g} m",
+        return fmt::format("the map has cells of {:g} m; a cell must be {:g} to {:g} m wide",
                            r.resolution_m,
                            kFinest_m,
                            kCoarsest_m);
@@ -82,7 +87,7 @@ std::optional<std::string> problem_of_head(const MapRegion& r) {
     if (r.frame.empty() || r.frame.size() > kMaxFrameName ||
         !std::all_of(r.frame.begin(), r.frame.end(), printable)) {
         return fmt::format(
-            "the name of its frame must be 1 to {} printable characters without blanks",
+            "the name of the map's frame must be 1 to {} printable characters without blanks",
             kMaxFrameName);
     }
     if (!r.T_frame_body.all_finite() ||
@@ -98,11 +103,13 @@ std::optional<std::string> problem_of_head(const MapRegion& r) {
 std::optional<std::string> LatticeBox::problem() const {
     if (nx < 1 || ny < 1 || nx > kMaxRegionSide || ny > kMaxRegionSide ||
         std::int64_t{nx} * ny > kMaxRegionCells) {
-        return fmt::format("{} x {} cells; a side must have 1 to {} cells and a region at most {}",
-                           nx,
-                           ny,
-                           kMaxRegionSide,
-                           kMaxRegionCells);
+        return fmt::format(
+            "the region has {} x {} cells; a side must have 1 to {} cells and a region at most {} "
+            "cells",
+            nx,
+            ny,
+            kMaxRegionSide,
+            kMaxRegionCells);
     }
     const auto is_near = [](std::int64_t index) {
         return index >= -kMaxLatticeIndex && index <= kMaxLatticeIndex;
@@ -161,8 +168,10 @@ std::optional<std::string> MapRegion::problem() const {
     for_each_layer([&](const RegionLayer& layer, auto member, auto) {
         const auto& values = this->*member;
         if (values.width() != box.nx || values.height() != box.ny)
-            wrong_size =
-                fmt::format("layer {} does not have {} x {} cells", layer.name, box.nx, box.ny);
+            wrong_size = fmt::format("layer {} does not have {} x {} cells, the size of the region",
+                                     layer.name,
+                                     box.nx,
+                                     box.ny);
     });
     if (wrong_size) return wrong_size;
     for (std::size_t i = 0; i < height_m.size(); ++i) {
@@ -178,7 +187,8 @@ std::optional<std::string> MapRegion::problem() const {
 MapRegion cut(MapRegion region, const LatticeBox& box) {
     SUREFOOT_ASSERT(!box.problem());
     const LatticeBox& had = region.box;
-    const std::int64_t dx = box.first_ix - had.first_ix;  // column of `region` at new column 0
+    // column of `region` that becomes column 0
+    const std::int64_t dx = box.first_ix - had.first_ix;
     const std::int64_t dy = box.first_iy - had.first_iy;
     const std::int64_t begin_ix = std::clamp<std::int64_t>(-dx, 0, box.nx);
     const std::int64_t end_ix = std::clamp<std::int64_t>(had.nx - dx, begin_ix, box.nx);

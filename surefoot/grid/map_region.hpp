@@ -22,7 +22,7 @@ struct LatticeBox {
     int nx = 0;
     int ny = 0;
 
-    /// Problem of the box, or nullopt: its sides, number of cells, or distance from the origin.
+    /// Returns what is wrong (sides, number of cells, distance from the origin), or nullopt.
     [[nodiscard]] std::optional<std::string> problem() const;
     friend bool operator==(const LatticeBox&, const LatticeBox&) = default;
 };
@@ -35,9 +35,9 @@ inline constexpr std::int64_t kMaxLatticeIndex = std::int64_t{1} << 40;
 /// Longest name of a frame [bytes].
 inline constexpr std::size_t kMaxFrameName = 31;
 
-/// The box of a geometry whose cells lie on the lattice.
+/// Returns the box of a geometry whose cells lie on the lattice.
 [[nodiscard]] LatticeBox box_of(const GridGeometry& geometry);
-/// The smallest box around both boxes. It may exceed the limits of a region.
+/// Returns the smallest box around both boxes. This box may exceed the limits of a region.
 [[nodiscard]] LatticeBox united(const LatticeBox& a, const LatticeBox& b);
 
 /// A piece of an elevation map that can be stored, sent and merged: the knowledge about the ground
@@ -55,7 +55,7 @@ struct MapRegion {
     /// two frames are the same only if name and time agree.
     std::int64_t frame_since_ns = 0;
     std::int64_t stamp_ns = 0;
-    Pose T_frame_body;  ///< base_link at `stamp_ns`
+    Pose T_frame_body;  ///< pose of base_link at `stamp_ns`
     std::uint64_t config_hash = 0;
 
     Image<float> height_m;
@@ -71,7 +71,7 @@ struct MapRegion {
 
     [[nodiscard]] GridGeometry geometry() const;
     [[nodiscard]] std::int64_t known_cells() const noexcept;
-    /// First problem of the region, with the cell and the value; nullopt if it is valid.
+    /// Returns the first problem of the region, with the cell and the value, or nullopt.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
@@ -81,8 +81,8 @@ struct RegionLayer {
     const char* unit;  ///< empty = a pure number
 };
 
-/// Calls visit(RegionLayer, member, value of unknown cells) for every layer: the only list of
-/// layers. A member is a pointer to a member of MapRegion.
+/// Calls visit(RegionLayer, member, value of unknown cells) for every layer. This is the only list
+/// of the layers. A member is a pointer to a member of MapRegion.
 template <typename Visit>
 void for_each_layer(const Visit& visit) {
     using R = MapRegion;
@@ -98,8 +98,8 @@ void for_each_layer(const Visit& visit) {
     visit(RegionLayer{"density_ratio", ""}, &R::density_ratio, kNanF);
 }
 
-/// The region, cut or extended to another box; cells outside `region` are unknown. `box.problem()`
-/// must be empty.
+/// Returns the region, cut or extended to another box. Cells outside `region` are unknown.
+/// `box.problem()` must be empty.
 [[nodiscard]] MapRegion cut(MapRegion region, const LatticeBox& box);
 
 /// Makes cell iy * nx + ix unknown.

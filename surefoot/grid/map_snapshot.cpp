@@ -25,7 +25,7 @@ std::uint64_t word_at(const unsigned char* bytes) noexcept {
 }
 
 /// Hashes `count` elements from `first`. Four independent chains keep the multiplier busy: a single
-/// chain waits for every product. Plain variables, because the compiler would keep an array of
+/// chain waits for every product. Uses plain variables, because the compiler would keep an array of
 /// lanes in memory.
 template <typename Layer>
 std::uint64_t add_part(std::uint64_t hash,
@@ -56,7 +56,8 @@ std::uint64_t add_whole(std::uint64_t hash, const Layer& layer) noexcept {
 
 std::uint64_t block_checksum(const MapSnapshot& s, std::size_t block) noexcept {
     constexpr std::size_t kCells = MapSnapshot::kBlockCells;
-    static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0, "whole words of the narrowest layer");
+    static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0,
+                  "a block must consist of whole words of the narrowest layer");
     std::uint64_t hash = step(kOffsetBasis, block);
     for_each_snapshot_layer(s, [&hash, first = block * kCells](const auto& layer) {
         hash = add_part(hash, layer, first, kCells);
@@ -91,11 +92,10 @@ std::uint64_t top_checksum(const MapSnapshot& s) noexcept {
 }
 
 bool has_sound_header(const MapSnapshot& s) noexcept {
-    // The rules of the gate are valid for cells of 5 mm to 0.2 m. 96 100 km: up to here no product
-    // of quantised coordinates overflows.
+    // The rules of the gate are valid for cells of 5 mm to 0.2 m.
     constexpr std::int32_t kFinestTenthMm = 50;
     constexpr std::int32_t kCoarsestTenthMm = 2000;
-    // 100 km: what quantised coordinates may reach without any product overflowing.
+    // Within 100 km no product of quantised coordinates overflows.
     constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
     const auto near = [](std::int64_t value) {
         return value >= -kFarthestTenthMm && value <= kFarthestTenthMm;

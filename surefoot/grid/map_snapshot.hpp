@@ -77,7 +77,7 @@ struct MapSnapshot {
     /// [1e-6 rad], rounded up. kUnknownTilt makes the gate answer ERROR.
     std::uint32_t tilt_sigma_urad = kUnknownTilt;
 
-    /// Measured: ground height. Unknown: height of rays over the cell; its ground lies lower.
+    /// Measured cell: ground height. Unknown cell: height of rays over it; its ground lies lower.
     /// kUnknownHeight = no information.
     std::array<std::int32_t, kMaxCells> height_tenth_mm{};
     std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated
@@ -87,9 +87,9 @@ struct MapSnapshot {
         clearance_tenth_mm{};                          ///< free height above; kNoCeiling = open
     std::array<std::uint16_t, kMaxCells> component{};  ///< label of the connected surface, 0 = none
     std::array<std::uint8_t, kMaxCells>
-        drop_evidence{};  ///< 0..255, 255 = a ray proved a drop here
+        drop_evidence{};  ///< 0 to 255; 255 = a ray proved a drop here
     std::array<EvidenceSource, kMaxCells> source{};
-    /// Nearest to the body first. The cells are valid without the edges: a drop that was not
+    /// Edges, nearest to the body first. The cells are valid without the edges: a drop that was not
     /// detected as a line is still a drop in the cells.
     std::array<SnapshotEdge, kMaxEdges> edges{};
 
@@ -109,14 +109,14 @@ static_assert(std::is_trivially_copyable_v<MapSnapshot>);
 /// at the end. Each step is a bijection of its lane, so every single changed word is detected. The
 /// 0.9 MB of a whole map take some tens of microseconds.
 void seal(MapSnapshot& snapshot) noexcept;
-/// True if magic, layout, size, finite pose and the checksum of header, edges and blocks are right.
-/// Does not read the cells.
+/// True if magic, layout, size, finite pose and the checksum of header, edges and blocks are
+/// correct. Does not read the cells.
 [[nodiscard]] bool is_sealed(const MapSnapshot& snapshot) noexcept;
 /// True if the cells of these rows, limited to the map, are unchanged. Requires is_sealed().
 [[nodiscard]] bool are_rows_intact(const MapSnapshot& snapshot,
                                    std::int64_t first_row,
                                    std::int64_t last_row) noexcept;
-/// True if the snapshot is sealed and all cells are unchanged: it may be used.
+/// True if the snapshot is sealed and all cells are unchanged: then it may be used.
 [[nodiscard]] bool is_intact(const MapSnapshot& snapshot) noexcept;
 
 }  // namespace surefoot::grid

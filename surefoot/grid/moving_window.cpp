@@ -31,8 +31,8 @@ Shift MovingWindow::center_on(double x_m, double y_m) {
 }
 
 void MovingWindow::update_origin() {
-    // Computed from the lattice index, never summed up: the origin must not depend on the path of
-    // the window.
+    // Computes the origin from the lattice index, not as a sum of shifts: the origin must not
+    // depend on the path of the window.
     geometry_.origin_m = {static_cast<double>(first_ix_) * geometry_.resolution_m,
                           static_cast<double>(first_iy_) * geometry_.resolution_m};
 }

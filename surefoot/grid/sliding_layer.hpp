@@ -17,7 +17,7 @@ namespace surefoot::grid {
 /// the cells that come into view.
 ///
 /// The rows are consecutive in a larger block of memory. Cell (ix + dx, iy + dy) lies dy rows and
-/// dx cells behind cell (ix, iy), so a shift only moves the start by dy * nx + dx. It then
+/// dx cells after cell (ix, iy), so a shift only moves the start by dy * nx + dx. The shift then
 /// overwrites the cells that come into view. At the end of the block (after a motion of half the
 /// window length) all cells are copied back to the middle.
 template <typename T>
@@ -48,7 +48,7 @@ class SlidingLayer {
     [[nodiscard]] ImageView<T> view() noexcept { return {data(), nx_, ny_, nx_}; }
     [[nodiscard]] ImageView<const T> view() const noexcept { return {data(), nx_, ny_, nx_}; }
 
-    /// A copy, for files and pictures. Not a conversion: a reference to an image would bind to it.
+    /// Copies the layer for files and pictures. No conversion: an image reference could bind to it.
     [[nodiscard]] Image<T> copy() const {
         Image<T> image(nx_, ny_);
         std::memcpy(image.data(), data(), size() * sizeof(T));
@@ -57,7 +57,7 @@ class SlidingLayer {
 
     void fill(T value) { std::fill_n(data(), size(), value); }
 
-    /// Moves the content with the window; cells that come into view get `value`.
+    /// Moves the content with the window. Cells that come into view get `value`.
     void shift(Shift shift, T value) {
         if (shift.is_zero()) return;
         if (!keeps_any(shift)) {
@@ -74,8 +74,8 @@ class SlidingLayer {
         const int first_kept_iy = shift.dy > 0 ? 0 : -shift.dy;
         fill_columns(row(first_kept_iy) + first_new_ix, std::abs(shift.dx), kept_rows, value);
     }
-    /// Like shift, but cells that come into view keep arbitrary values: for layers that write them
-    /// before reading. Copies cells only at the end of the memory block.
+    /// Like shift, but cells that come into view keep arbitrary values. Use it for layers that
+    /// write these cells before they read them. Copies cells only at the end of the memory block.
     void slide(Shift shift) {
         if (keeps_any(shift)) move_begin(static_cast<std::ptrdiff_t>(shift.dy) * nx_ + shift.dx);
     }

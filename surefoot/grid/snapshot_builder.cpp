@@ -30,8 +30,8 @@ std::int32_t tenth_mm_up(double length_m) {
     return static_cast<std::int32_t>(std::ceil(length_m * kTenthMmPerM));  // in range: at most 10^7
 }
 
-/// A value from 0, rounded up. NaN and too large values become the largest value, which marks them
-/// as bad.
+/// Rounds a length up to 0.1 mm. NaN, negative and too large lengths become the largest value,
+/// which marks them as bad.
 std::uint16_t saturated_up(double length_m) {
     const double scaled = std::ceil(length_m * kTenthMmPerM);
     if (!(scaled >= 0.0 && scaled < 65535.0)) return 0xffff;
@@ -78,9 +78,10 @@ Status check(const SnapshotInput& input) {
     const auto refuse = [](const std::string& why) {
         return Status(usage_error("map snapshot: " + why));
     };
-    if (g.nx < 1 || g.ny < 1) return refuse("the map has no cells");
+    if (g.nx < 1 || g.ny < 1)
+        return refuse("the map has no cells; its width and height must be at least 1 cell");
     if (!(g.resolution_m >= 0.005 && g.resolution_m <= 0.2))
-        return refuse("cells of " + std::to_string(g.resolution_m) +
+        return refuse("the map has cells of " + std::to_string(g.resolution_m) +
                       " m; the gate needs 0.005 to 0.2 m: change elevation.resolution_m");
     const double cells = g.resolution_m * kTenthMmPerM;
     if (std::abs(cells - std::round(cells)) > 1e-6)
@@ -90,7 +91,8 @@ Status check(const SnapshotInput& input) {
         !input.T_odom_body.all_finite() ||
         input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > kFarthestM)
         return refuse(
-            "the pose or the map is not finite or farther than 100 km from the origin of odom");
+            "the pose or the origin of the map is not finite, or is farther than 100 km from the "
+            "origin of odom");
     for (const auto& [name, length_m] : {std::pair{"connect_step_m", input.connect_step_m},
                                          std::pair{"drop_step_m", input.drop_step_m},
                                          std::pair{"drop_reach_m", input.drop_reach_m}}) {
@@ -99,7 +101,7 @@ Status check(const SnapshotInput& input) {
                           " m; it must be 0 to 1000 m");
     }
     if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
-        return refuse("height and variance must have the size of the map");
+        return refuse("the layers of height and variance must have the size of the map");
     for (const auto& layer :
          {input.drift_m, input.clearance_m, input.free_above_m, input.drop_evidence}) {
         if (!layer.empty() && !has_size(layer, g))
@@ -179,8 +181,8 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
     if (!input.clearance_m.empty()) {
         const double clearance_m = value(input.clearance_m);
-        // NaN = no obstacle above was observed. A negative clearance is damaged: treat it as no
-        // room.
+        // NaN = no obstacle above was observed. A negative clearance is damaged data and becomes 0:
+        // no room.
         const double scaled = std::floor(std::max(clearance_m, 0.0) * kTenthMmPerM);
         if (!std::isnan(clearance_m) && scaled < 65535.0)
             out.clearance_tenth_mm[at] =
@@ -207,13 +209,13 @@ bool is_sound(const SnapshotInput::Edge& edge) {
            edge.across_sigma_m <= kHighestM;
 }
 
-/// Writes the nearest edges, nearest first. Leaves out damaged numbers.
+/// Writes the nearest edges, nearest first. Leaves out edges with damaged numbers.
 void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     std::vector<std::pair<double, const SnapshotInput::Edge*>> sorted;
     const Eigen::Vector2d body_m = input.T_odom_body.translation_m.head<2>();
     for (const SnapshotInput::Edge& edge : input.edges)
         if (is_sound(edge)) sorted.emplace_back(distance_m(edge, body_m), &edge);
-    std::sort(sorted.begin(), sorted.end());  // equal distances: in order of the input
+    std::sort(sorted.begin(), sorted.end());  // keeps the input order of equal distances
     const std::size_t count =
         std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
     out.edge_count = static_cast<std::int32_t>(count);
@@ -246,7 +248,7 @@ class Labeller {
         const int count = map_.nx * map_.ny;
         for (int at = 0; at < count; ++at) {
             if (!is_free(at)) continue;
-            if (++label > 0xffff) return;  // other cells keep kNoComponent, which inhibits
+            if (++label > 0xffff) return;  // the gate refuses all other cells (kNoComponent)
             fill(at, static_cast<std::uint16_t>(label));
         }
     }

@@ -15,7 +15,7 @@ namespace surefoot::grid {
 
 /// Map data for a snapshot. All layers have the size of `geometry`; NaN = unknown.
 struct SnapshotInput {
-    GridGeometry geometry;  ///< in odom; the resolution must be a whole number of 0.1 mm
+    GridGeometry geometry;  ///< in the frame odom; the cell side is a whole number of 0.1 mm
     ImageView<const float> height_m;
     ImageView<const float> variance_m2;  ///< variance of the height
     /// 1-sigma horizontal drift of the pose since the last observation of the cell. Without this
@@ -66,11 +66,11 @@ struct SnapshotInput {
 /// This function computes two layers:
 /// - `component`: connected known cells (4 neighbours, heights within `connect_step_m`), numbered
 ///   from 1 in the order of their first cell. Surfaces beyond 65535 get no number.
-/// - `drop_evidence`: 255 on the *upper* cell of a measured drop. For each measured cell, the next
-///   measured cell along its row and column is compared, across at most `drop_reach_m` of occluded
-///   region; rays that passed over occluded cells count too. The cell is an upper cell if one of
-///   them lies lower by more than `drop_step_m`. The evidence belongs to the upper cell, because
-///   the lower ground is no drop when one stands there: for example the floor beside a table.
+/// - `drop_evidence`: 255 on the *upper* cell of a measured drop. Each measured cell is compared
+///   with the next measured cell along its row and column, across at most `drop_reach_m` of
+///   occluded region, and with rays that passed over occluded cells. The cell is an upper cell if
+///   such a cell or ray lies lower by more than `drop_step_m`. The lower cell gets no evidence: for
+///   a machine that stands on it, the lower ground is no drop (the floor beside a table).
 [[nodiscard]] Status build_snapshot(const SnapshotInput& input, MapSnapshot& out);
 
 }  // namespace surefoot::grid

@@ -6,9 +6,9 @@
 
 namespace surefoot::grid {
 
-/// Variance of the heights against the vertical: the variance of each cell plus that of a tilted z
-/// axis, (tilt sigma times the horizontal distance from the origin of odom)^2. A tilt does not
-/// change the heights at the origin, where odom was placed on the ground.
+/// Returns the variance of the heights against the vertical: the variance of each cell plus that of
+/// a tilted z axis, (tilt sigma times horizontal distance from the origin of odom)^2. A tilt does
+/// not change the heights at the origin, where odom was placed on the ground.
 ///
 /// `tilt_sigma_rad`: one sigma about any horizontal axis. If it is not finite, the tilt is unknown
 /// and all known variances become infinite. NaN stays NaN.

@@ -8,16 +8,16 @@
 
 namespace surefoot::grid {
 
-/// More cells than the side of any map has; sums of a few such numbers still fit an int.
+/// Larger than the side of any map; sums of a few such numbers still fit an int.
 inline constexpr int kMostCells = 1 << 24;
 
-/// The integer part of a number of cells, limited to +-kMostCells. NaN gives 0.
+/// Returns the integer part of a number of cells, limited to +-kMostCells. NaN gives 0.
 [[nodiscard]] inline int whole_cells(double cells) noexcept {
     return clamped_integer<int>(cells, -kMostCells, kMostCells);
 }
 
-/// A distance as the nearest number of cells; halves round away from zero. Limited to 2^30 cells,
-/// which is enough to empty every window.
+/// Returns a distance as the nearest number of cells; halves round away from zero. Limited to 2^30
+/// cells, which is enough to empty every window.
 [[nodiscard]] inline int nearest_cells(double way_m, double resolution_m) noexcept {
     constexpr int kMaxShiftCells = 1 << 30;
     return std::clamp(

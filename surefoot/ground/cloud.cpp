@@ -9,8 +9,8 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr double kSearchSigmas = 3.0;        ///< a point this far off may be on the plane ...
-constexpr double kLeastTolerance_m = 0.005;  ///< ... and a point this near always is
+constexpr double kSearchSigmas = 3.0;        ///< a point may be off a plane by so many sigmas
+constexpr double kLeastTolerance_m = 0.005;  ///< smallest tolerance of a point, whatever its sigma
 
 }  // namespace
 

@@ -13,10 +13,10 @@ namespace surefoot::ground {
 /// Points relative to the sensor.
 struct Cloud {
     std::vector<Eigen::Vector3d> points;
-    std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;                 ///< per point (see `judge_noise`), or empty
-    double band_m = 0.0;                             ///< points farther off a plane are not on it
-    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is asked for
+    std::vector<double> inverse_range_sigma;  ///< see FramePoints; empty = not known
+    std::vector<double> tolerance_m;          ///< one per point (see `judge_noise`), or empty
+    double band_m = 0.0;                      ///< a point farther from a plane is not on it
+    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is wanted
 
     [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
 
@@ -37,7 +37,7 @@ struct Cloud {
     }
 };
 
-/// The chosen points relative to `sensor`, with their sigmas if there are any.
+/// Returns the chosen points relative to `sensor`, with their sigmas if there are any.
 [[nodiscard]] Cloud cloud_of(std::span<const Eigen::Vector3d> points,
                              std::span<const double> inverse_range_sigma,
                              const Eigen::Vector3d& sensor,

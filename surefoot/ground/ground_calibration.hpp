@@ -11,12 +11,12 @@
 
 namespace surefoot::ground {
 
-/// Whether the average is accepted, and if not, why.
+/// Result of the calibration: accepted, or the reason why not.
 enum class CalibrationReason : std::uint8_t {
     accepted,
     no_observation,  ///< no accepted observation yet
     too_few,         ///< fewer accepted observations than must agree
-    disagreement,    ///< too few of them agree, or not the majority
+    disagreement,    ///< too few observations agree, or only a minority
 };
 [[nodiscard]] const char* to_string(CalibrationReason reason) noexcept;
 
@@ -26,13 +26,13 @@ struct GroundAlignment {
     bool accepted = false;
     CalibrationReason reason = CalibrationReason::no_observation;
     int agreeing = 0;  ///< number of observations averaged
-    int rejected = 0;  ///< observations in the window that disagree with them
+    int rejected = 0;  ///< observations in the window that disagree with the average
     Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();  ///< unit, up
     double tilt_rad = 0.0;  ///< angle between the normal and the body's z axis
     double height_m = 0.0;  ///< height of the body's origin above the plane
-    /// Of `normal_body` and `height_m`: the mean uncertainty of the observations plus their
-    /// scatter. More observations do not reduce it, because errors of calibration and matching are
-    /// the same in all images of one place.
+    /// Uncertainty of `normal_body` and `height_m`: the mean of the observations' uncertainty plus
+    /// their scatter. More observations do not reduce it, because errors of calibration and
+    /// matching are the same in all images from one position.
     PlaneUncertainty uncertainty;
     /// Frame "ground": z along the normal, origin at the foot of the perpendicular from the body's
     /// origin, rotated from the body by the tilt only (no yaw).
@@ -44,14 +44,14 @@ struct GroundAlignment {
 [[nodiscard]] Eigen::Quaterniond tilt_rotation(const Eigen::Vector3d& normal_body);
 
 /// Averages the last observations of the ground: tilt after Markley et al. 2007, height as the
-/// mean. A single observation that disagrees (over-exposed image, table top) is left out; the
-/// agreeing ones must be the majority. Add every observation: the window moves on, so `alignment`
-/// shows at any time whether the mounting is still correct.
+/// mean. A single observation that disagrees (over-exposed image, table top) is left out. The
+/// agreeing observations must be the majority. Add every observation: the window moves on, so
+/// `alignment` shows at any time whether the mounting is still correct.
 class GroundCalibration {
   public:
     explicit GroundCalibration(const GroundConfig& config) : config_(config) {}
 
-    /// Adds an observation; ignores those that are not accepted.
+    /// Adds an observation; ignores it if it is not accepted.
     void add(const GroundSighting& sighting_body);
     void clear() { window_.clear(); }
     [[nodiscard]] GroundAlignment alignment() const;

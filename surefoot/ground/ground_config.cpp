@@ -8,14 +8,16 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    voxel_m,
                    0.001,
                    1.0,
-                   "side length of the cubes of which one point each is used in the ground search");
+                   "side length of the cubes that thin out the points: the ground search uses one "
+                   "point per cube");
     visitor.integer(
         "max_points", max_points, 50, 1000000, "largest number of points in the ground search");
-    visitor.number("max_range_m",
-                   max_range_m,
-                   0.2,
-                   1000.0,
-                   "largest distance from the sensor of a point in the ground search");
+    visitor.number(
+        "max_range_m",
+        max_range_m,
+        0.2,
+        1000.0,
+        "largest distance of a point from the sensor; the ground search ignores farther points");
     visitor.number("tolerance_m",
                    tolerance_m,
                    0.001,
@@ -31,7 +33,8 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    min_inlier_ratio,
                    0.0,
                    1.0,
-                   "smallest share of the points that lie on the ground plane");
+                   "smallest share of the points on the ground plane; a plane with a smaller share "
+                   "is rejected");
     visitor.number("min_area_m2",
                    min_area_m2,
                    0.0,
@@ -41,7 +44,7 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    min_extent_m,
                    0.0,
                    100.0,
-                   "smallest one-sigma extent of the inliers across the narrow side");
+                   "smallest extent (one sigma) of the inliers along their narrow side");
     visitor.number("max_rms_m",
                    max_rms_m,
                    0.0001,
@@ -85,19 +88,20 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "unknown camera mount: smallest share of the image that shows the ground");
-    visitor.number("max_search_sigma_deg",
-                   max_search_sigma_deg,
-                   0.01,
-                   30.0,
-                   "unknown camera mount: largest one sigma of the tilt of the ground");
     visitor.number(
-        "max_search_rms_m",
-        max_search_rms_m,
-        0.001,
-        1.0,
-        "unknown camera mount: largest scatter (rms) of the ground (mulch 0.023, boulders 0.04)");
+        "max_search_sigma_deg",
+        max_search_sigma_deg,
+        0.01,
+        30.0,
+        "unknown camera mount: largest uncertainty (one sigma) of the tilt of the ground");
+    visitor.number("max_search_rms_m",
+                   max_search_rms_m,
+                   0.001,
+                   1.0,
+                   "unknown camera mount: largest scatter (rms) of the ground, for example 0.023 m "
+                   "on mulch or 0.04 m on boulders");
     visitor.integer(
-        "window", window, 1, 1000, "number of last ground observations that are averaged");
+        "window", window, 1, 1000, "number of the latest ground observations that are averaged");
     visitor.integer("min_agreeing",
                     min_agreeing,
                     1,

@@ -7,16 +7,16 @@ namespace surefoot::ground {
 
 /// Limits for accepting a plane as the ground, and for accepting a calibration.
 struct GroundConfig {
-    double voxel_m = 0.05;           ///< keeps one point per cube: weight by area, not by pixels
-    int max_points = 4000;           ///< evenly picked from the remaining points
-    double max_range_m = 8.0;        ///< stereo noise tilts far ground
-    double tolerance_m = 0.05;       ///< inliers of the search; the refit narrows to the noise
-    double max_tilt_deg = 20.0;      ///< tilt from the hint; must cover mount error plus slope
-    double min_inlier_ratio = 0.15;  ///< floor between walls and furniture
-    double min_area_m2 = 0.3;        ///< area of the occupied squares; two soles cover 0.14
-    double min_extent_m = 0.12;      ///< narrow one-sigma extent; slices through walls are thinner
-    double max_rms_m = 0.025;        ///< clutter cut by a slab has tolerance / sqrt(3) = 0.029
-    double min_height_m = 0.1;       ///< height of the sensor above the plane
+    double voxel_m = 0.05;       ///< side of cubes that keep one point: weight by area, not pixels
+    int max_points = 4000;       ///< most points; they are picked evenly
+    double max_range_m = 8.0;    ///< largest range; stereo noise tilts farther ground
+    double tolerance_m = 0.05;   ///< largest distance of an inlier, before the refit narrows it
+    double max_tilt_deg = 20.0;  ///< largest tilt from the hint: mount error plus slope
+    double min_inlier_ratio = 0.15;  ///< smallest share, for a floor between furniture
+    double min_area_m2 = 0.3;        ///< smallest occupied area; two soles cover 0.14 m2
+    double min_extent_m = 0.12;      ///< smallest narrow sigma; a slice of a wall is thinner
+    double max_rms_m = 0.025;        ///< largest rms; clutter has tolerance_m / sqrt(3) = 0.029 m
+    double min_height_m = 0.1;       ///< smallest height of the sensor above the plane
     double max_height_m = 3.0;
     double expected_height_m =
         0.0;  ///< height of base_link over its ground (machine file); 0 = unknown
@@ -26,11 +26,11 @@ struct GroundConfig {
     double search_up_deg = 10.0;
     double search_down_deg = 65.0;
     double search_roll_deg = 20.0;
-    double min_image_share = 0.04;      ///< pixels on the ground; half of a floor may lack depth
-    double max_search_sigma_deg = 1.2;  ///< sigma of the tilt: a strip fixes only one axis
-    double max_search_rms_m = 0.045;    ///< boulders of 0.1 m scatter by 0.04
+    double min_image_share = 0.04;      ///< least share of pixels; half of a floor may lack depth
+    double max_search_sigma_deg = 1.2;  ///< largest sigma of the tilt; a strip fixes only one axis
+    double max_search_rms_m = 0.045;    ///< largest scatter; boulders of 0.1 m scatter by 0.04 m
 
-    int window = 10;                    ///< number of last observations that are averaged
+    int window = 10;                    ///< number of the latest observations in the average
     int min_agreeing = 5;               ///< number of these observations that must agree
     double max_disagreement_deg = 1.5;  ///< an observation farther from the others is left out
     double max_disagreement_m = 0.03;

@@ -21,8 +21,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr int kMaxPlanes = 5;  // floor, ramp, table, seat, step: later planes are not the ground
-constexpr int kMaxLevels = 3;  // a plane may cross this many: pavement, kerb stone, road
+constexpr int kMaxPlanes = 5;  // floor, ramp, table, seat, step; further planes are not the ground
+constexpr int kMaxLevels = 3;  // largest number of levels in one plane: pavement, kerb stone, road
 constexpr std::size_t kMinPoints = 20;
 /// Levels up to this far apart are kerbs, treads, platforms; tables are higher. ASSUMPTION.
 constexpr double kHighestStep_m = 0.35;
@@ -35,8 +35,8 @@ struct Candidate {
     double inlier_ratio = 0.0;
     double area_m2 = 0.0;
     double begin_m = 0.0;   ///< horizontal distance to the nearest inliers
-    double contrast = 0.0;  ///< points within the tolerance over points between it and twice it
-    double height_m = 0.0;  ///< height of the base
+    double contrast = 0.0;  ///< points within the tolerance / points between one and two tolerances
+    double height_m = 0.0;  ///< height of base_link above the plane
     GroundReason reason = GroundReason::accepted;
 };
 
@@ -109,14 +109,14 @@ GroundReason judge(const GroundConfig& config, const Candidate& candidate) {
     if (candidate.inlier_ratio < config.min_inlier_ratio) return GroundReason::few_inliers;
     if (candidate.area_m2 < config.min_area_m2) return GroundReason::small;
     if (candidate.extent.narrow_sigma_m < config.min_extent_m) return GroundReason::small;
-    // A slab cut out of gravel or clutter continues beyond its tolerance; a surface ends there.
-    constexpr double kMinContrast = 3.0;  // an even slab has at most 2
+    // A slab cut out of gravel or clutter continues beyond its tolerance. A surface ends within it.
+    constexpr double kMinContrast = 3.0;  // evenly spread points have at most 2
     if (candidate.extent.rms_m > config.max_rms_m) return GroundReason::rough;
     if (candidate.contrast < kMinContrast) return GroundReason::rough;
     return GroundReason::accepted;
 }
 
-/// Removes the points on the other side.
+/// Removes the points that are not on this side.
 void keep(const NearSide& side, Cloud& cloud) {
     cloud.keep_if([&](std::size_t i) { return side.contains(cloud.points[i]); });
 }
@@ -172,7 +172,7 @@ Candidate measured(const GroundConfig& config,
     return candidate;
 }
 
-/// Whether `a` is the better ground of two accepted planes.
+/// True if `a` is the better ground of two accepted planes.
 bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candidate& b) {
     if (config.expected_height_m > 0.0) {
         const double a_off_m = std::abs(a.height_m - config.expected_height_m);
@@ -190,7 +190,7 @@ bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candid
     return a.begin_m < b.begin_m;
 }
 
-/// An accepted plane wins over a rejected one. Of two rejected ones the first (larger) stays.
+/// An accepted plane wins over a rejected plane. Of two rejected planes the first (larger) stays.
 bool is_better(const GroundConfig& config, const Candidate& a, const Candidate& b) {
     if (a.reason != GroundReason::accepted) return false;
     return b.reason != GroundReason::accepted || is_more_ground(config, a, b);

@@ -12,7 +12,7 @@
 
 namespace surefoot::ground {
 
-/// Whether an observation of the ground is accepted, and if not, the first reason that applies.
+/// Result for an observation of the ground: accepted, or the first reason why not.
 enum class GroundReason : std::uint8_t {
     accepted,
     no_hint,      ///< the expected up direction is zero or not finite
@@ -20,7 +20,7 @@ enum class GroundReason : std::uint8_t {
     no_plane,     ///< no plane within the tilt limit at an allowed height below the sensor
     few_inliers,  ///< inlier ratio below its limit
     small,        ///< area or extent below its limit
-    not_lowest,   ///< something lies more than a high step below it
+    not_lowest,   ///< something lies more than a high step below the plane
     rough,        ///< inlier scatter above its limit, or points just above and below
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
@@ -30,8 +30,8 @@ enum class GroundReason : std::uint8_t {
 struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
-    double tilt_rad = 0.0;  ///< angle between normal and hint
-    double area_m2 = 0.0;   ///< occupied squares of two voxel sides, projected along the normal
+    double tilt_rad = 0.0;  ///< angle between the normal and `up_hint`
+    double area_m2 = 0.0;   ///< area of occupied squares of two voxel sides, along the normal
     /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
     double image_share = 0.0;
     /// Zero if the noise of the points is unknown.
@@ -54,9 +54,9 @@ struct GroundSighting {
                                           const Eigen::Vector3d& sensor_origin,
                                           std::uint64_t seed);
 
-/// The same for the points of one frame, with the height of base_link. Their noise is known: levels
-/// closer than `tolerance_m` are separated, and the plane is fitted to all points together
-/// (`refine_plane`).
+/// Does the same with the points of one frame and the height of base_link. The noise of the points
+/// is known: levels closer than `tolerance_m` are separated, and the plane is fitted to all points
+/// together (`refine_plane`).
 [[nodiscard]] GroundSighting observe_ground(const GroundConfig& config,
                                             const FramePoints& seen,
                                             const Eigen::Vector3d& up_hint_body,

@@ -30,10 +30,11 @@ constexpr int kMaxPlanes = 10;
 constexpr int kMaxLevels = 3;  ///< a plane may cross this many levels, see near_side.hpp
 constexpr int kDraws = 500;
 constexpr std::size_t kLeastPoints = 40;
-/// Sizes are for a camera one metre above the ground. They shrink at a smaller distance of the
-/// scene and never grow.
+/// Smallest factor of all sizes. Sizes are for a camera one metre above the ground. They shrink if
+/// the scene is nearer and never grow.
 constexpr double kLeastScale = 0.3;
-/// More than this below a plane is no step but the floor under a table. ASSUMPTION.
+/// Ground that lies more than this below a plane is not a step, but the floor under a table.
+/// ASSUMPTION.
 constexpr double kHighestStep_m = 0.35;
 /// A plane with a smaller share of the image is probably a shelf or a box. ASSUMPTION.
 constexpr double kSmallShare = 0.15;
@@ -46,10 +47,11 @@ struct View {
     double scale = 1.0;  ///< factor of all sizes
 };
 
-/// Points from which candidate planes are drawn. Each cube of points is one entry in `begin`.
+/// Points from which candidate planes are drawn, cube by cube.
 struct Drawable {
     View view;
-    std::vector<std::pair<std::size_t, std::size_t>> cube_of;  ///< of each point: its cube's range
+    /// For each point: range of its cube.
+    std::vector<std::pair<std::size_t, std::size_t>> cube_of;
 };
 
 /// A plane that might be the ground.
@@ -110,7 +112,8 @@ View view_of(const GroundConfig& config, const FramePoints& seen) {
     return view;
 }
 
-/// How far a point on the plane may lie off it because of its noise, 1 sigma, along the normal.
+/// Returns the distance from the plane (one sigma, along the normal) that the noise of a point on
+/// the plane causes.
 double noise_of(const View& view, std::size_t i, const Plane& plane) {
     return plane.offset_m * view.points[i].norm() * view.inverse_range_sigma[i];
 }
@@ -124,7 +127,7 @@ bool is_possible(const GroundConfig& config, const Plane& plane) {
            std::abs(n.y()) <= std::sin(config.search_roll_deg * kRadPerDeg);
 }
 
-/// Points spread by surface and sorted by the cubes in which planes are drawn.
+/// Returns points that are spread by surface and sorted by the cubes in which planes are drawn.
 Drawable drawable(const GroundConfig& config, const View& view) {
     const auto thinned = thin(view.points,
                               Eigen::Vector3d::Zero(),
@@ -165,7 +168,7 @@ std::optional<Plane> draw(const Drawable& from, Rng& rng) {
     const Eigen::Vector3d ab = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d ac = points[first + rng.below(last - first)] - pa;
     const Eigen::Vector3d normal = ab.cross(ac);
-    constexpr double kLeastSine = 0.1;  // flatter triangles do not determine one direction
+    constexpr double kLeastSine = 0.1;  // flatter triangles do not determine the plane
     if (!(normal.norm() > kLeastSine * ab.norm() * ac.norm())) return std::nullopt;
     const Eigen::Vector3d unit = normal.normalized();
     const double offset_m = -unit.dot(pa);
@@ -173,8 +176,8 @@ std::optional<Plane> draw(const Drawable& from, Rng& rng) {
     return offset_m < 0.0 ? Plane{-unit, -offset_m} : Plane{unit, offset_m};
 }
 
-/// The plane with the most points near it (MSAC, Torr and Zisserman 2000); `used` points do not
-/// count.
+/// Returns the plane with the most points near it (MSAC, Torr and Zisserman 2000); `used` points do
+/// not count.
 std::optional<Plane> most_supported(const GroundConfig& config,
                                     const Drawable& from,
                                     const std::vector<char>& used,
@@ -205,9 +208,9 @@ std::optional<Plane> most_supported(const GroundConfig& config,
 /// Distribution of the points of a view about a plane.
 struct Census {
     std::vector<Eigen::Vector3d> inliers;
-    std::size_t fringe = 0;  ///< within twice the band
+    std::size_t fringe = 0;  ///< number of points between one and two bands
     double square_sum_m2 = 0.0;
-    double noise_sum_m2 = 0.0;  ///< expected from the noise of the points
+    double noise_sum_m2 = 0.0;  ///< sum that the noise of the points alone would give
 };
 
 Census census_of(const View& view, const Candidate& candidate) {
@@ -229,7 +232,7 @@ Census census_of(const View& view, const Candidate& candidate) {
     return census;
 }
 
-/// Scatter of the ground itself about the plane, without the noise.
+/// Returns the scatter of the ground itself about the plane, without the noise of the points.
 double roughness_m(const Census& census) {
     const auto count = static_cast<double>(std::max<std::size_t>(census.inliers.size(), 1));
     return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
@@ -246,8 +249,9 @@ bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m)
            seen.expected_inverse_range - seen.inverse_range > kSure * all.inverse_range_sigma[i];
 }
 
-/// Number of points more than a step below a plane that form a surface: at least every fourth of
-/// the points seen beside each other. Wrong matches also lie below the plane, but singly.
+/// Returns the number of points that lie more than a step below a plane and form a surface. Points
+/// form a surface if at least every fourth point of their tile lies below. Wrong matches also lie
+/// below the plane, but singly.
 std::size_t count_below(const View& all, const Candidate& candidate) {
     constexpr double kTile_rad = 0.1;
     constexpr std::size_t kSurface = 4;
@@ -276,8 +280,8 @@ GroundReason judge(const GroundConfig& config,
                    const View& all,
                    const Census& census,
                    const Candidate& candidate) {
-    constexpr double kMinContrast = 3.0;  // an even slab has at most 2
-    constexpr double kMostBelow = 0.03;   // share of the inliers; wrong matches lie anywhere
+    constexpr double kMinContrast = 3.0;  // evenly spread points have at most 2
+    constexpr double kMostBelow = 0.03;  // largest share of the inliers; wrong matches lie anywhere
     if (census.inliers.size() < kLeastPoints || candidate.image_share < config.min_image_share)
         return GroundReason::few_inliers;
     const double contrast = static_cast<double>(census.inliers.size()) /
@@ -306,9 +310,9 @@ double scatter_m2(const View& view, const Plane& plane, double band_m) {
     return count > 0.0 ? sum_m2 / count : 0.0;
 }
 
-/// Log-likelihood of a plane with this roughness, relative to points at random places. A band that
-/// excludes half of a mulch floor gains less than one that includes it. A band that includes the
-/// foot of a wall gains hardly more.
+/// Returns the log-likelihood of a plane with this roughness, relative to points at random
+/// positions. A band that excludes half of a mulch floor gains less than a band that includes the
+/// floor. A band that includes the foot of a wall gains hardly more.
 double support_of(const View& view, const Candidate& candidate, double roughness_m) {
     constexpr double kAnywhere_m = 2.0;  // range over which the random points lie
     constexpr double kLeastRoughness_m = 0.001;
@@ -347,7 +351,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
         const View near = select(view, kept);
         const auto nearer =
             refine_plane(near.points, near.inverse_range_sigma, side->plane, band_m);
-        // Rough ground is equally rough on one side and on the whole.
+        // Rough ground without a step is equally rough in the near part and as a whole.
         constexpr double kMostOfScatter = 0.6;
         if (!nearer ||
             scatter_m2(near, *nearer, band_m) > kMostOfScatter * scatter_m2(view, *plane, band_m))
@@ -376,7 +380,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
     return candidate;
 }
 
-/// The noise that 10 % of the points on a plane do not exceed.
+/// Returns the noise that 10 % of the points on a plane do not exceed.
 double least_noise_m(const View& view, const Plane& plane) {
     std::vector<double> noise_m;
     for (std::size_t i = 0; i < view.points.size(); ++i) {
@@ -489,7 +493,8 @@ GroundSighting search_ground(const GroundConfig& config,
 
 FramePoints with_nominal_noise(std::span<const Eigen::Vector3d> points,
                                const Eigen::Vector3d& sensor) {
-    /// 4 mm at 1 m and 16 mm at 2 m: between a depth camera and a small stereo camera.
+    /// Noise of 4 mm at 1 m and 16 mm at 2 m: between the noise of a depth camera and that of a
+    /// small stereo camera.
     constexpr double kInverseRangeSigma = 0.004;
     FramePoints seen;
     seen.camera_body_m = sensor;

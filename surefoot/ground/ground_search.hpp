@@ -12,14 +12,14 @@ namespace surefoot::ground {
 /// `search_roll_deg`, at any allowed height. Points are in camera body axes: x along the optical
 /// axis, y left, z up when the axis is level. No `up_hint` is needed.
 ///
-/// Planes are drawn through three points near each other, because a floor on a tenth of the image
-/// holds only one random triple in a thousand. Points near the best plane refine it
+/// Planes are drawn through three points near each other. Of random triples, only one in a thousand
+/// lies on a floor that fills a tenth of the image. Points near the best plane refine the plane
 /// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
 /// * it fills `min_image_share` of the image,
 /// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
-/// * nothing lies more than a high step below it. Below table tops, beds, seats and tilted backs
-/// some points do, wherever the edge of the object is in view.
-/// * Of several such planes the lowest wins; of those a step apart, the one with the larger share.
+/// * nothing lies more than a high step below it. This excludes table tops, beds, seats and tilted
+///   backs, if the edge of the object is in view.
+/// Of several such planes the lowest wins. Of planes a step apart, the larger image share wins.
 ///
 /// A table that fills the whole view cannot be distinguished from a floor. The same input and seed
 /// give the same bytes.

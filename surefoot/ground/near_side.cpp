@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kStrips = 32;             ///< number of positions at which the points may be split
 constexpr double kRim = 0.02;           ///< share of the points outside the first and last position
-constexpr int kLeastPoints = 100;       ///< on either side
+constexpr int kLeastPoints = 100;       ///< smallest number on either side
 constexpr double kLeastLength_m = 0.3;  ///< least length of the returned side
-/// Two planes count as two if they reduce the squared noise by this share. A step of four times a
-/// point's noise leaves a third; the distortion of a lens reduces less. ASSUMPTION.
+/// Two planes fit better than one if they reduce the squared noise by at least this share. A step
+/// of four times a point's noise leaves a third; the distortion of a lens reduces less. ASSUMPTION.
 constexpr double kLeastGain = 0.25;
 
 /// Normal equations of the least squares problem for m in w = m . r about a plane, see
@@ -49,19 +49,19 @@ struct Sums {
 
 struct Sample {
     Sums sums;
-    Eigen::Vector2d at_m;  ///< ahead of the sensor and to its left, along the plane
+    Eigen::Vector2d at_m;  ///< position ahead of the sensor and to its left, along the plane
 };
 
 struct Split {
     double rest = 0.0;
-    double from_m = 0.0;  ///< side of the sensor: range [from, to] of the coordinate
+    double from_m = 0.0;  ///< start of the sensor's side along the coordinate
     double to_m = 0.0;
     Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< correction of the plane's m
 };
 
 struct Samples {
     std::vector<Sample> all;
-    std::array<Eigen::Vector3d, 2> axes;  ///< ahead and to the left, along the plane
+    std::array<Eigen::Vector3d, 2> axes;  ///< ahead of the sensor and to its left, along the plane
 };
 
 Samples samples_of(std::span<const Eigen::Vector3d> points,
@@ -92,8 +92,8 @@ Samples samples_of(std::span<const Eigen::Vector3d> points,
     return samples;
 }
 
-/// The best split along one coordinate, among those that leave a long enough side at the sensor. A
-/// rest of 0 means no split.
+/// Finds the best split along one coordinate, among the splits that leave a long enough side at the
+/// sensor. A `rest` of 0 means no split.
 Split best_split(const std::vector<Sample>& samples, int axis) {
     std::vector<double> at_m;
     at_m.reserve(samples.size());

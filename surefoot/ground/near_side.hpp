@@ -11,9 +11,9 @@ namespace surefoot::ground {
 
 /// The part of a plane that is nearer to the sensor.
 struct NearSide {
-    geometry::Plane plane;  ///< fitted to the points of this part near the whole plane
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, along the plane
-    double from_m = 0.0;                              ///< along the axis
+    geometry::Plane plane;  ///< fitted to the points of this part that lie near the whole plane
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector along the plane
+    double from_m = 0.0;                              ///< begin of the part along `axis`
     double to_m = 0.0;
 
     [[nodiscard]] bool contains(const Eigen::Vector3d& p) const {

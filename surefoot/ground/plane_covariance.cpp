@@ -15,11 +15,13 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr double kTile_rad = 0.2;  ///< 70 px of a ZED
-constexpr double kBump_m = 0.2;    ///< one bump of uneven ground; at short range it fills more ...
-constexpr double kLargestTile_rad = 0.6;  ///< ... but no more than this
-constexpr double kPriorShare = 0.6;       ///< share of the stated sigma: error of a whole tile
-constexpr double kPriorTiles = 4.0;       ///< weight of that assumption, in tiles
+constexpr double kTile_rad = 0.2;  ///< side of a tile; 70 px of a ZED
+/// Size of a bump of uneven ground. At short range a bump fills a larger tile.
+constexpr double kBump_m = 0.2;
+constexpr double kLargestTile_rad = 0.6;  ///< largest side of a tile
+/// Assumed error of a whole tile, as a share of the stated sigma.
+constexpr double kPriorShare = 0.6;
+constexpr double kPriorTiles = 4.0;  ///< weight of kPriorShare, in tiles
 constexpr double kUnknowns = 3.0;
 
 struct Member {

@@ -31,8 +31,8 @@ struct PlaneUncertainty {
     [[nodiscard]] double tilt_sigma_rad() const;
 };
 
-/// Uncertainty from the covariance of m, to first order. `base`: the point whose height is meant,
-/// relative to the origin.
+/// Returns the uncertainty from the covariance of m, to first order. `base`: the point whose height
+/// is meant, relative to the origin.
 [[nodiscard]] PlaneUncertainty plane_uncertainty(const geometry::Plane& plane,
                                                  const Eigen::Matrix3d& covariance_of_m,
                                                  const Eigen::Vector3d& base);

@@ -20,31 +20,31 @@ namespace surefoot::ground {
 /// converge. Points farther than `band_m` from the plane, or too noisy to decide this, are left
 /// out.
 ///
-/// Nothing if too few points are near or they do not determine a plane in front of the camera.
+/// Returns nothing if too few points are near, or if they fix no plane in front of the camera.
 [[nodiscard]] std::optional<geometry::Plane> refine_plane(
     std::span<const Eigen::Vector3d> points,
     std::span<const double> inverse_range_sigma,
     const geometry::Plane& start,
     double band_m);
 
-/// The plane n . p + h = 0 in front of the camera with -n / h = m; nothing if m is not valid.
+/// Returns the plane n . p + h = 0 in front of the camera with -n / h = m, if m is valid.
 [[nodiscard]] std::optional<geometry::Plane> plane_of(const Eigen::Vector3d& m);
 
 /// A band that cuts off the noise of a point pulls the plane back to its start. Points whose sigma
 /// exceeds this share of the band are therefore left out.
 inline constexpr double kNoisiest = 0.67;
 
-/// A point seen from the origin, compared with the place where its ray meets a plane.
+/// A point seen from the origin, compared with the point where its ray meets a plane.
 struct Sighting {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]
-    double expected_inverse_range = 0.0;            ///< value of the plane; 0 = no hit by the ray
-    /// Distance from the plane and its one sigma, to first order in the inverse range. It is
-    /// symmetric in the noise, so a limit on it causes no bias.
+    double expected_inverse_range = 0.0;  ///< inverse range of the plane; 0 = ray misses it
+    /// Distance from the plane and its one sigma, to first order in the inverse range. The distance
+    /// is symmetric in the noise, so a limit on it causes no bias.
     double off_m = 0.0;
     double sigma_m = 0.0;
 
-    /// Whether the point lies within the band and has small enough noise to decide this.
+    /// True if the point lies within the band and has small enough noise to decide this.
     [[nodiscard]] bool is_within(double band_m) const {
         return expected_inverse_range > 0.0 && std::abs(off_m) <= band_m &&
                sigma_m <= kNoisiest * band_m;

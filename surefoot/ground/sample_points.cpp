@@ -9,9 +9,9 @@ namespace surefoot::ground {
 
 namespace {
 
-/// Remaining disparity error of a calibrated rig: this much constant, and this much more at the
-/// side and at the upper or lower border of the image. ASSUMPTION: after boards and
-/// self-calibration.
+/// Remaining disparity error of a calibrated rig: a constant of this size. At the side and at the
+/// upper or lower border of the image, another error of this size adds to it. ASSUMPTION: valid
+/// after calibration with boards and self-calibration.
 constexpr double kCalibrationSigma_px = 0.05;
 
 /// d = f b m . (x, y, 1) over the image plane. A constant error of d is an error of m along the

@@ -21,7 +21,7 @@ std::int64_t key_of(double coordinate_m, double side_m) {
     return saturated_integer<std::int64_t>(std::floor(coordinate_m / side_m));
 }
 
-/// Indices of the first point of every voxel, ascending.
+/// Returns the indices of the first point of every voxel, ascending.
 std::vector<std::size_t> first_of_each(std::vector<Voxel>& voxels) {
     std::sort(voxels.begin(), voxels.end(), [](const Voxel& a, const Voxel& b) {
         return a.key != b.key ? a.key < b.key : a.index < b.index;

@@ -61,7 +61,7 @@ struct DiscCell {
     double y_m = 0.0;
 };
 
-/// All cells with dx^2 + dy^2 <= (radius / resolution)^2 + 1e-6 (in cells), row by row. The addend
+/// All cells with dx^2 + dy^2 <= (radius / resolution)^2 + 1e-6 (in cells), row by row. Adding 1e-6
 /// keeps cells on the rim inside, whatever the rounding of the quotient.
 struct Disc {
     int reach = 0;  ///< largest |dx| or |dy| [cells]
@@ -69,7 +69,7 @@ struct Disc {
 
     /// Returns the number of cells from the centre to the rim of a disc of that radius.
     [[nodiscard]] static int reach_of(double radius_m, double resolution_m) noexcept;
-    /// Returns h: row dy (|dy| <= reach) of the disc is the columns -h ... h.
+    /// Returns h: the disc covers the columns -h ... h of row dy (|dy| <= reach).
     [[nodiscard]] static int half_width_of(double radius_m, double resolution_m, int dy) noexcept;
     /// Fills the disc for layers of that stride; reuses its memory.
     void build(double radius_m, double resolution_m, int stride);

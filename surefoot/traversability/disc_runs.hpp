@@ -6,15 +6,15 @@
 
 namespace surefoot::traversability {
 
-/// A disc as runs of cells along x: row dy is the columns -h ... h around the centre. A figure of a
-/// run (a sum, a maximum) is computed once and used by every disc that contains the run. So the
-/// cost of a disc grows with its rows, not with its cells.
+/// A disc as runs of cells along x: row dy covers the columns -h ... h around the centre. A figure
+/// of a run (a sum, a maximum) is computed once and used by every disc that contains the run. So
+/// the cost of a disc grows with its rows, not with its cells.
 struct DiscRuns {
     /// Larger discs use the plain filters: the memory for their runs would exceed the cache.
     static constexpr int kMaxReach = 24;
 
     int reach = 0;           ///< largest |dy| [cells]
-    std::vector<int> width;  ///< [|dy|] -> index of h in the list of half widths
+    std::vector<int> width;  ///< [|dy|] -> index of h in the list of half widths h
 };
 
 /// The runs of several discs that read the same layer.
@@ -30,8 +30,8 @@ class RunsOfDiscs {
     /// Distinct half widths, ascending.
     [[nodiscard]] const std::vector<int>& half_widths() const noexcept { return half_widths_; }
     [[nodiscard]] int reach() const noexcept { return reach_; }
-    /// Returns the rows of the largest disc times the distinct half widths: the number of runs that
-    /// a kernel keeps at a time.
+    /// Returns the number of runs that a kernel keeps at a time: the number of rows of the largest
+    /// disc times the number of distinct half widths.
     [[nodiscard]] std::size_t kept_runs() const noexcept {
         return static_cast<std::size_t>(2 * reach_ + 1) * half_widths_.size();
     }

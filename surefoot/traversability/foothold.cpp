@@ -42,10 +42,10 @@ double variance_of(const FootholdGround& ground, int ix, int iy) {
 
 /// Sums and extremes around the cells of one row.
 struct FootholdFinder::Row {
-    std::vector<Sums> foot;            ///< sums over F; xz relative to the cell
-    std::vector<double> yz;            ///< sum of y z over F, y in cells from the cell
-    std::vector<double> unknown_band;  ///< unknown cells of B
-    std::vector<double> tight_band;    ///< cells of B whose clearance is not open
+    std::vector<Sums> foot;            ///< sums over F; xz with x relative to the cell
+    std::vector<double> yz;            ///< sum of y z over F, y in cells relative to the cell
+    std::vector<double> unknown_band;  ///< number of unknown cells of B
+    std::vector<double> tight_band;    ///< number of cells of B whose clearance is not open
     std::vector<float> patch_high;
     std::vector<float> patch_low;
     std::vector<float> low_near;  ///< largest low_shown_ within the corner distance
@@ -217,7 +217,7 @@ void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
 }
 
 int FootholdFinder::patch_half_width(int dy) const {
-    // All rows of the patch must lie within F, each over its full width.
+    // All rows of the patch must lie within F over their full width.
     return std::min(foot_[static_cast<std::size_t>(std::abs(dy))],
                     foot_[static_cast<std::size_t>(std::abs(dy + patch_cells_ - 1))]);
 }
@@ -378,14 +378,20 @@ bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
 void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
     visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "length of the shorter side of a foot");
-    visitor.number("margin_m", margin_m, 0.0, 1.0, "largest position error of edges in the map");
+    visitor.number(
+        "margin_m",
+        margin_m,
+        0.0,
+        1.0,
+        "largest position error of edges in the map; the search enlarges the foot by it");
     visitor.number(
         "band_m", band_m, 0.0, 1.0, "width of the solid ground that is required around the foot");
     visitor.number("corner_m",
                    corner_m,
                    0.0,
                    1.0,
-                   "largest distance by which a drop may begin before its edge in the map");
+                   "largest distance by which a drop may begin before its edge in the map; 0 "
+                   "switches this test off");
     visitor.number("drop_m",
                    drop_m,
                    0.001,
@@ -403,16 +409,17 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    0.001,
                    1.0,
                    "largest distance of the mean of a patch from the plane under the foot");
-    visitor.number("sigma_factor",
-                   sigma_factor,
-                   0.0,
-                   100.0,
-                   "number of sigmas by which the ground must keep every limit");
+    visitor.number(
+        "sigma_factor",
+        sigma_factor,
+        0.0,
+        100.0,
+        "number of standard deviations (sigma) by which the ground must stay within every limit");
     visitor.number("independent_cells",
                    independent_cells,
                    1.0,
                    10000.0,
-                   "largest number of independent errors in a patch");
+                   "largest number of cells in a patch whose errors count as independent");
     visitor.number(
         "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
     visitor.number("clearance_m", clearance_m, 0.0, 100.0, "required free height over the foot");
@@ -427,8 +434,8 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> FootholdConfig::problem() const {
     if (foot_width_m > std::numbers::sqrt2 * foot_radius_m) {
         return fmt::format(
-            "foothold.foot_width_m = {} must be the shorter side of a foot with half a diagonal of "
-            "foothold.foot_radius_m = {}",
+            "foothold.foot_width_m = {} must be at most sqrt(2) times "
+            "foothold.foot_radius_m = {}: it is the shorter side of the foot",
             foot_width_m,
             foot_radius_m);
     }

@@ -15,26 +15,26 @@
 
 namespace surefoot::traversability {
 
-/// Limits for a place where the whole foot may stand. The figures are those of the REX's machine
+/// Limits for a position where the whole foot may stand. The figures are those of the REX's machine
 /// file and of the gate's rule for flat ground (design.md). The gate judges one foot in one pose of
-/// one movement; this search judges every cell, for a foot with any yaw.
+/// one movement. This search judges every cell, for a foot with any yaw.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
     double foot_width_m = 0.190;   ///< shorter side of the foot
-    double margin_m = 0.05;        ///< edges may be two cells off in the map
-    double band_m = 0.10;          ///< required solid ground beyond the foot
+    double margin_m = 0.05;        ///< position error of an edge: up to two cells
+    double band_m = 0.10;          ///< width of the solid ground that is required around F
     /// Where two edges meet, a matcher puts the nearer ground up to three cells too far over the
     /// lower ground. So a drop that begins up to this far beyond the band may reach into it.
     double corner_m = 0.075;
-    double drop_m = 0.05;       ///< ground lower than the foot by more is a drop
+    double drop_m = 0.05;       ///< ground that is lower than the foot by more is a drop
     double max_slope = 0.1051;  ///< rise over run: tan 6 deg
     double patch_side_m = 0.05;
-    double max_residual_m = 0.025;   ///< distance of a patch mean from the foot's plane
-    double sigma_factor = 3.4;       ///< one-sided 3e-4
+    double max_residual_m = 0.025;   ///< largest distance of a patch mean from the foot's plane
+    double sigma_factor = 3.4;       ///< one-sided error probability 3e-4
     double independent_cells = 4.0;  ///< most cells of a patch whose errors count as independent
-    /// Errors of a semi-global matcher are shared over 30-50 px: 0.1 m of floor 1 m away.
+    /// A semi-global matcher shares its errors over 30-50 px: over 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
-    double clearance_m = 2.05;  ///< height of the tallest user on the foot plates
+    double clearance_m = 2.05;  ///< height of the tallest user who stands on the foot plates
     /// ASSUMPTION: single wrong matches over the floor cover one to three cells of 25 mm.
     double overhead_side_m = 0.05;
 
@@ -48,13 +48,13 @@ struct FootholdConfig {
 
 enum class Foothold : std::uint8_t {
     unknown,      ///< not all cells under the foot and around it are known
-    safe,         ///< proven at `sigma_factor`
+    safe,         ///< proven safe at `sigma_factor`
     unsure,       ///< heights too uncertain to prove safe or unsafe
     unreachable,  ///< safe, but no known way leads there from the stance
-    drop,         ///< this value and the following: proven unsafe, with the cause
+    drop,         ///< `drop` and the following values: proven unsafe, with the cause
     tilted,
     rough,
-    low,  ///< too little room above
+    low,  ///< too little free height above
 };
 [[nodiscard]] std::string_view to_string(Foothold foothold) noexcept;
 
@@ -78,8 +78,8 @@ struct FootholdGround {
 /// - drop: ground in B lies more than `drop_m` below the middle of p (of the cell, if F is not
 ///   known), at k sigma of the ground. Ground with a single observation may be a wrong match:
 ///   unsure;
-/// - tilted: p is steeper than `max_slope`, at k sigma of a disc with one independent error per
-///   square of `correlation_m`, at an rms distance of half the radius from the diameter;
+/// - tilted: p is steeper than `max_slope` at k sigma. The disc has one independent error per
+///   square of `correlation_m`, at an rms distance of half the radius from its diameter;
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
 ///   mean (variance of the cells over their number, at most `independent_cells`);
 /// - low: `clearance_m` is too small over as many cells of F as a square of `overhead_side_m` has.
@@ -91,8 +91,8 @@ struct FootholdGround {
 ///   `drop_m` below all of p there (skipped if `corner_m` is 0);
 /// - if p is steeper than half of `max_slope`: cells with a plane steeper than `max_slope` under
 ///   the foot itself, without margin, at one of kYaws yaws. The narrow foot tilts more than the
-///   disc where a ramp begins or ends. This test ignores sigma, or every ramp of 1:12 would be
-///   unsure.
+///   disc where a ramp begins or ends. This test ignores sigma, because otherwise every ramp of
+///   1:12 would be unsure.
 ///
 /// Keeps its working memory: maps of one size allocate nothing after the first. Every executor
 /// gives the same bytes. Cost: cells times rows of B. Not thread-safe.
@@ -166,11 +166,11 @@ class FootholdFinder {
     double foot_cells_ = 0.0;        ///< number of cells of F
     double foot_moment_ = 0.0;       ///< sum of x^2 over F [cells^2]
     double slope_sigmas_per_m_ = 0;  ///< k sigma of the slope for each metre of sigma of a cell
-    std::vector<Sums> sums_;         ///< (nx + 1) a row
+    std::vector<Sums> sums_;         ///< nx + 1 elements per row
     Image<float> patch_m_;           ///< mean of the patch that begins at a cell; NaN = unknown
-    Image<float> patch_doubt_m_;     ///< k sigma of the mean
-    RunMaxima patch_high_;           ///< mean + k sigma
-    RunMaxima patch_low_;            ///< -(mean - k sigma)
+    Image<float> patch_doubt_m_;     ///< k sigma of the patch mean
+    RunMaxima patch_high_;           ///< patch mean + k sigma
+    RunMaxima patch_low_;            ///< -(patch mean - k sigma)
     RunMaxima low_shown_;            ///< -(height + k sigma), observations agree; or -free_above
     RunMaxima low_possible_;         ///< -(height - k sigma)
     std::vector<Row> rows_;

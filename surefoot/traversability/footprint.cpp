@@ -34,7 +34,8 @@ std::optional<std::string> convexity_problem(std::span<const Eigen::Vector2d> ve
     for (std::size_t i = 1; i + 1 < n; ++i) {
         doubled_area_m2 += cross(vertices_m[i] - vertices_m[0], vertices_m[i + 1] - vertices_m[0]);
     }
-    if (std::abs(doubled_area_m2) <= straight_m2) return "its corners lie on a line";
+    if (std::abs(doubled_area_m2) <= straight_m2)
+        return "its corners lie on a line; give corners that enclose an area";
     // Convex: every corner lies on the inner side of every edge.
     const double side = doubled_area_m2 > 0.0 ? 1.0 : -1.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -43,7 +44,7 @@ std::optional<std::string> convexity_problem(std::span<const Eigen::Vector2d> ve
             if (side * cross(edge, vertices_m[k] - vertices_m[i]) < -straight_m2) {
                 return fmt::format(
                     "corner {} (counted from 0) lies outside of the edge from corner {}"
-                    "; list the corners around it, or take their convex hull",
+                    "; list the corners in order around the polygon, or take their convex hull",
                     k,
                     i);
             }
@@ -75,7 +76,7 @@ bool is_valid(const FootprintLayers& layers) {
            (layers.height_m.empty() || fits(layers.height_m));
 }
 
-/// Builds a report from runs of cells; no cell may come twice.
+/// Builds a report from runs of cells; no cell may appear twice.
 class Gathering {
   public:
     explicit Gathering(const FootprintLayers& layers) noexcept : layers_(layers) {}
@@ -112,7 +113,7 @@ class Gathering {
     }
 
   private:
-    /// Runs that are read at a time: enough for a footprint, few enough for the stack.
+    /// Number of runs that are read at a time: enough for a footprint, few enough for the stack.
     static constexpr int kWaiting = 64;
 
     void read() noexcept {
@@ -135,7 +136,7 @@ class Gathering {
     const FootprintLayers& layers_;
     rows::LaneStatistics rating_;
     rows::LaneStatistics height_m_;
-    CellRun worst_run_;  ///< the first one that holds the worst rating
+    CellRun worst_run_;  ///< the first run that holds the worst rating
     std::int64_t cells_ = 0;
     std::int64_t outside_ = 0;
     std::array<CellRun, kWaiting> waiting_;
@@ -225,15 +226,15 @@ Result<Footprint> Footprint::circle(double radius_m) {
 Result<Footprint> Footprint::polygon(std::span<const Eigen::Vector2d> vertices_m) {
     const std::size_t n = vertices_m.size();
     if (n < 3 || n > kMaxVertices) {
-        return usage_error(
-            fmt::format("footprint: a polygon of {} corners; give 3 to {}", n, kMaxVertices));
+        return usage_error(fmt::format(
+            "footprint: the polygon has {} corners; give 3 to {} corners", n, kMaxVertices));
     }
     Footprint footprint;
     for (std::size_t i = 0; i < n; ++i) {
         const double reach_m = vertices_m[i].norm();
         if (!(reach_m <= kMaxReach_m)) {  // NaN too
             return usage_error(
-                fmt::format("footprint: corner {} (counted from 0) at ({}, {}) m; give finite "
+                fmt::format("footprint: corner {} (counted from 0) is at ({}, {}) m; give finite "
                             "numbers within {} m",
                             i,
                             vertices_m[i].x(),

@@ -21,13 +21,13 @@ namespace surefoot::traversability {
 class Footprint {
   public:
     static constexpr int kMaxVertices = 16;
-    /// Larger outlines count as an error of units.
+    /// Larger outlines are refused: their unit is probably wrong.
     static constexpr double kMaxReach_m = 100.0;
 
     /// Makes a circle. Needs 0 < radius_m <= kMaxReach_m.
     [[nodiscard]] static Result<Footprint> circle(double radius_m);
-    /// Makes a convex polygon. Needs 3 to kMaxVertices finite vertices with an area, in either
-    /// direction of travel; vertices on a straight edge are allowed.
+    /// Makes a convex polygon. Needs 3 to kMaxVertices finite vertices with an area, clockwise or
+    /// counter-clockwise; vertices on a straight edge are allowed.
     [[nodiscard]] static Result<Footprint> polygon(std::span<const Eigen::Vector2d> vertices_m);
 
     /// Corners of a polygon; for a circle its centre, with `radius_m` above 0.
@@ -57,43 +57,43 @@ struct FootprintPose {
 struct FootprintLayers {
     grid::GridGeometry geometry;
     ImageView<const float> rating;    ///< traversability, 1 to 0 (or any other rating)
-    ImageView<const float> height_m;  ///< may be empty: then heights are not evaluated
+    ImageView<const float> height_m;  ///< empty = heights are not evaluated
 };
 
 enum class FootprintOutcome : std::uint8_t {
-    invalid_pose,  ///< no pose, one that is not finite, or one beyond 2^20 cells away: no cells
-                   ///< were read
+    invalid_pose,  ///< no pose, a pose that is not finite, or one more than 2^20 cells away:
+                   ///< no cells were read
     invalid_map,   ///< no cell size, or layers of another size than the grid: no cells were read
-    outside_map,   ///< cells were counted, none of them in the map
+    outside_map,   ///< cells were counted, but none lies in the map
     rated,         ///< at least one cell lies in the map; it may be unknown
 };
 
 /// Cells under a footprint. A default-constructed report is traversable under no policy.
 struct FootprintReport {
     FootprintOutcome outcome = FootprintOutcome::invalid_pose;
-    std::int64_t cells = 0;           ///< overlapped by the shape, each counted once
+    std::int64_t cells = 0;           ///< cells that the shape overlaps, each counted once
     std::int64_t outside = 0;         ///< cells beyond the map
     std::int64_t unknown = 0;         ///< cells without a rating (cells outside included)
-    std::int64_t without_height = 0;  ///< of these, without a height (those outside included); 0
-                                      ///< when no height layer was given
+    std::int64_t without_height = 0;  ///< cells without a height (cells outside included);
+                                      ///< 0 if no height layer was given
     float worst_rating = std::numeric_limits<float>::quiet_NaN();   ///< worst of the rated cells
-    std::optional<grid::Cell> worst_cell;                           ///< first one, by rows
+    std::optional<grid::Cell> worst_cell;                           ///< first such cell, by rows
     double mean_rating = std::numeric_limits<double>::quiet_NaN();  ///< mean of the rated cells
     float lowest_m = std::numeric_limits<float>::quiet_NaN();       ///< lowest known height
     float highest_m = std::numeric_limits<float>::quiet_NaN();
 
-    /// 1 if nothing is known, also if there are no cells.
+    /// Returns the share of cells without a rating; 1 if there are no cells.
     [[nodiscard]] double unknown_share() const noexcept {
         return cells > 0 ? static_cast<double>(unknown) / static_cast<double>(cells) : 1.0;
     }
-    /// NaN without a known height.
+    /// Returns highest minus lowest height; NaN without a known height.
     [[nodiscard]] float height_range_m() const noexcept { return highest_m - lowest_m; }
 };
 
 /// Treatment of unknown cells under a footprint.
 enum class UnknownPolicy : std::uint8_t {
-    unsafe,   ///< refuse if one cell has no rating, no height or lies outside
-    ignored,  ///< only rated cells decide; use it for far planning, never for a step
+    unsafe,   ///< refuse if any cell has no rating, has no height or lies outside
+    ignored,  ///< consider only rated cells; for far planning, never for a step
 };
 
 /// True if every rated cell has a rating above 0 of at least `threshold`, and the policy accepts
@@ -117,8 +117,8 @@ struct PathScratch {
     std::vector<grid::CellRun> runs;
 };
 
-/// As `query`, for all cells overlapped on the way along the poses, each cell once. Between poses
-/// the footprint moves straight and turns the short way at an even rate (also on the spot).
+/// Does the same for all cells that the footprint overlaps along the poses, each cell once. Between
+/// poses the footprint moves straight and turns the short way at an even rate (also on the spot).
 ///
 /// A turn is cut into pieces of at most kMaxTurn_rad. Each piece is the convex hull of its two
 /// ends, enlarged by the bulge of the arcs. So no cell is missed; cells beside a turn may count

@@ -28,7 +28,8 @@ class Group {
     HWY_INLINE void take(const float* values) {
         const auto value = hn::LoadU(half_, values);
         const auto known = hn::IsFinite(value);
-        // Comparisons instead of Min and Max, which treat NaN differently on different processors.
+        // Uses comparisons instead of Min and Max, because these treat NaN differently on different
+        // processors.
         min_ = hn::IfThenElse(hn::And(known, hn::Lt(value, min_)), value, min_);
         max_ = hn::IfThenElse(hn::And(known, hn::Gt(value, max_)), value, max_);
         sum_ = hn::Add(sum_, hn::PromoteTo(d_, hn::IfThenElseZero(known, value)));

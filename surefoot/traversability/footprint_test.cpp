@@ -615,9 +615,9 @@ void expect_refused(const Result<Footprint>& result, const std::string& words) {
 TEST(Footprint, degenerate_shapes_are_refused_with_a_sentence) {
     for (const double radius_m : {0.0, -0.3, std::nan(""), kInfinity, 300.0})
         expect_refused(Footprint::circle(radius_m), "the radius of a circle is");
-    expect_refused(Footprint::polygon({}), "a polygon of 0 corners");
-    expect_refused(Footprint::polygon(Points{{0, 0}, {1, 0}}), "a polygon of 2 corners");
-    expect_refused(Footprint::polygon(Points(17, {0, 0})), "a polygon of 17 corners");
+    expect_refused(Footprint::polygon({}), "the polygon has 0 corners");
+    expect_refused(Footprint::polygon(Points{{0, 0}, {1, 0}}), "the polygon has 2 corners");
+    expect_refused(Footprint::polygon(Points(17, {0, 0})), "the polygon has 17 corners");
     expect_refused(Footprint::polygon(Points{{0, 0}, {1, std::nan("")}, {1, 1}}), "corner 1");
     expect_refused(Footprint::polygon(Points{{0, 0}, {1, 0}, {kInfinity, 1}}), "corner 2");
     expect_refused(Footprint::polygon(Points{{0, 0}, {400, 0}, {400, 200}}), "within 100 m");

@@ -6,13 +6,13 @@
 
 namespace surefoot::traversability {
 
-/// Points with a second principal variance up to this lie on a line, (0.1 mm)^2.
+/// Points lie on a line if their second principal variance is at most this: (0.1 mm)^2.
 inline constexpr double kMinMiddleVariance_m2 = 1e-8;
 
 struct Normal {
     float x, y, z;
 };
-/// Returns the normal at one cell of a padded layer, as below.
+/// Returns the normal at one cell of a padded layer, with the rules of `normals`.
 [[nodiscard]] Normal plain_normal(const float* center, const Disc& disc) noexcept;
 
 /// Computes unit surface normals with z >= 0 for the cells of `rect`: the smallest eigenvector of

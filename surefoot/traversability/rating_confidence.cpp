@@ -13,9 +13,9 @@ namespace surefoot::traversability {
 namespace {
 
 constexpr float kHighest = std::numeric_limits<float>::max();  ///< largest finite value
-constexpr float kGateSigmas = 3.4F;                            ///< GateLimits::sigma_factor
+constexpr float kGateSigmas = 3.4F;  ///< same value as GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
-constexpr float kRangeSigma = 0.87F;  ///< maximum over all numbers of cells, at four cells
+constexpr float kRangeSigma = 0.87F;  ///< largest deviation of a range, for any number of cells
 constexpr float kCertain = 6.0F;      ///< beyond so many sigmas the probability (1e-9) is ignored
 
 /// One integer holds both sums of a run of cells: the number of known cells in the high bits, the
@@ -23,7 +23,7 @@ constexpr float kCertain = 6.0F;      ///< beyond so many sigmas the probability
 /// after an overflow.
 constexpr int kCountShift = 44;
 constexpr double kVariancesPerM2 = 1e9;
-constexpr double kLargestVariance_m2 = 0.1;  ///< 170 000 of them fit
+constexpr double kLargestVariance_m2 = 0.1;  ///< 170 000 such variances fit into the low bits
 constexpr std::uint64_t kVarianceMask = (std::uint64_t{1} << kCountShift) - 1;
 
 std::uint64_t packed(float height_m, float var_m2) noexcept {
@@ -231,7 +231,8 @@ void RatingConfidence::find_flips(const Input& input) {
             // Distance of the required error from its mean [sigma].
             const float sigmas = over_m > 0.0F ? (over_m / sigma_m[ix] - error_range_) / kRangeSigma
                                                : -over_m / (kSqrt2 * sigma_m[ix]);
-            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);  // false if unknown
+            // false for an unknown step
+            if (sigmas < kCertain) spread_flip(normal_cdf(-sigmas), ix, iy);
         }
     }
 }

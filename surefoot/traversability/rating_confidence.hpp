@@ -19,7 +19,7 @@ struct ConfidenceLayers {
     /// Smallest step that exceeds the noise: 3.4 sigma of the mean height of the patch around the
     /// cell [m]. NaN where the height is unknown.
     grid::Layer smallest_step_m;
-    /// 1 where an obstacle of `resolve.step_m` may hide in the noise, else 0; NaN as above.
+    /// 1 where an obstacle of `resolve.step_m` may hide in the noise, else 0. NaN: height unknown.
     grid::Layer not_resolvable;
 };
 
@@ -95,7 +95,7 @@ class RatingConfidence {
     int margin_ = 0;                     ///< cells beyond the map that runs may cover
     std::vector<std::uint64_t> before_;  ///< sums before a cell in its row: known cells, variances
     std::vector<std::uint64_t> sum_;     ///< sums of one row of discs
-    std::vector<float> known_;           ///< known cells of `sum_`
+    std::vector<float> known_;           ///< number of known cells in `sum_`
     std::vector<float> variance_m2_;
     grid::Layer sigma_m_;          ///< sqrt(v)
     grid::Layer slope_sigma_rad_;  ///< slope sigma of level ground

@@ -11,10 +11,10 @@
 
 namespace surefoot::traversability {
 
-/// Place where the machine is assumed to stand.
+/// Cells on which the machine is assumed to stand.
 struct Stance {
-    int cells = 0;          ///< start cells of the ways; 0 if the map has no known cell
-    double lowest_m = 0.0;  ///< lowest of these cells, in the frame of the map; 0 without cells
+    int cells = 0;          ///< number of start cells; 0 if the map has no known cell
+    double lowest_m = 0.0;  ///< lowest height of these cells in the map frame; 0 without cells
     double radius_m = 0.0;  ///< search radius around the body
 };
 
@@ -22,33 +22,33 @@ struct Stance {
 /// table top is flat but not reachable.
 ///
 /// reach_step_m of a cell: each way from the stance to the cell has a largest height difference
-/// between consecutive cells, and reach_step_m is the smallest of these over all ways (a minimax
-/// path). A way leads from known cell to known 4-neighbour; it never crosses an unknown cell or a
-/// gap, not even of one cell. Up and down count alike: the smallest step up and the smallest step
-/// down may lie on different ways, so two layers would promise a way that does not exist. Heights
-/// are rounded to 0.1 mm as for the gate. The result is exact on them and does not depend on the
-/// order of the visits.
+/// between consecutive cells. reach_step_m is the smallest of these over all ways (minimax path). A
+/// way leads from known cell to known 4-neighbour. It never crosses an unknown cell or a gap, not
+/// even of one cell. Up and down count alike: the smallest step up and the smallest step down may
+/// lie on different ways. So two layers would promise a way that does not exist. Heights are
+/// rounded to 0.1 mm as for the gate. For these heights the result is exact. It does not depend on
+/// the order of the visits.
 ///
-/// NaN = unknown, or not reachable, or reachable only over a step above `max_step_m`; the height
-/// distinguishes the first case. Every comparison with NaN is false, so `<= limit` never accepts it
-/// as reachable. A ramp has no steps: the slope tells how steep a way is. If cells lie at heights
-/// between, as on an edge that the map has smeared, a riser counts by its parts, which are lower
-/// than the riser.
+/// NaN = unknown, or not reachable, or reachable only over a step above `max_step_m`; only unknown
+/// cells have no height. Every comparison with NaN is false, so `<= limit` never accepts NaN as
+/// reachable. A ramp has no steps: the slope tells how steep a way is. The map may smear an edge:
+/// then cells lie at heights between the two levels, and the riser counts only by its parts, which
+/// are lower than the whole riser.
 ///
 /// Stance: the known cells with their centre within `stance_radius_m` of the body along the ground.
-/// If they are fewer than kStanceCells (the ground at the feet is not in view), the radius becomes
-/// the distance within which so many cells are known, or all cells, plus `stance_radius_m`. The
-/// lowest surface counts, because a table top may hang over the feet: the lowest kSurface_m of
+/// If they are fewer than kStanceCells (ground at the feet not in view), the radius is larger: the
+/// distance within which so many cells (or all) are known, plus `stance_radius_m`. The lowest
+/// surface counts, because a table top may hang over the feet. It is the lowest kSurface_m of
 /// height with a quarter of these cells. So neither a stray low cell nor the pit beside a landing
-/// becomes the stance. If no such range exists, the fullest kSurface_m counts. The height of the
+/// becomes the stance. If no such range exists, the range with most cells counts. The height of the
 /// body is not used, because base_link may be anywhere above the ground.
 ///
 /// Cost: four reads per known cell, plus one visit per 0.1 mm of `max_step_m` (Dijkstra 1959 with
 /// one bucket per length, Dial 1969). Allocates only to grow. Not thread-safe.
 class Reachability {
   public:
-    static constexpr int kStanceCells = 16;     ///< about a foot: 0.01 m2 at 25 mm
-    static constexpr double kSurface_m = 0.05;  ///< heights of one surface under the body
+    static constexpr int kStanceCells = 16;     ///< fewest cells of a stance; 0.01 m2 at 25 mm
+    static constexpr double kSurface_m = 0.05;  ///< height range of one surface under the body
     /// Heights beyond this are unknown, as for the gate.
     static constexpr double kHighest_m = 1000.0;
 
@@ -68,8 +68,8 @@ class Reachability {
         std::int32_t next;
     };
     struct Cell {
-        std::int32_t height;  ///< 0.1 mm, as all steps
-        std::int32_t step;    ///< smallest known so far
+        std::int32_t height;  ///< in 0.1 mm, like all steps
+        std::int32_t step;    ///< smallest step known so far
     };
 
     void load(ImageView<const float> height_m);
@@ -84,7 +84,7 @@ class Reachability {
     void gather(const grid::GridGeometry& geometry, const Eigen::Vector2d& body_m, double radius_m);
     [[nodiscard]] std::int32_t lowest_surface();
     void spread();
-    /// `waiting`: used entries of `waiting_`; returns the new number.
+    /// `waiting`: number of used entries of `waiting_`. Returns the new number.
     [[nodiscard]] std::int32_t visit(std::int32_t cell, std::int32_t step, std::int32_t waiting);
     void write(grid::Layer& reach_step_m) const;
 

@@ -7,17 +7,17 @@
 
 namespace surefoot::traversability {
 
-/// Pass 1: highest minus lowest known height within the first disc around every known cell of
-/// `rect`; NaN at unknown cells. NaN everywhere if the disc is a single cell, because it could only
-/// find 0.
+/// Pass 1: computes the highest minus the lowest known height within the first disc around every
+/// known cell of `rect`; NaN at unknown cells. NaN everywhere if the disc is a single cell, because
+/// it could only find 0.
 void step_heights(const PaddedLayer& height_m,
                   const Disc& first_disc,
                   const CellRect& rect,
                   PaddedLayer& step_height_m);
 
-/// Pass 2, at every cell with a known step height within the second disc (unknown cells included):
-///   s = min(max, n / critical_cells * max), n = number of step heights above the critical one,
-///   so that a single noisy cell is no obstacle;  rating = 1 - s / critical below it, else 0.
+/// Pass 2: rates every cell with a known step height within the second disc, also unknown cells:
+///   s = min(max, n / critical_cells * max), n = number of step heights above the critical step.
+///   So one noisy cell is no obstacle. Rating = 1 - s / critical if s < critical, else 0.
 void rate_step(const TraversabilityConfig::Step& config,
                const PaddedLayer& step_height_m,
                const Disc& second_disc,

@@ -26,10 +26,10 @@ namespace {
 
 struct RatingConstants {
     float largest_below;   ///< largest float that is not above the critical step
-    float smallest_above;  ///< smallest float that is not below it
+    float smallest_above;  ///< smallest float that is not below the critical step
     float inverse;         ///< 1 / critical step
-    float enough;          ///< critical cells
-    float share;           ///< share of one critical cell
+    float enough;          ///< number of critical cells for the full step height
+    float share;           ///< 1 / number of critical cells
 };
 
 }  // namespace
@@ -61,7 +61,7 @@ HWY_INLINE void store(const Pair& pair, StepRun& run) {
     hn::Store(pair.b, kFloats, run.figures[1]);
 }
 
-/// Lowest and highest known height; +inf and -inf of none.
+/// Lowest and highest known height; +inf and -inf without known heights.
 struct Range {
     HWY_INLINE Pair cell(const float* at) const {
         const Floats z = hn::LoadU(kFloats, at);
@@ -119,7 +119,7 @@ HWY_INLINE void down_the_stripe(const Figures& figures,
                                 const Finish& finish) {
     const int reach = disc.reach;
     const int kept = 2 * reach + 1;
-    StepRun* row[2 * DiscRuns::kMaxReach + 1];  // [dy + reach] around the present centre
+    StepRun* row[2 * DiscRuns::kMaxReach + 1];  // row dy of the current disc is [dy + reach]
     for (int k = 0; k < kept; ++k)
         row[k] = ring + static_cast<std::size_t>(k) * widths.half_widths().size();
     for (int iy = rect.iy0 - reach; iy < rect.iy0 + rect.ny + reach; ++iy) {
@@ -173,7 +173,7 @@ HWY_INLINE Floats rating(const RatingConstants& k, const Pair& critical) {
     const Floats step_m = hn::IfThenElse(all, highest, hn::Min(partly, highest));
     const Floats one = hn::Set(kFloats, 1.0F);
     const Floats passable = hn::Sub(one, hn::Mul(step_m, hn::Set(kFloats, k.inverse)));
-    // At least the smallest float, because a step below the critical one is not rated 0.
+    // Keeps at least the smallest float, because a step below the critical step is not rated 0.
     const Floats positive = hn::Max(passable, hn::Set(kFloats, std::numeric_limits<float>::min()));
     const auto below = hn::Lt(step_m, hn::Set(kFloats, k.smallest_above));
     const auto known = hn::Ge(highest, hn::Zero(kFloats));

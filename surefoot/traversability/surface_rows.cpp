@@ -38,7 +38,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<double, 8> kDoubles;
-constexpr hn::Rebind<float, decltype(kDoubles)> kHalf;  // as many floats as there are doubles
+// a vector of floats with as many lanes as a vector of doubles
+constexpr hn::Rebind<float, decltype(kDoubles)> kHalf;
 constexpr hn::CappedTag<float, 16> kFloats;
 using Doubles = hn::VFromD<decltype(kDoubles)>;
 using Mask = decltype(hn::Eq(Doubles(), Doubles()));
@@ -51,7 +52,7 @@ HWY_INLINE Doubles set(double value) {
 HWY_INLINE Floats setf(float value) {
     return hn::Set(kFloats, value);
 }
-/// Converts as many floats as there are doubles.
+/// Converts as many floats as fit into a vector of doubles.
 HWY_INLINE Doubles doubles(const float* from) {
     return hn::PromoteTo(kDoubles, hn::LoadU(kHalf, from));
 }
@@ -76,7 +77,8 @@ HWY_INLINE Split split(Doubles value) {
     return {high, hn::Sub(value, high)};
 }
 
-/// The cells of one row around a strip, 0 where unknown. The first is `reach` columns left of it.
+/// The cells of one row around a strip, 0 where unknown. The first cell is `reach` columns left of
+/// the strip.
 struct RowCells {
     static constexpr int kCells = kStrip + 2 * DiscRuns::kMaxReach + 16;
     HWY_ALIGN double z[kCells];
@@ -300,8 +302,9 @@ struct Axis {
 /// plain version.
 HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
     constexpr int kMaxSteps = 6;
-    constexpr double kSmallStep = 1e-3;  // the next root leaves a turn error of kSmallStep^3
-    constexpr double kMinLength = 1e-4;  // rounding 1e-16 over it turns the axis by 1e-12 rad
+    // When a step is this small, the next root leaves a turn error of the axis of kSmallStep^3.
+    constexpr double kSmallStep = 1e-3;
+    constexpr double kMinLength = 1e-4;  // rounding 1e-16 / kMinLength turns the axis by 1e-12 rad
     constexpr double kMaxTurn = 1e-10;
     const auto mul = [](Doubles a, Doubles b) { return hn::Mul(a, b); };
     const auto minor = [&](Doubles a, Doubles b, Doubles c, Doubles d) {
@@ -331,8 +334,8 @@ HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
         under_way = hn::AndNot(arrived, under_way);
     }
 
-    // Perpendicular to the first two rows of (scatter - l); its length is (middle - l)(largest - l)
-    // n_z.
+    // Perpendicular to the first two rows of (scatter - l).
+    // The length of this vector is (middle - l)(largest - l) n_z.
     const Doubles a = hn::Sub(s.xx, l);
     const Doubles b = hn::Sub(s.yy, l);
     const Doubles x = minor(s.xy, s.yz, s.xz, b);
@@ -361,7 +364,7 @@ struct StripOut {
     float* roughness;
 };
 
-/// Centre heights (0 if unknown), and their known flags.
+/// Centre heights (0 if unknown), and flags of known cells.
 struct Center {
     Doubles z;
     Mask known;
@@ -491,7 +494,7 @@ void rate_strip(const Surface& surface,
     const std::vector<int>& half_widths = surface.widths.half_widths();
     const int columns = (strip.nx + 15) / 16 * 16;
     const bool same_disc = surface.normals.width == surface.roughness.width;
-    RunSums* row[2 * DiscRuns::kMaxReach + 1];  // [dy + reach] around the present centre
+    RunSums* row[2 * DiscRuns::kMaxReach + 1];  // row dy of the current disc is [dy + reach]
     for (int k = 0; k < kept; ++k) row[k] = ring + static_cast<std::size_t>(k) * half_widths.size();
     RowCells cells[2];
     const auto load = [&](int iy) {
@@ -508,7 +511,7 @@ void rate_strip(const Surface& surface,
         &out.normal_x, &out.normal_y, &out.normal_z, &out.slope, &out.roughness};
     for (int iy = strip.iy0 - reach; iy < strip.iy0 + strip.ny + reach; ++iy) {
         std::rotate(row, row + 1, row + kept);
-        // One row ahead: a load right after a store at another offset would stall.
+        // Loads one row ahead: a load right after a store at another offset would stall.
         if (iy + 1 < strip.iy0 + strip.ny + reach) load(iy + 1);
         reduce_heights(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
         reduce_counts(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);

@@ -84,8 +84,8 @@ void Traversability::rate(ImageView<const float> height_m,
     const int height_margin = std::max({Disc::reach_of(config_.normals.radius_m, resolution_m),
                                         first_reach,
                                         Disc::reach_of(config_.roughness.radius_m, resolution_m)});
-    // Step heights are needed within the second disc around the rated cells, heights within the
-    // first disc around those.
+    // Needs step heights within the second disc around the rated cells, and heights within the
+    // first disc around these step heights.
     const CellRect wide = rect.grown(second_reach).clipped(nx, ny);
     const CellRect read = wide.grown(height_margin).clipped(nx, ny);
     height_.reset(read, height_margin);

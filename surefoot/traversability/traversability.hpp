@@ -56,7 +56,7 @@ class Traversability {
               Executor& executor,
               TraversabilityLayers& out);
 
-    /// Rates only the cells of `region` and leaves the other cells of `out` as they are. The values
+    /// Rates only the cells of `region` and leaves the other cells of `out` unchanged. The ratings
     /// equal those of a rating of the whole map. If `out` has another size than the map, all cells
     /// are rated.
     void rate(ImageView<const float> height_m,

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMinRadius_m = 0.001;
 constexpr double kMaxRadius_m = 5.0;
-constexpr double kMaxSlope_rad = 1.5708;  // a wall; published sets round pi/2 up to this
+// Slope of a wall. Published sets round pi/2 up to this value.
+constexpr double kMaxSlope_rad = 1.5708;
 constexpr std::array<const char*, 2> kCombineNames{"mean_nan", "zero_dominates"};
 
 }  // namespace
@@ -20,7 +21,7 @@ void TraversabilityConfig::Normals::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "radius of the surface patch around a cell whose normal is computed");
+                   "radius around a cell within which its surface normal is computed");
 }
 
 void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
@@ -31,23 +32,24 @@ void TraversabilityConfig::Slope::describe(ConfigVisitor& visitor) {
 void TraversabilityConfig::Step::describe(ConfigVisitor& visitor) {
     visitor.number(
         "critical_m", critical_m, 0.0001, 10.0, "step height at which the rating reaches 0");
-    visitor.number("first_radius_m",
-                   first_radius_m,
-                   kMinRadius_m,
-                   kMaxRadius_m,
-                   "radius around a cell within which its height range is taken");
+    visitor.number(
+        "first_radius_m",
+        first_radius_m,
+        kMinRadius_m,
+        kMaxRadius_m,
+        "radius around a cell within which its height range (highest minus lowest) is measured");
     visitor.number(
         "second_radius_m",
         second_radius_m,
         kMinRadius_m,
         kMaxRadius_m,
-        "radius around a cell within which height ranges are gathered for its step height");
-    visitor.integer(
-        "critical_cells",
-        critical_cells,
-        1,
-        100000,
-        "number of cells with a critical step from which the step height counts in full");
+        "radius around a cell within which the height ranges of the cells decide its step height");
+    visitor.integer("critical_cells",
+                    critical_cells,
+                    1,
+                    100000,
+                    "number of cells with a critical step; from this number on, the step height "
+                    "counts in full");
 }
 
 void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
@@ -57,25 +59,29 @@ void TraversabilityConfig::Roughness::describe(ConfigVisitor& visitor) {
                    radius_m,
                    kMinRadius_m,
                    kMaxRadius_m,
-                   "radius around a cell within which distances from the plane are taken");
+                   "radius around a cell within which the distances of the ground from the plane "
+                   "are measured");
 }
 
 void TraversabilityConfig::Weights::describe(ConfigVisitor& visitor) {
-    visitor.number("slope",
-                   slope,
-                   0.0,
-                   1000.0,
-                   "weight of the slope rating in the sum; the sum is divided by all weights");
-    visitor.number("step",
-                   step,
-                   0.0,
-                   1000.0,
-                   "weight of the step rating in the sum; the sum is divided by all weights");
+    visitor.number(
+        "slope",
+        slope,
+        0.0,
+        1000.0,
+        "weight of the slope rating in the sum; the sum is divided by the total of all weights");
+    visitor.number(
+        "step",
+        step,
+        0.0,
+        1000.0,
+        "weight of the step rating in the sum; the sum is divided by the total of all weights");
     visitor.number("roughness",
                    roughness,
                    0.0,
                    1000.0,
-                   "weight of the roughness rating in the sum; the sum is divided by all weights");
+                   "weight of the roughness rating in the sum; the sum is divided by the total of "
+                   "all weights");
 }
 
 void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
@@ -103,7 +109,7 @@ void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
                     independent_cells,
                     1,
                     1000,
-                    "largest number of independent height errors in a disc");
+                    "largest number of height errors in a disc that count as independent");
 }
 
 void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
@@ -178,7 +184,7 @@ TraversabilityConfig TraversabilityConfig::widened_to(double resolution_m) const
 
 std::optional<TraversabilityConfig> preset(std::string_view name) {
     using Config = TraversabilityConfig;
-    if (name == "rex_zed") {  // live on the REX with the ZED in 2016: comparison, not advice
+    if (name == "rex_zed") {  // used on the REX with the ZED in 2016; only for comparison
         return Config{{0.075},
                       {1.047},
                       {0.075, 0.075, 0.075, 30},
@@ -186,7 +192,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "rex_demo_stairs") {  // slope and roughness practically off
+    if (name == "rex_demo_stairs") {  // slope and roughness have practically no effect
         return Config{{0.075},
                       {1.56},
                       {0.10, 0.06, 0.06, 10},
@@ -194,7 +200,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "laser") {  // preset for ground truth by the laser scanner
+    if (name == "laser") {  // preset for ground truth that the laser scanner measured
         return Config{{0.1},
                       {1.5708},
                       {0.1, 0.075, 0.10, 5},

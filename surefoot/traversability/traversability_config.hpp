@@ -14,13 +14,13 @@ namespace surefoot::traversability {
 /// Treatment of a cell in which one layer is unknown or impassable.
 enum class Combine : std::uint8_t {
     mean_nan,        ///< weighted mean; unknown if any layer is unknown
-    zero_dominates,  ///< an exact 0 in a weighted layer forces 0, also with unknown layers
+    zero_dominates,  ///< an exact 0 in a weighted layer forces 0, even with unknown layers
 };
 
 /// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius needs
 /// at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
-/// unknown. Defaults: the critical values of `ethz`. The radii lie between the centre distances of
-/// a 25 mm grid (no cell on the rim) and average stereo noise over 29, 21 and 29 cells.
+/// unknown. Defaults: critical values of `ethz`; radii between the centre distances of a 25 mm grid
+/// (no cell on the rim), large enough to average stereo noise.
 struct TraversabilityConfig {
     struct Normals {
         double radius_m = 0.08;
@@ -64,7 +64,7 @@ struct TraversabilityConfig {
     };
     struct Resolve {
         double step_m = 0.010;    ///< lowest door sill on which a toe catches
-        double radius_m = 0.025;  ///< a patch of about 50 mm, as the gate's
+        double radius_m = 0.025;  ///< a patch about 50 mm wide, as in the gate
         void describe(ConfigVisitor& visitor);
     };
 
@@ -80,7 +80,7 @@ struct TraversabilityConfig {
 
     void describe(ConfigVisitor& visitor);
 
-    /// Returns the first reason why this cannot rate a grid of that cell size, or nothing.
+    /// Returns the first reason why this config cannot rate a grid of that cell size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
     /// Returns a copy in which every radius below one cell becomes one cell, the smallest disc with
     /// neighbours. So one configuration also serves coarse maps, and obstacles grow no more than
@@ -92,7 +92,7 @@ inline constexpr std::array<const char*, 4> kPresetNames{
     "rex_zed", "rex_demo_stairs", "laser", "ethz"};
 
 /// Published parameter sets for comparison: `rex_zed`, `rex_demo_stairs` and `laser` (Lange 2016)
-/// with the zero rule, `ethz` (traversability_estimation) with the mean. Else empty.
+/// with the zero rule, `ethz` (traversability_estimation) with the mean. Other names give nothing.
 [[nodiscard]] std::optional<TraversabilityConfig> preset(std::string_view name);
 
 }  // namespace surefoot::traversability

@@ -189,7 +189,7 @@ TEST(MapFile, SaysWhatIsImpossible) {
         {"-1 x 2 cells", with(bytes, kNxAt, std::int32_t{-1})},
         {"2147483647 x 2 cells", with(bytes, kNxAt, std::int32_t{2147483647})},
         {"bytes, but 3 x 2 cells of its 10 layers need", with(bytes, kNxAt, std::int32_t{3})},
-        {"the name of its frame must be 1 to 31", with(bytes, kFrameAt, std::uint32_t{0})},
+        {"the name of the map's frame must be 1 to 31", with(bytes, kFrameAt, std::uint32_t{0})},
         {"frame is not filled up", with(bytes, kFrameAt + 31, 'x')},
         {"257 layers", with(bytes, kLayersAt, std::uint32_t{257})},
         {"are too few for 200 layers", with(bytes, kLayersAt, std::uint32_t{200})},
