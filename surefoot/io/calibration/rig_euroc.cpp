@@ -17,7 +17,7 @@ Pose read_sensor_pose(YamlReader& yaml) {
     const YamlNode* pose = yaml.required(yaml.root(), "T_BS");
     if (pose == nullptr) return {};
     if (!pose->is_mapping()) {
-        yaml.fail(*pose, "T_BS", "expected rows, cols and data");
+        yaml.fail(*pose, "T_BS", "expected a group with rows, cols and data");
         return {};
     }
     const YamlNode* data = yaml.required(*pose, "data");
@@ -36,7 +36,10 @@ camera::CameraModel read_model(YamlReader& yaml) {
     }
     if (const YamlNode* model = root.find("camera_model"); model != nullptr) {
         if (yaml.text(*model, "camera_model") != "pinhole") {
-            yaml.fail(*model, "camera_model", quoted(model->scalar) + " is not 'pinhole'");
+            yaml.fail(
+                *model,
+                "camera_model",
+                quoted(model->scalar) + " is not supported; the camera model must be 'pinhole'");
         }
     }
     std::string distortion = "none";
@@ -51,15 +54,16 @@ camera::CameraModel read_model(YamlReader& yaml) {
         if (count != 4 && distortion_node != nullptr) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; equidistant has 4", count));
+                      fmt::format("{} numbers; the equidistant model has 4", count));
         }
         return make_kannala_brandt(k, coefficients);
     }
     if (distortion == "radial-tangential" || distortion == "radtan") {
         if (count != 4 && count != 5) {
-            yaml.fail(list != nullptr ? *list : *distortion_node,
-                      "distortion_coefficients",
-                      fmt::format("{} numbers; radial-tangential has 4 (or 5 with k3)", count));
+            yaml.fail(
+                list != nullptr ? *list : *distortion_node,
+                "distortion_coefficients",
+                fmt::format("{} numbers; the radial-tangential model has 4, or 5 with k3", count));
         }
         return make_pinhole(k, coefficients);
     }
@@ -67,7 +71,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; rational_polynomial has 8", count));
+                      fmt::format("{} numbers; the rational_polynomial model has 8", count));
         }
         if (yaml.error()) return {};
         return lens_or_fail(

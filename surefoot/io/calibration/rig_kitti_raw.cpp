@@ -111,7 +111,7 @@ Result<RigFile> raw_rig(RawLines& raw, const std::string& left, const std::strin
     out.rig.right = read_raw_camera(raw, right);
     out.rig.T_left_right = read_raw_pose(raw, left) * read_raw_pose(raw, right).inverse();
     if (raw.error()) return *raw.error();
-    out.notes.emplace_back("the cameras of the raw images are used (S, K, D, R, T)");
+    out.notes.emplace_back("the calibration of the raw images is used (keys S, K, D, R, T)");
     return out;
 }
 
@@ -140,8 +140,8 @@ Result<RigFile> rectified_rig(RawLines& raw,
     RigFile out;
     out.rig = *rig;
     out.notes.emplace_back(
-        "the cameras of the rectified images are used (S_rect, P_rect), as 'synced+rectified' "
-        "recordings show them");
+        "the calibration of the rectified images is used (keys S_rect, P_rect). It fits recordings "
+        "named 'synced+rectified'");
     return out;
 }
 

@@ -111,11 +111,12 @@ Result<RigFile> parse_middlebury_rig(std::string_view text,
         const double doffs_px = in.number("doffs");
         const double differ_px = right[2] - left[2];
         if (!(std::abs(doffs_px - differ_px) <= kDoffsTolerance_px)) {
-            in.fail(fmt::format(
-                "{}: doffs is {} px, but the principal points of cam1 and cam0 differ by {:.3f} px",
-                file,
-                doffs_px,
-                differ_px));
+            in.fail(
+                fmt::format("{}: doffs is {} px, but the principal points of cam1 and cam0 differ "
+                            "by {:.3f} px; copy the file again",
+                            file,
+                            doffs_px,
+                            differ_px));
         }
     }
     if (in.error()) return *in.error();
@@ -126,9 +127,8 @@ Result<RigFile> parse_middlebury_rig(std::string_view text,
     out.rig.T_left_right.translation_m.x() = 1e-3 * baseline_mm;
     if (right[2] != left[2]) {
         out.notes.push_back(
-            fmt::format("the principal points differ by doffs = {:.3f} px: disparities of these "
-                        "images are that "
-                        "much smaller than f * baseline / depth",
+            fmt::format("the principal points differ by doffs = {:.3f} px: a disparity of these "
+                        "images is f * baseline / depth - doffs",
                         right[2] - left[2]));
     }
     return checked_file(std::move(out), file);

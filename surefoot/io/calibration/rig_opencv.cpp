@@ -37,7 +37,7 @@ bool require(YamlReader& yaml, const NamedNode& found, const char* what, const N
     yaml.fail(yaml.root(),
               what,
               other.node != nullptr
-                  ? fmt::format("not found; the key of the other camera is '{}': both keys must "
+                  ? fmt::format("not found; the key of the other camera is '{}'. The two keys may "
                                 "differ only in 1 and 2, left and right, or l and r",
                                 other.key)
                   : "not found under any of its usual names");
@@ -104,7 +104,7 @@ Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
     if (const auto problem = camera::baseline_problem(length_m)) {
         yaml.fail(*names.T.node,
                   names.T.key,
-                  *problem + " (stereoCalibrate uses the unit of the board's squares)");
+                  *problem + " (stereoCalibrate returns T in the unit of the board's squares)");
     }
     return pose_from_parts(yaml, *names.R.node, names.R.key, R, T).inverse();
 }
@@ -157,8 +157,8 @@ Result<std::string> format_opencv_rig(const camera::StereoRig& rig) {
     const bool fisheye = is_kannala_brandt(rig.left.model);
     if (fisheye != is_kannala_brandt(rig.right->model)) {
         return output_error(
-            "an OpenCV file can store two fisheye lenses or two other lenses; this rig has one of "
-            "each");
+            "an OpenCV file stores either two fisheye lenses or two pinhole lenses, but this rig "
+            "has one fisheye lens and one pinhole lens; choose another format");
     }
     const Pose T_right_left = rig.T_left_right.inverse();
     const Eigen::Vector3d& t = T_right_left.translation_m;

@@ -114,8 +114,8 @@ void read_two_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     }
     yaml.fail(root,
               "Stereo.T_c1_c2",
-              "this key is missing: without the pose of camera 2 in camera 1 the settings are for "
-              "one camera. Rectified cameras may give Stereo.b instead");
+              "this key is missing, but two cameras need the pose of camera 2 in camera 1. Add the "
+              "key; for rectified cameras add Stereo.b instead");
 }
 
 /// LEFT.* or RIGHT.* of ORB-SLAM2, as ROS has them.
@@ -185,7 +185,8 @@ void read_rectified_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
                   "R, P and RIGHT.K, D, R, P of the raw images too");
     }
     out.notes.emplace_back(
-        "Camera.bf without LEFT.* and RIGHT.*: the program assumes rectified images");
+        "the file has Camera.bf but no keys LEFT.* and RIGHT.*: the program assumes rectified "
+        "images");
 }
 
 void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
@@ -195,8 +196,8 @@ void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
             yaml.root(),
             has("LEFT.K") ? "RIGHT.K" : "LEFT.K",
             "this key is missing: these ORB-SLAM settings describe the raw images of one camera "
-            "only. Give K, D, R and P of both LEFT and RIGHT. For rectified images give none of "
-            "them; then Camera.fx .. and Camera.bf are used");
+            "only. Give K, D, R and P of both LEFT and RIGHT. For rectified images remove all keys "
+            "LEFT.* and RIGHT.*; then Camera.fx .. and Camera.bf are used");
     }
     if (has("LEFT.K")) return read_raw_pair(yaml, out, size);
     if (has("DepthMapFactor") || has("RGBD.DepthMapFactor"))
@@ -206,8 +207,8 @@ void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     if (has("Camera.bf")) return read_rectified_pair(yaml, out, size);
     yaml.fail(yaml.root(),
               "Stereo.T_c1_c2",
-              "this key is missing: these ORB-SLAM settings are for one camera (Stereo.b and "
-              "Camera.bf are missing too)");
+              "this key is missing, and Stereo.b and Camera.bf are missing too: these ORB-SLAM "
+              "settings are for one camera. Give the settings of a stereo camera");
 }
 
 void read_imu(YamlReader& yaml, RigFile& out) {

@@ -60,8 +60,8 @@ std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, 
     if (zero) return "none";
     yaml.fail(list,
               key,
-              fmt::format("the coefficients have distortion_model {}; give plumb_bob, "
-                          "rational_polynomial or equidistant",
+              fmt::format("the coefficients are not 0, but distortion_model is {}; set it to "
+                          "plumb_bob, rational_polynomial or equidistant",
                           quoted(model)));
     return "none";
 }
@@ -102,8 +102,8 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     if (given < 8 && !D.empty()) expect(4, 5);
     if (D.size() > 5 && !yaml.error()) {
         out.notes.push_back(
-            fmt::format("distortion_model is plumb_bob, but coefficients after k3 of {} are not 0: "
-                        "they are read as rational_polynomial",
+            fmt::format("distortion_model is plumb_bob, but coefficients after k3 in {} are not 0: "
+                        "the program reads all coefficients as rational_polynomial",
                         keys.D));
     }
     return lens_or_fail(yaml, list, keys.D, pinhole_lens(k, std::move(D)));
@@ -198,8 +198,8 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
         return yaml.fail(
             root,
             "binning_x, binning_y",
-            fmt::format("{} x {} px cannot be binned by {} x {}: the sides are not multiples of "
-                        "it. Calibrate at the size that the camera delivers",
+            fmt::format("{} x {} px cannot be binned by {} x {}: a side is not a multiple of its "
+                        "binning factor. Calibrate at the image size that the camera delivers",
                         width,
                         height,
                         bin_x,
@@ -208,8 +208,8 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
     const bool whole = width == camera.width && height == camera.height;
     if (whole && bin_x == 1 && bin_y == 1) return;
     out.notes.push_back(
-        fmt::format("roi and binning are applied: the rig is for images of {} x {} px, the part of "
-                    "{} x {} px at ({}, {}) of {} x {} px",
+        fmt::format("roi and binning are applied: the rig is for images of {} x {} px. They show "
+                    "the part of {} x {} px at ({}, {}) of the full image of {} x {} px",
                     width / bin_x,
                     height / bin_y,
                     width,
@@ -253,8 +253,8 @@ Result<RosCamera> parse_camera(const NamedText& in) {
 Status check_rotations(const RosCamera& l, const RosCamera& r, RigFile& out) {
     if (l.has_rotation != r.has_rotation) {
         return input_error(
-            "the rectification matrix of one camera is all zero (not rectified), the other's is "
-            "not: both files must come from one stereo calibration");
+            "the rectification matrix of one camera is all zero (not rectified), but that of the "
+            "other camera is not. Both files must come from one stereo calibration");
     }
     if (l.has_rotation) return {};
     out.notes.emplace_back(
@@ -299,12 +299,13 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
     if (!r) return r.error();
     const double baseline_m = r->x_m - l->x_m;
     if (!(baseline_m > 0.0)) {
-        return input_error(fmt::format(
-            "{}: projection_matrix: element (0, 3) says that this camera lies {} m to the right of "
-            "the left one; it must be -fx * baseline, below 0, in the right camera's file (0 is a "
-            "calibration of single cameras; above 0 the cameras are swapped)",
-            right.file,
-            baseline_m));
+        return input_error(
+            fmt::format("{}: projection_matrix: element (0, 3) says that this camera lies {} m to "
+                        "the right of the left camera. In the file of the right camera this "
+                        "element must be -fx * baseline, below 0. If it is 0, the cameras were "
+                        "calibrated one by one; if it is above 0, the cameras are swapped",
+                        right.file,
+                        baseline_m));
     }
     if (const auto problem = camera::baseline_problem(baseline_m)) {
         return input_error(fmt::format(

@@ -51,7 +51,8 @@ camera::Camera read_camera(YamlReader& yaml,
     camera.width = size.width;
     camera.height = size.height;
     if (!node.is_mapping()) {
-        yaml.fail(node, name, "expected model, focal_px, principal_px and coefficients");
+        yaml.fail(
+            node, name, "expected a group with model, focal_px, principal_px and coefficients");
         return camera;
     }
     yaml.only_keys(node, name + ".", {"model", "focal_px", "principal_px", "coefficients"});
@@ -142,7 +143,8 @@ void read_full_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoR
 }
 
 void read_imu(YamlReader& yaml, const YamlNode& node, camera::StereoRig& rig) {
-    if (!node.is_mapping()) return yaml.fail(node, "imu", "expected T_body_imu and rate_hz");
+    if (!node.is_mapping())
+        return yaml.fail(node, "imu", "expected a group with T_body_imu and rate_hz");
     yaml.only_keys(node, "imu.", {"T_body_imu", "rate_hz"});
     camera::ImuMount imu;
     if (const YamlNode* pose = yaml.required(node, "T_body_imu"); pose != nullptr) {

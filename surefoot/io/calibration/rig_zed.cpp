@@ -59,7 +59,7 @@ class ZedReader {
         }
         fail(fmt::format(
             "[{0}] has no '{1}'. Download the file of this serial number again, or add the line "
-            "'{1} = 0', which Stereolabs' programs assume for older files",
+            "'{1} = 0'. Stereolabs' programs also use 0 if an older file has no such key",
             section,
             *keys.begin()));
         return 0.0;
@@ -97,16 +97,16 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     }
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
-        return input_error(
-            fmt::format("{}: the file has no section for {} px, only {}. A ZED crops its sensor "
-                        "differently for each resolution, so no section can be scaled",
-                        ini.name,
-                        size_text(*size),
-                        fmt::join(found, ", ")));
+        return input_error(fmt::format(
+            "{}: the file has no section for {} px, only {}. A ZED crops its sensor differently "
+            "for each resolution, so no section can be scaled. Use images of one of these sizes",
+            ini.name,
+            size_text(*size),
+            fmt::join(found, ", ")));
     }
     return input_error(
-        fmt::format("{}: the file has several resolutions: {}; use it with its images, or select "
-                    "one with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
+        fmt::format("{}: the file has several resolutions: {}. Use the file with its images, or "
+                    "select a resolution with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
                     ini.name,
                     fmt::join(found, ", ")));
 }
@@ -164,14 +164,13 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
     };
     const double baseline_mm = zed.number("STEREO", "Baseline");
     if (!zed.error() && !(baseline_mm > 0.0)) {
-        zed.fail(fmt::format(
-            "[STEREO] Baseline = {} must be above 0: the distance of the cameras in millimetres",
-            baseline_mm));
+        zed.fail(
+            fmt::format("[STEREO] Baseline = {} must be above 0; it is the distance between the "
+                        "cameras in millimetres",
+                        baseline_mm));
     } else if (const auto problem = camera::baseline_problem(1e-3 * baseline_mm);
                !zed.error() && problem) {
-        zed.fail(fmt::format("[STEREO] Baseline = {}, and this file counts in millimetres: {}",
-                             baseline_mm,
-                             *problem));
+        zed.fail(fmt::format("[STEREO] Baseline = {}, in millimetres: {}", baseline_mm, *problem));
     }
     const double y_mm = value("TY");  // read in order, so that the first missing key is reported
     const double z_mm = value("TZ");

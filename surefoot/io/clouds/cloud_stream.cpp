@@ -75,8 +75,11 @@ class CloudStream::Lines final : public Part {
                 const std::size_t feed = bytes->rfind('\n');
                 const std::size_t end = feed != bytes->npos ? feed : bytes->rfind('\r');
                 if (end == bytes->npos) {
-                    return input_error(fmt::format(
-                        "{}: a line of more than {} bytes is not a point", path_, kBlockBytes));
+                    return input_error(
+                        fmt::format("{}: a line has more than {} bytes and cannot be a point; "
+                                    "check that this is a text cloud",
+                                    path_,
+                                    kBlockBytes));
                 }
                 bytes->resize(end + 1);
             }
@@ -191,17 +194,16 @@ Result<std::optional<Eigen::Vector3f>> ShiftedReader::shifted(const Eigen::Vecto
     if (!shift_m_) shift_m_ = shift_for(p_m);
     const Eigen::Vector3d off_m = p_m - *shift_m_;
     if (off_m.cwiseAbs().maxCoeff() > kFar_m) {
-        return input_error(
-            fmt::format("{}: the point ({:g}, {:g}, {:g}) m is more than 100 km from the others, "
-                        "which begin near ({:g}, {:g}, {:g}): remove stray points, or check the "
-                        "unit",
-                        path_,
-                        p_m.x(),
-                        p_m.y(),
-                        p_m.z(),
-                        shift_m_->x(),
-                        shift_m_->y(),
-                        shift_m_->z()));
+        return input_error(fmt::format(
+            "{}: the point ({:g}, {:g}, {:g}) m is more than 100 km from the other points, which "
+            "begin near ({:g}, {:g}, {:g}) m: remove stray points, or check the unit",
+            path_,
+            p_m.x(),
+            p_m.y(),
+            p_m.z(),
+            shift_m_->x(),
+            shift_m_->y(),
+            shift_m_->z()));
     }
     return std::optional<Eigen::Vector3f>(off_m.cast<float>());
 }
@@ -228,8 +230,10 @@ Result<ShiftedCloud> read_shifted(const std::string& path,
     cloud.shift_m = reader.shift_m();
     cloud.skipped = reader.skipped();
     if (cloud.points_m.empty()) {
-        return input_error(
-            fmt::format("{}: no point with finite coordinates among {}", path, cloud.skipped));
+        return input_error(fmt::format(
+            "{}: no point with finite coordinates ({} points in the file); check the file",
+            path,
+            cloud.skipped));
     }
     return cloud;
 }

@@ -78,7 +78,8 @@ CloudWriter::CloudWriter(CloudWriter&& other) noexcept
 void CloudWriter::note_losses(const PointCloud& block) {
     if (kind_ != Kind::pcd && block.T_cloud_sensor &&
         !block.T_cloud_sensor->matrix().isIdentity(0.0)) {
-        notes_.emplace_back("the viewpoint of the cloud is not kept: only .pcd has one");
+        notes_.emplace_back(
+            "the viewpoint of the cloud is not kept: only .pcd files can store a viewpoint");
     }
     if (kind_ != Kind::ply) return;
     for (const CloudScalar& scalar : block.scalars) {
@@ -86,8 +87,8 @@ void CloudWriter::note_losses(const PointCloud& block) {
             !std::holds_alternative<std::vector<std::uint64_t>>(scalar.values))
             continue;
         notes_.push_back(fmt::format(
-            "{} has 64-bit whole numbers, which PLY does not have: they are written as doubles, "
-            "exact up to 2^53; write .pcd or text to keep them",
+            "{} has 64-bit whole numbers, which PLY cannot store. They are written as doubles, "
+            "which are exact up to 2^53; write .pcd or text to keep larger numbers",
             quoted(scalar.name)));
     }
 }

@@ -85,7 +85,9 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if (format >= kFormats.size())
         return damaged(
-            file, fmt::format("LAS point format {} is not supported; formats 0 to 10 are", format));
+            file,
+            fmt::format("LAS point format {} is not supported; the supported formats are 0 to 10",
+                        format));
     Header header;
     header.header_bytes = header_bytes;
     header.format = format;
@@ -104,14 +106,13 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if (header.points_at < header_bytes || header.points_at > size ||
         header.points > (size - header.points_at) / header.record_bytes) {
-        return damaged(
-            file,
-            fmt::format("truncated or damaged LAS: {} points of {} bytes from byte {} on do not "
-                        "fit into {} bytes",
-                        header.points,
-                        header.record_bytes,
-                        header.points_at,
-                        size));
+        return damaged(file,
+                       fmt::format("truncated or damaged LAS: {} points of {} bytes from byte {} "
+                                   "on do not fit into {} bytes; copy the file again",
+                                   header.points,
+                                   header.record_bytes,
+                                   header.points_at,
+                                   size));
     }
     for (int axis = 0; axis < 3; ++axis) {
         header.scale[axis] = load_le<double>(data + kScales + 8 * axis);
@@ -200,11 +201,11 @@ std::vector<std::string> notes_of(const Header& header,
                     : (load_le<std::uint8_t>(record + kReturns) & 0xC0) != 0 ||
                           (load_le<std::uint8_t>(record + 15) & 0xE0) != 0;
     }
-    if (flags) notes.emplace_back("the flags of points (LAS) are not kept");
-    if (format.waves != 0) notes.emplace_back("the wave packets of points (LAS) are not kept");
+    if (flags) notes.emplace_back("the flags of the LAS points are not kept");
+    if (format.waves != 0) notes.emplace_back("the wave packets of the LAS points are not kept");
     if (header.record_bytes > format.bytes)
-        notes.emplace_back("the extra bytes of points (LAS) are not kept");
-    if (wide_colours) notes.emplace_back("colours are kept with 8 of their 16 bits (LAS)");
+        notes.emplace_back("the extra bytes of the LAS points are not kept");
+    if (wide_colours) notes.emplace_back("only 8 of the 16 bits of the LAS colours are kept");
     return notes;
 }
 

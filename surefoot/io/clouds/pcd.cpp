@@ -70,8 +70,10 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
     if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
         words.size() != header.fields.size() + 1) {
-        return input_error(fmt::format(
-            "{} names {} values for {} fields", words[0], words.size() - 1, header.fields.size()));
+        return input_error(fmt::format("{} has {} values for {} fields; each field needs one value",
+                                       words[0],
+                                       words.size() - 1,
+                                       header.fields.size()));
     }
     for (std::size_t i = 0; i < header.fields.size(); ++i) {
         Field& field = header.fields[i];
@@ -159,7 +161,7 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         if (cells > kMaxPoints || header.points.value_or(cells) != cells) {
             return at_line(file,
                            lines.number(),
-                           fmt::format("WIDTH {} x HEIGHT {} is not POINTS {}",
+                           fmt::format("WIDTH {} x HEIGHT {} must equal POINTS {}",
                                        *header.width,
                                        header.height,
                                        header.points.value_or(0)));
@@ -368,7 +370,8 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
     const auto unpacked = load_le<std::uint32_t>(header.body.data() + 4);
     if (unpacked != needed) {
         return input_error(
-            fmt::format("{}: {} points of {} bytes are not the {} bytes that the file announces",
+            fmt::format("{}: {} points of {} bytes each do not give the {} bytes that the file "
+                        "announces; copy the file again",
                         file,
                         *header.points,
                         header.stride(),
@@ -389,7 +392,7 @@ Status check_fields(const Header& header, const std::string& file) {
         if (const auto axis = axis_of(field)) ++axes[*axis];
         if (field.type == 'F' && field.bytes < 4) {
             return input_error(
-                fmt::format("{}: field {}: F needs SIZE 4 or 8", file, quoted(field.name)));
+                fmt::format("{}: field {}: TYPE F needs SIZE 4 or 8", file, quoted(field.name)));
         }
     }
     if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1) return {};

@@ -108,8 +108,8 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
     if (!axes && comment) return {};
     if (!axes) {
         return input_error(
-            fmt::format("the head line begins with {} but does not name x, y and z once each: name "
-                        "them, or remove the line",
+            fmt::format("the header line begins with {} but does not name x, y and z once each: "
+                        "name them, or remove the line",
                         quoted(columns.empty() ? content : columns.front().name)));
     }
     if (columns_ != 0) {
@@ -120,9 +120,10 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
     }
     for (const std::size_t axis : *axes) {
         if (is_metre(columns[axis].unit)) continue;
-        return input_error(fmt::format("{} is in {}; clouds are read in metres: scale the numbers",
-                                       quoted(columns[axis].name),
-                                       quoted(columns[axis].unit)));
+        return input_error(fmt::format(
+            "the column {} is in {}, but clouds are read in metres: convert the column to metres",
+            quoted(columns[axis].name),
+            quoted(columns[axis].unit)));
     }
     head_ = Head{columns, std::string(content), line_, comment};
     return {};
@@ -181,12 +182,12 @@ Status TextCloudParser::name_columns() {
         // A name of two words counts as two columns. This does no harm if x y z come first or are
         // the only columns.
         if (!fits && !first && !(in_order && columns_ == 3)) {
-            return input_error(
-                fmt::format("{} numbers, but line {} names {} columns: name each column with one "
-                            "word, or remove that line if x y z come first",
-                            columns_,
-                            head_->number,
-                            head_->columns.size()));
+            return input_error(fmt::format(
+                "the line has {} numbers, but line {} names {} columns. Name each column with one "
+                "word, or remove the line with the names if x y z come first",
+                columns_,
+                head_->number,
+                head_->columns.size()));
         }
         if (fits) axes_ = axes;
         if (fits || first)
@@ -241,8 +242,8 @@ Status TextCloudParser::take_scalar(std::string_view word, CloudScalar& scalar) 
     }
     if (parse_value(word)) {
         return input_error(
-            fmt::format("{} in the column {}, whose first value is a whole number of "
-                        "64 bits",
+            fmt::format("{} in the column {} is not a whole number of 64 bits, but the first value "
+                        "of the column is one",
                         quoted(word),
                         quoted(scalar.name)));
     }

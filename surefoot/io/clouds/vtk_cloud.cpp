@@ -81,7 +81,7 @@ Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file) {
     cloud.width = static_cast<int>(points->count);
     cloud.double_precision = points->doubles;
     if (points->text.find("\nPOINT_DATA") != std::string_view::npos)
-        cloud.notes.emplace_back("the values of points (POINT_DATA) are not kept");
+        cloud.notes.emplace_back("the values of the points (POINT_DATA) are not kept");
     return cloud;
 }
 

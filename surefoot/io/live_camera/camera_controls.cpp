@@ -74,43 +74,47 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
                    exposure_ms,
                    0.0,
                    1000.0,
-                   "live cameras: exposure time; a value above 0 switches automatic exposure off; "
-                   "0 = unchanged");
-    visitor.integer(
-        "gain",
-        gain,
-        -1,
-        1'000'000,
-        "live cameras: gain in the units of the driver (see surefoot info); -1 = unchanged");
+                   "live cameras: exposure time in milliseconds; a value above 0 switches "
+                   "automatic exposure off, 0 leaves the exposure unchanged");
+    visitor.integer("gain",
+                    gain,
+                    -1,
+                    1'000'000,
+                    "live cameras: gain in the units of the driver ('surefoot info' lists the "
+                    "range); -1 leaves the gain unchanged");
     visitor.integer("white_balance_k",
                     white_balance_k,
                     0,
                     20'000,
-                    "live cameras: colour temperature of the white balance; 0 = unchanged");
-    visitor.enumeration("auto",
-                        automatic,
-                        kAutoNames,
-                        "live cameras: mode of automatic exposure, gain and white balance");
+                    "live cameras: colour temperature of the white balance in kelvin; 0 leaves the "
+                    "white balance unchanged");
+    visitor.enumeration(
+        "auto",
+        automatic,
+        kAutoNames,
+        "live cameras: automatic exposure, gain and white balance; keep leaves them unchanged");
     visitor.enumeration("format",
                         format,
                         kFormatNames,
-                        "live cameras: pixel format of the images; any prefers yuyv");
+                        "live cameras: pixel format of the images; any uses yuyv if the camera has "
+                        "it, otherwise mjpeg");
     visitor.number("readout_ms",
                    readout_ms,
                    0.0,
                    1000.0,
-                   "live cameras: time from the first to the last row of a rolling shutter; 0 = "
-                   "global shutter; time stamps refer to the middle row");
-    visitor.number("timeout_s",
-                   timeout_s,
-                   0.2,
-                   60.0,
-                   "live cameras: time without a frame after which the device is opened again");
+                   "live cameras: time in milliseconds from the first to the last row of a rolling "
+                   "shutter; 0 is a global shutter. Time stamps refer to the middle row");
+    visitor.number(
+        "timeout_s",
+        timeout_s,
+        0.2,
+        60.0,
+        "live cameras: time in seconds without a frame after which the device is opened again");
     visitor.number("reconnect_s",
                    reconnect_s,
                    0.0,
                    3600.0,
-                   "live cameras: time without a frame after which the run ends");
+                   "live cameras: time in seconds without a frame after which the run ends");
     visitor.integer("max_damaged",
                     max_damaged,
                     1,
@@ -121,9 +125,8 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> CameraConfig::problem() const {
     const bool manual = exposure_ms > 0.0 || gain >= 0 || white_balance_k > 0;
     if (!manual || automatic != AutoControl::on) return std::nullopt;
-    return "live.auto = on, but live.exposure_ms, gain or white_balance_k gives a value; "
-           "choose "
-           "one of the two";
+    return "live.auto is on, but live.exposure_ms, live.gain or live.white_balance_k sets a fixed "
+           "value. Set live.auto to off, or remove the fixed values";
 }
 
 Result<LiveAddress> parse_live_address(std::string_view text) {

@@ -205,8 +205,8 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
         ++frame_status_.damaged;
         if (++damaged_in_a_row_ < config_.max_damaged) return std::optional<StereoFrame>();
         return input_error(
-            fmt::format("{}: {} frames in a row cannot be used, the last because: {}; check the "
-                        "cable, or choose a smaller or slower mode",
+            fmt::format("{}: {} frames in a row cannot be used. Reason for the last frame: {}. "
+                        "Check the cable, or choose a smaller or slower mode",
                         info_.path,
                         damaged_in_a_row_,
                         status.error().message));

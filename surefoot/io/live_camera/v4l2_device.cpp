@@ -68,7 +68,9 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                 "{}: no permission to open it; add the user to the group 'video' and log in again",
                 path));
         }
-        if (error == ENOTTY) return input_error(path + ": not a device");
+        if (error == ENOTTY)
+            return input_error(path +
+                               ": this is not a device ('surefoot doctor' lists the cameras)");
         return device.failed("cannot be opened (surefoot doctor lists the cameras)", error);
     }
     v4l2_capability capability = {};
@@ -79,8 +81,8 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
         return input_error(
-            fmt::format("{}: this device delivers no video stream; a camera has several devices: "
-                        "use the first one",
+            fmt::format("{}: this device delivers no video stream; a camera can have several "
+                        "devices: use the first device of this camera",
                         path));
     }
     device.card_ = text_of(capability.card);
@@ -204,8 +206,13 @@ Status V4l2Device::set_control(std::uint32_t id, const std::string& name, int va
     v4l2_control now = {id, value};
     if (system_->request(VIDIOC_G_CTRL, &now) == 0 && std::abs(now.value - value) >= known->step &&
         now.value != value) {
-        return input_error(fmt::format(
-            "{}: {} was set to {}, but the camera reports {}", path_, name, value, now.value));
+        return input_error(
+            fmt::format("{}: {} was set to {}, but the camera reports {}; choose a value that the "
+                        "camera accepts",
+                        path_,
+                        name,
+                        value,
+                        now.value));
     }
     return {};
 }

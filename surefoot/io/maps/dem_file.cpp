@@ -240,7 +240,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
             const auto value = parse_value(word);
             if (!value || std::isinf(*value)) {
                 return input_error(fmt::format(
-                    "{}:{}: value {} of row {} (of {} x {} cells) is {}",
+                    "{}:{}: value {} of row {} (of {} x {} cells): {}",
                     file,
                     word.empty() ? line_of(text, text.substr(text.size())) : line_of(text, word),
                     ix + 1,

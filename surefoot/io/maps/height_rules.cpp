@@ -106,18 +106,20 @@ std::vector<std::string> drop_impossible_heights(grid::Layer& heights_m) {
             replace(all_m, beyond_m, kInfinity) + replace(all_m, -kInfinity, -beyond_m);
         cells > 0) {
         notes.push_back(fmt::format(
-            "{} cells hold heights beyond {:g} m; they count as unknown", cells, kMaxHeight_m));
+            "{} cells have heights of more than {:g} m above or below 0; these cells are unknown",
+            cells,
+            kMaxHeight_m));
     }
     for (int i = 0; i < kMostMarks; ++i) {
         const auto mark = find_mark(all_m);
         if (!mark) break;
         const std::int64_t cells = replace(all_m, *mark, *mark);
-        notes.push_back(
-            fmt::format("{} cells hold {:g} m, more than {:g} m from all other heights: this value "
-                        "counts as an undeclared 'no data' mark, and these cells as unknown",
-                        cells,
-                        *mark,
-                        kFar_m));
+        notes.push_back(fmt::format(
+            "{} cells hold {:g} m, which differs by more than {:g} m from all other heights. The "
+            "program takes this value for a 'no data' mark, and these cells are unknown",
+            cells,
+            *mark,
+            kFar_m));
     }
     return notes;
 }

@@ -161,7 +161,8 @@ Status read_header(Cursor& cursor, MapRegion& region, std::uint32_t& layers) {
     const auto reserved = cursor.number<std::uint32_t>();
     if (!frame) return input_error("the name of its frame is not filled up with zeros");
     region.frame = *frame;
-    if (reserved != 0) return input_error(fmt::format("reserved bytes hold {}", reserved));
+    if (reserved != 0)
+        return input_error(fmt::format("reserved bytes hold {}, but must be 0", reserved));
     if (auto problem = region.box.problem()) return input_error(*problem);
     if (layers > kMaxLayers) {
         return input_error(
@@ -312,7 +313,7 @@ Result<MapFile> parse_map(std::string_view bytes, const std::string& file) {
     MapFile out;
     out.minor = outline->minor;
     if (Status status = read_region(bytes, *outline, out); !status)
-        return damaged(file, "impossible map region: " + status.error().message);
+        return damaged(file, "invalid map region: " + status.error().message);
     return out;
 }
 

@@ -144,7 +144,8 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
 /// Reads one keyframe with its features; removes the bytes it has read from `left`.
 Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& keyframe) {
     const auto too_short = [&] {
-        return input_error(fmt::format("it ends {} bytes into a keyframe", left.size()));
+        return input_error(
+            fmt::format("the file ends after {} bytes of this keyframe", left.size()));
     };
     if (left.size() < outline.keyframe_bytes) return too_short();
     const char* at = left.data();
@@ -214,7 +215,7 @@ Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file) {
     }
     if (!left.empty())
         return damaged(
-            file, fmt::format("impossible place: {} bytes after its last keyframe", left.size()));
+            file, fmt::format("impossible place: {} bytes follow its last keyframe", left.size()));
     if (const auto problem = out.place.problem())
         return damaged(file, "impossible place: " + *problem);
     return out;

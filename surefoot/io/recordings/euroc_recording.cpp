@@ -63,8 +63,8 @@ Result<Recording> index_euroc(const std::string& folder, const OpenOptions& opti
     pair_rows(folder, *left, *right, recording);
     if (recording.frames.empty()) {
         return input_error(
-            fmt::format("{}: no frames: {} rows of cam0 and {} of cam1 have no time stamps within "
-                        "{:g} ms of each other; give a larger --pair-tolerance",
+            fmt::format("{}: no frames: the {} rows of cam0 and the {} rows of cam1 have no time "
+                        "stamps within {:g} ms of each other; give a larger --pair-tolerance",
                         folder,
                         left->size(),
                         right->size(),

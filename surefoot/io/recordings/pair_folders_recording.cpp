@@ -174,8 +174,8 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
     if (std::string_view(pair.layout.kind) == "kitti")
         return calib_txt_rig(kitti, pair.layout, size);  // returns its error
     return input_error(
-        fmt::format("{}: {} left and {} right images but no calibration; put a rig.yaml beside "
-                    "their folders or give one with --rig",
+        fmt::format("{}: the folder has {} left and {} right images but no calibration. Put a "
+                    "rig.yaml beside the two image folders, or give a rig with --rig",
                     folder,
                     pair.left.size(),
                     pair.right.size()));
@@ -233,15 +233,16 @@ Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Record
     } else if (pair.left.size() == pair.right.size()) {
         for (std::size_t i = 0; i < pair.left.size(); ++i)
             add_frame(pair, pair.left[i], pair.right[i], time_of(i), recording);
-        recording.info.notes.push_back(fmt::format(
-            "left and right images have different names ({}, {}); they are paired in their order",
-            pair.left.front(),
-            pair.right.front()));
+        recording.info.notes.push_back(
+            fmt::format("left and right images have different names ({}, {}); they are paired in "
+                        "the order of their names",
+                        pair.left.front(),
+                        pair.right.front()));
         return {};
     }
     return input_error(
-        fmt::format("{} has {} images and {} has {}, and neither names nor time stamps show which "
-                    "belong together; give both images of a frame the same name",
+        fmt::format("{} has {} images and {} has {}. Neither names nor time stamps show which "
+                    "images belong together; give both images of a frame the same name",
                     pair.left_folder,
                     pair.left.size(),
                     pair.right_folder,
@@ -260,8 +261,11 @@ Status listed_stamps(const std::string& path,
                      Recording& recording) {
     if (!times_ns) return times_ns.error();
     if (times_ns->size() < recording.frames.size()) {
-        return input_error(fmt::format(
-            "{}: {} stamps for {} images", path, times_ns->size(), recording.frames.size()));
+        return input_error(
+            fmt::format("{}: {} time stamps for {} images; each image needs a time stamp",
+                        path,
+                        times_ns->size(),
+                        recording.frames.size()));
     }
     for (std::size_t i = 0; i < recording.frames.size(); ++i) {
         recording.frames[i].time_ns = (*times_ns)[i];
@@ -297,14 +301,15 @@ Status set_stamps(const std::string& folder,
     }
     if (const auto named = stamps_of_names(pair.left)) {
         recording.info.notes.push_back(
-            fmt::format("the stamps are those of the file names, in {}", named->unit));
+            fmt::format("the time stamps are read from the file names, in {}", named->unit));
         return {};
     }
     constant_rate(*rate_hz, recording);
     if (!of_kitti) {
-        recording.info.notes.push_back(fmt::format(
-            "the images have no stamps: {:g} frames a second are assumed; --rate sets another rate",
-            *rate_hz));
+        recording.info.notes.push_back(
+            fmt::format("the images have no time stamps: {:g} frames per second are assumed; "
+                        "--rate sets another rate",
+                        *rate_hz));
     }
     return {};
 }

@@ -244,11 +244,11 @@ Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
     const std::string within =
         fmt::format("within {:g} ms (--pair-tolerance)", 1e3 * recording.pair_tolerance_s);
     if (largest_ns > 0) {
-        recording.info.notes.push_back(
-            fmt::format("the stamps of both images of a frame differ by up to {:.3f} ms; they are "
-                        "paired {}, and the frame has the stamp of the first one",
-                        1e3 * recording.largest_pair_difference_s,
-                        within));
+        recording.info.notes.push_back(fmt::format(
+            "the time stamps of the two images of a frame differ by up to {:.3f} ms. Images are "
+            "paired {}, and the frame gets the time stamp of its first image",
+            1e3 * recording.largest_pair_difference_s,
+            within));
     }
     if (recording.unpaired > 0 && recording.unpaired < static_cast<int>(partners.size())) {
         recording.info.notes.push_back(

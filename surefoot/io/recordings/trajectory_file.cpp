@@ -42,8 +42,9 @@ Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
     const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
-        return input_error(
-            fmt::format("its left 3x3 is not a rotation (R^T R differs from 1 by {:.3g})", error));
+        return input_error(fmt::format(
+            "the left 3x3 part of the matrix is not a rotation (R^T R differs from 1 by {:.3g})",
+            error));
     }
     return Pose::from_matrix(T);
 }
@@ -89,7 +90,7 @@ std::vector<std::string> TrajectoryFile::notes() const {
     }
     if (not_finite > 0)
         notes.push_back(fmt::format("{} rows with NaN or infinity are left out", not_finite));
-    if (sorted) notes.emplace_back("the rows were not in the order of time and are now sorted");
+    if (sorted) notes.emplace_back("the rows were not in order of time; the program sorted them");
     return notes;
 }
 
@@ -140,8 +141,10 @@ Status give_stamps(std::span<const std::int64_t> times_ns,
                    const std::string& from,
                    TrajectoryFile& trajectory) {
     if (times_ns.size() < trajectory.rows) {
-        return input_error(
-            fmt::format("{}: {} stamps for {} poses", from, times_ns.size(), trajectory.rows));
+        return input_error(fmt::format("{}: {} time stamps for {} poses; the numbers must be equal",
+                                       from,
+                                       times_ns.size(),
+                                       trajectory.rows));
     }
     for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
         trajectory.poses[i].time_ns = times_ns[trajectory.row_of_pose[i]];
@@ -208,7 +211,8 @@ Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::
             return at_line(
                 file,
                 line_of[i],
-                fmt::format("stamp {} is not a time in {} from 0 on", quoted(words[i]), unit.name));
+                fmt::format(
+                    "time stamp {} is not a time in {} of 0 or more", quoted(words[i]), unit.name));
         }
         times_ns.push_back(*time_ns);
     }

@@ -78,9 +78,9 @@ Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, c
     }
     if (words.size() != kTumColumns) {
         return input_error(
-            fmt::format("the line has {} numbers; a line of a trajectory has {} (TUM: stamp_s tx "
+            fmt::format("the line has {} numbers. A line of a trajectory has {} (TUM: stamp_s tx "
                         "ty tz qx qy qz qw), {} (KITTI: 3x4 matrices) or {} (ground truth of "
-                        "EuRoC); for other files add a head line with the names of the columns",
+                        "EuRoC). For other files add a header line with the names of the columns",
                         words.size(),
                         kTumColumns,
                         kKittiColumns,
@@ -88,7 +88,7 @@ Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, c
     }
     if (separator == ',' && in_ns) {
         return input_error(
-            "8 numbers with commas and a stamp in ns, but no head line: is the quaternion "
+            "8 numbers with commas and a stamp in ns, but no header line: is the quaternion "
             "qw,qx,qy,qz (EuRoC) or qx,qy,qz,qw (TUM)? Add a first line with the names, for "
             "example '#timestamp [ns],px,py,pz,qw,qx,qy,qz'");
     }
@@ -128,8 +128,8 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
     if (no_number && rows_.empty()) {
         if (take_head(content)) return {};
         return input_error(
-            fmt::format("the head line begins with {} but does not name a stamp, x, y, z, qx, qy, "
-                        "qz and qw once each: rename the columns, or remove the line",
+            fmt::format("the header line begins with {} but does not name a stamp, x, y, z, qx, "
+                        "qy, qz and qw once each: rename the columns, or remove the line",
                         quoted(words_.front())));
     }
     if (const auto problem = separator_problem(content)) return input_error(*problem);
@@ -167,7 +167,7 @@ Status TrajectoryTable::choose_layout(char separator) {
     }
     if (head_ && !is_comment(head_line_)) {
         return input_error(fmt::format(
-            "{} numbers, but the head line names {} columns", words_.size(), head_->columns));
+            "{} numbers, but the header line names {} columns", words_.size(), head_->columns));
     }
     auto layout = layout_of(words_, separator);
     if (!layout) return layout.error();

@@ -115,9 +115,9 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     recording.depth_codes_per_m = kMillimetresPerMetre;
     recording.info.notes.push_back(
-        fmt::format("depth is read as millimetres: with 5000 per metre (TUM RGB-D) the first image "
-                    "would begin {:.2f} m from the camera, nearer than depth cameras measure. If "
-                    "this is wrong, give --depth-factor",
+        fmt::format("depth is read as millimetres. With 5000 units per metre (TUM RGB-D) the "
+                    "nearest depth of the first image would be {:.2f} m, nearer than depth cameras "
+                    "measure. If this is wrong, give --depth-factor",
                     near_m));
     return {};
 }

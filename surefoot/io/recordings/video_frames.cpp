@@ -173,14 +173,14 @@ Result<std::optional<VideoFrame>> VideoFrames::next() {
         if (video.decoded == 0) return input_error(video.path + ": the video has no frame");
         if (video.breaks_off()) {
             video.held.reset();
-            return input_error(fmt::format(
-                "frame {}: {}: the video breaks off here: {} of the {} frames that its container "
-                "announces can be decoded, and the last of them may be cut off; copy or record the "
-                "file again",
-                video.decoded - 1,
-                video.path,
-                video.decoded,
-                video.count()));
+            return input_error(
+                fmt::format("frame {}: {}: the video breaks off here: {} of the {} frames that its "
+                            "container announces can be decoded, and the last decoded frame may be "
+                            "incomplete. Copy or record the file again",
+                            video.decoded - 1,
+                            video.path,
+                            video.decoded,
+                            video.count()));
         }
     }
     return std::exchange(video.held, std::nullopt);

@@ -63,7 +63,7 @@ class VideoSource final : public camera::FrameSource {
         }
         info_.notes.push_back(
             fmt::format("the rig says {:g} Hz, but the video has {:g} frames per second (mean). "
-                        "The times of the video are used; --rate {:g} replaces them",
+                        "The program uses the times of the video; --rate {:g} replaces them",
                         of_rig_hz,
                         of_video_hz,
                         of_rig_hz));
@@ -84,7 +84,8 @@ Result<camera::StereoRig> rig_of(const std::string& path,
     if (!rig) return rig.error();
     if (!rig->has_value()) {
         return input_error(fmt::format(
-            "{}: a video but no rig; put a rig.yaml beside it or give one with --rig", path));
+            "{}: this video has no rig; put a rig.yaml beside the video or give a rig with --rig",
+            path));
     }
     return **rig;
 }

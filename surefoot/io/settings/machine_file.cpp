@@ -146,8 +146,8 @@ void check_gait(Group& root, const GateLimits& limits) {
     const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];
     if (!walk.enabled || walk.up_tenth_mm <= limits.swing_clearance_tenth_mm) return;
     root.fail("limits",
-              fmt::format("walk.up_m {} is above swing_clearance_m {}: a foot of class walk is not "
-                          "lifted that high; make such movements of class stair",
+              fmt::format("walk.up_m {} is above swing_clearance_m {}: movements of class walk do "
+                          "not lift a foot that high; give such movements the class stair",
                           walk.up_tenth_mm / kTenthMmPerMetre,
                           limits.swing_clearance_tenth_mm / kTenthMmPerMetre));
 }
