@@ -14,7 +14,7 @@
 /// Reads and writes whole files; every error holds the reason of the operating system.
 namespace surefoot::io {
 
-/// Reading is in `files`: only regular files, with a size limit per format.
+/// The namespace `files` reads regular files only, with a size limit per format.
 namespace limits = files::limits;
 using files::read_file;
 
@@ -41,9 +41,9 @@ using files::read_file;
 [[nodiscard]] bool is_file(const std::string& path) noexcept;
 /// Joins "a" and "b" to "a/b"; returns `b` alone if it is absolute.
 [[nodiscard]] std::string join_path(const std::string& folder, const std::string& name);
-/// Folder part of a path; "." if there is none.
+/// Returns the folder part of a path; "." if there is none.
 [[nodiscard]] std::string folder_of(const std::string& path);
-/// Lower-case extension with its dot; empty if there is none.
+/// Returns the lower-case extension with its dot; empty if there is none.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
 /// A text file that grows line by line. `append` hands the line to the system before it returns. A

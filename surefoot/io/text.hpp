@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-/// Numbers and lines of text files, independent of the locale.
+/// Reads numbers and lines of text files, independent of the locale.
 namespace surefoot::io {
 
 /// Parses the whole text as a number (also a leading '+', nan, inf, .nan and .inf), or no value.
@@ -36,11 +36,11 @@ namespace surefoot::io {
 /// Formats nanoseconds as seconds with 9 decimals, exact.
 [[nodiscard]] std::string format_seconds(std::int64_t time_ns);
 
-/// Shortest text that reads back to the same double.
+/// Formats the shortest text that reads back to the same double.
 [[nodiscard]] std::string format_double(double value);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-/// Non-empty parts of the text between any of the `separators`.
+/// Returns the non-empty parts of the text between any of the `separators`.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text,
                                                   std::string_view separators = " \t");
 [[nodiscard]] std::string lowercase(std::string_view text);
@@ -61,9 +61,9 @@ class LineReader {
     explicit LineReader(std::string_view text) noexcept;
 
     [[nodiscard]] std::optional<std::string_view> next() noexcept;
-    /// Number of the line that `next` returned last.
+    /// Returns the number of the line that `next` returned last.
     [[nodiscard]] int number() const noexcept { return number_; }
-    /// Everything after the line that `next` returned last.
+    /// Returns everything after the line that `next` returned last.
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
   private:

@@ -13,7 +13,7 @@
 namespace surefoot::io {
 
 enum class CalibrationKind : std::uint8_t {
-    // Read as rigs.
+    // These formats are read as rigs.
     surefoot,
     opencv,
     kalibr,
@@ -23,11 +23,11 @@ enum class CalibrationKind : std::uint8_t {
     kitti_raw,
     middlebury,
     orbslam,
-    // Recognised, but not read as rigs.
-    euroc_sensor,   ///< one camera of an EuRoC recording
-    opencv_camera,  ///< one camera, without a second one
+    // These formats are recognised, but not read as rigs.
+    euroc_sensor,   ///< sensor.yaml of one EuRoC sensor
+    opencv_camera,  ///< OpenCV calibration of a single camera
     opencv_xml,
-    kitti_sensors,  ///< calib_imu_to_velo.txt, calib_velo_to_cam.txt
+    kitti_sensors,  ///< KITTI calib_imu_to_velo.txt or calib_velo_to_cam.txt
     vins,
     okvis,
     basalt,
@@ -44,9 +44,9 @@ enum class CalibrationKind : std::uint8_t {
 
 /// Name of the format in messages: "an ORB-SLAM settings file".
 [[nodiscard]] const char* title_of(CalibrationKind kind) noexcept;
-/// Explains why a file of a kind that is not a rig cannot be read as one, and what to do. The text
-/// continues a sentence that begins with the file name. `root`: the document, if any, for the keys
-/// of an unknown file.
+/// Explains why a file of this kind cannot be read as a rig, and what to do. The text continues a
+/// sentence that begins with the file name. For an unknown file the text names the first keys of
+/// `root`; `root` may be nullptr.
 [[nodiscard]] std::string why_no_rig(CalibrationKind kind, const YamlNode* root);
 
 }  // namespace surefoot::io

@@ -32,7 +32,7 @@ struct ImageSize {
 /// In both: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
 [[nodiscard]] Result<camera::StereoRig> parse_rig_yaml(std::string_view text,
                                                        const std::string& file);
-/// Formats the full form; it reads back to the same rig (poses to 1e-15).
+/// Formats a rig in the full form. Reading it gives the same rig (poses to 1e-15).
 [[nodiscard]] std::string format_rig_yaml(const camera::StereoRig& rig);
 [[nodiscard]] Status write_rig_yaml(const std::string& path, const camera::StereoRig& rig);
 
@@ -41,7 +41,7 @@ struct EurocCamera {
     camera::Camera camera;
     Pose T_body_camera;
     double rate_hz = 0.0;
-    double readout_s = 0.0;  ///< our extension; 0 if the file has no value
+    double readout_s = 0.0;  ///< rolling shutter; extension of EuRoC, 0 if the file has none
 };
 /// Reads sensor.yaml of a camera: T_BS, resolution, pinhole intrinsics; radial-tangential,
 /// equidistant or no distortion, and rational_polynomial, which is our extension.
@@ -86,7 +86,7 @@ struct KittiCalibration {
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});
 
-/// Marks a rig as rectified if its images are: no distortion, equal intrinsics, baseline along x.
+/// Marks a rig as rectified if it has no distortion, equal intrinsics and a baseline along x.
 void mark_if_rectified(camera::StereoRig& rig);
 
 }  // namespace surefoot::io

@@ -29,7 +29,7 @@ enum class RigFormat {
 };
 [[nodiscard]] const char* name_of(RigFormat format) noexcept;
 
-/// A rig, with notes about the contents of its file that a rig does not hold.
+/// A rig, with notes about the contents of its file that a rig cannot store.
 struct RigFile {
     camera::StereoRig rig;
     RigFormat format = RigFormat::surefoot;
@@ -41,7 +41,7 @@ struct RigFile {
 /// unknown file the error names the most similar format.
 [[nodiscard]] Result<RigFile> read_rig_file(const std::string& path,
                                             std::optional<ImageSize> size = {});
-/// As above, for a text. ROS calibrations consist of two files and are an error here.
+/// Parses the text of a file. ROS calibrations consist of two files and are an error here.
 [[nodiscard]] Result<RigFile> parse_rig_file(const std::string& text,
                                              const std::string& file,
                                              std::optional<ImageSize> size = {});
@@ -60,19 +60,19 @@ struct RigFile {
 /// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right one; camera_model pinhole
 /// with radtan (k1 k2 p1 p2), equidistant or none. T_cn_cnm1 maps cam0 into cam1, T_cam_imu the IMU
 /// into the camera (OpenVINS: T_imu_cam, camera into IMU). Without T_cn_cnm1 the poses of the IMU
-/// in both cameras replace it. With an IMU, base_link is the left camera turned to body axes. The
+/// in both cameras replace it. With an IMU, base_link lies at the left camera, with body axes. The
 /// file has no IMU rate; 200 Hz are assumed.
 [[nodiscard]] Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file);
 [[nodiscard]] Result<std::string> format_kalibr_rig(const camera::StereoRig& rig);
 
-/// A text with its file name: ROS camera_calibration_parsers ("camera_info"), or a
+/// Text and name of a file of ROS camera_calibration_parsers ("camera_info"), or a
 /// sensor_msgs/CameraInfo as printed by `ros2 topic echo` or `rostopic echo`.
 struct NamedText {
     std::string text;
     std::string file;
 };
 /// Reads both cameras: K and D of plumb_bob, rational_polynomial or equidistant. Their relative
-/// pose is that of the rectification: x_rectified = R x_raw; P of the right camera holds -fx *
+/// pose follows from the rectification, x_rectified = R x_raw. P of the right camera holds -fx *
 /// baseline. roi and binning are applied, so that the rig fits the images that the driver delivers.
 [[nodiscard]] Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right);
 struct RosTexts {

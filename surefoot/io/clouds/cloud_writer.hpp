@@ -22,7 +22,7 @@ class CloudWriter {
     CloudWriter& operator=(CloudWriter&&) = delete;
 
     /// Appends points. All blocks must have the colours and scalars of the first block, with equal
-    /// types, else error. Coordinates are doubles if the format or the first block needs them.
+    /// types, or `add` fails. Coordinates are doubles if the format or the first block needs them.
     [[nodiscard]] Status add(const PointCloud& block);
     [[nodiscard]] Status finish();
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }

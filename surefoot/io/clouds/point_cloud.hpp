@@ -25,15 +25,15 @@ struct PointCloud {
     /// viewpoint is not applied to them.
     std::optional<Pose> T_cloud_sensor;
     bool double_precision = false;   ///< the file's coordinates may need more than 24 bits
-    std::vector<std::string> notes;  ///< contents of the file that are missing here, in words
+    std::vector<std::string> notes;  ///< sentences about contents of the file that are missing here
 
     [[nodiscard]] bool organised() const noexcept { return height > 1; }
     [[nodiscard]] const CloudScalar* scalar(std::string_view name) const noexcept;
-    /// First inconsistency of the sizes; no value if they are consistent.
+    /// Describes the first inconsistency of the sizes; no value if there is none.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// How to write a cloud.
+/// Options for writing a cloud.
 struct CloudFormat {
     bool binary = true;
     bool double_precision = false;  ///< for large (projected) coordinates; a float has 24 bits
@@ -44,7 +44,7 @@ struct CloudFormat {
 
 /// Reads a cloud by its extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv .pts as text.
 [[nodiscard]] Result<PointCloud> read_cloud(const std::string& path);
-/// Parses the content of such a file; the extension of `file` selects the format.
+/// Parses the content of a cloud file; the extension of `file` selects the format.
 [[nodiscard]] Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file);
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian; vertices with x y z, optional colours
@@ -68,13 +68,13 @@ struct CloudFormat {
 /// colours. Flags, wave packets and extra bytes are skipped.
 [[nodiscard]] Result<PointCloud> parse_las(std::string_view bytes, const std::string& file);
 
-/// The POINTS of a legacy VTK file in text form.
+/// Parses the POINTS of a legacy VTK file in text form.
 [[nodiscard]] Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file);
 
 /// Text with a point a line. Blanks (or tabs), commas or semicolons separate the fields. A header
 /// line, with or without '#' or '//', names the columns; x, y and z are found by name. Without a
-/// header they are the first three columns. Further columns become scalars; an empty field is NaN.
-/// A single number in a line before the points is their count. Errors name the line.
+/// header x, y and z are the first three columns. Further columns become scalars; an empty field is
+/// NaN. A single number in a line before the points is their count. Errors name the line.
 [[nodiscard]] Result<PointCloud> parse_text_cloud(std::string_view text, const std::string& file);
 [[nodiscard]] std::string format_text_cloud(const PointCloud& cloud);
 [[nodiscard]] Status write_text_cloud(const std::string& path, const PointCloud& cloud);

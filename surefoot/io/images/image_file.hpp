@@ -36,7 +36,7 @@ struct ImageHeader {
     int channels = 1;  ///< number of stored channels, alpha included; a palette counts as 3
 };
 
-/// Largest image that is decoded; a damaged header cannot exhaust the memory.
+/// Largest decoded image [pixels]; so a damaged header cannot exhaust the memory.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 /// Reads the header and checks the rest: PNG chunks with their checksums up to IEND, JPEG up to its

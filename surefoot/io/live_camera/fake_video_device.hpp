@@ -52,7 +52,7 @@ class FakeCamera {
     int opened = 0;
     int paused_ms = 0;
     int waited_ms = 0;
-    int mapped = 0;  ///< buffers that are mapped now
+    int mapped = 0;  ///< number of buffers that are mapped now
 };
 
 class FakeVideoDevice final : public VideoDevice {

@@ -18,18 +18,18 @@ enum class FormatChoice : std::uint8_t { any, yuyv, mjpeg };
 
 /// Settings of a live camera.
 struct CameraConfig {
-    double exposure_ms = 0.0;  ///< 0 = leave as it is
-    int gain = -1;             ///< gain in the driver's units; -1 = no change
-    int white_balance_k = 0;   ///< 0 = leave as it is
+    double exposure_ms = 0.0;  ///< exposure time; 0 = unchanged
+    int gain = -1;             ///< gain in the driver's units; -1 = unchanged
+    int white_balance_k = 0;   ///< colour temperature [K]; 0 = unchanged
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
-    double readout_ms = 0.0;    ///< rolling shutter, first to last row; 0 = global shutter
-    double timeout_s = 1.0;     ///< longest time without a frame until the device counts as gone
+    double readout_ms = 0.0;    ///< from first to last row (rolling shutter); 0 = global shutter
+    double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened
     double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
     int max_damaged = 30;       ///< the run ends after this many unusable frames in a row
 
     void describe(ConfigVisitor& visitor);
-    /// Manual values and `auto = on` contradict each other.
+    /// Returns a problem if a manual value is set together with `auto = on`.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
@@ -89,7 +89,7 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] Status set_controls(V4l2Device& device) const;
     [[nodiscard]] Result<std::optional<VideoBuffer>> newest();
     void count_silence();
-    /// The exposure in ns; 0 if it is unknown because the camera controls it.
+    /// Returns the exposure in ns; 0 = unknown, because the camera controls it.
     [[nodiscard]] std::int64_t known_exposure_ns(V4l2Device& device) const;
     void count_sequence(const VideoBuffer& buffer);
     /// Converts the image to a frame; no value if the image is damaged (counts it).
@@ -103,12 +103,12 @@ class LiveCamera final : public camera::FrameSource {
     camera::SourceInfo info_;
     CameraConfig config_;
     std::function<bool()> stop_;
-    std::optional<V4l2Device> device_;  // after system_: closed before it goes
+    std::optional<V4l2Device> device_;  // declared after system_: is closed first
     VideoMode mode_;
     std::int64_t exposure_ns_ = 0;  ///< 0 = not known
     std::string lost_because_;
-    int silent_ms_ = 0;  ///< wait since the last usable frame
-    int waited_ms_ = 0;  ///< part of it since the device was opened
+    int silent_ms_ = 0;  ///< waiting time since the last usable frame
+    int waited_ms_ = 0;  ///< waiting time since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;
     FrameStatus frame_status_;  ///< since the previous frame

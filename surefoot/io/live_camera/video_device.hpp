@@ -16,12 +16,12 @@ class VideoDevice {
     [[nodiscard]] virtual int open(const std::string& path) = 0;
     /// Closes the device; also ends streaming and releases the driver's buffers.
     virtual void close() = 0;
-    /// ioctl: `code` is VIDIOC_*, `argument` its structure.
+    /// Calls ioctl: `code` is VIDIOC_*, `argument` is the structure of this code.
     [[nodiscard]] virtual int request(unsigned long code, void* argument) = 0;
-    /// mmap of a buffer; null when it fails.
+    /// Maps a buffer with mmap; returns null on failure.
     [[nodiscard]] virtual const std::uint8_t* map(std::size_t offset, std::size_t length) = 0;
     virtual void unmap(const std::uint8_t* address, std::size_t length) = 0;
-    /// 0 when a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV when the device is gone.
+    /// Returns 0 if a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV if the device is gone.
     [[nodiscard]] virtual int wait(int timeout_ms) = 0;
     /// Waits before the next attempt to open; a signal ends the wait early.
     virtual void pause(int time_ms) = 0;

@@ -8,20 +8,20 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
-/// Grids with one value per cell: ESRI ASCII, or a grey image whose brightness is the height.
+/// Reads grids with a value per cell: ESRI ASCII, or grey images (brightness is the height).
 namespace surefoot::io {
 
 /// A layer with its position; NaN = unknown.
 struct Dem {
     grid::GridGeometry geometry;
     grid::Layer values;
-    std::vector<std::string> notes;  ///< cells that height readers made unknown, in words
+    std::vector<std::string> notes;  ///< sentences about cells that the height reader made unknown
 };
 
 /// Reads an ESRI ASCII grid: ncols nrows xllcorner|xllcenter yllcorner|yllcenter, cellsize or equal
 /// dx and dy, [NODATA_value], then rows from the largest y down. Unknown: NODATA within float
 /// precision, nan, null, and every value of at least 1e30, because writers print the smallest float
-/// with different digits. For layers that are not heights.
+/// with different digits. Use this function for layers that are not heights.
 [[nodiscard]] Result<Dem> parse_esri_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_esri_grid(const std::string& path);
 /// Reads heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).

@@ -24,8 +24,8 @@ struct MapFile {
     std::vector<std::string> skipped_layers;  ///< layers of a newer minor version, in file order
 };
 
-/// Fails if `region.problem()` is not empty: every written file can be read. Deterministic: the
-/// same region gives the same bytes.
+/// Fails if `region.problem()` has a value, so that every written file can be read. The same region
+/// always gives the same bytes.
 [[nodiscard]] Result<std::string> format_map(const grid::MapRegion& region);
 [[nodiscard]] Status write_map(const std::string& path, const grid::MapRegion& region);
 

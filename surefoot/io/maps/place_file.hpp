@@ -22,8 +22,8 @@ struct PlaceFile {
     std::uint16_t minor = kPlaceFileMinor;
 };
 
-/// Fails if `place.problem()` is not empty: every written file can be read. Deterministic: the same
-/// place gives the same bytes.
+/// Fails if `place.problem()` has a value, so that every written file can be read. The same place
+/// always gives the same bytes.
 [[nodiscard]] Result<std::string> format_place(const place_recognition::Place& place);
 [[nodiscard]] Status write_place(const std::string& path, const place_recognition::Place& place);
 

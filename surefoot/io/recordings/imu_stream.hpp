@@ -12,7 +12,7 @@
 
 namespace surefoot::io {
 
-/// Span of IMU samples for the first frame, which has no previous frame.
+/// Time span of the IMU samples for the first frame, which has no previous frame.
 inline constexpr std::int64_t kFirstImuSpan_ns = 1'000'000'000;
 
 /// Reads IMU samples as EuRoC csv rows (stamp_ns, angular velocity [rad/s], specific force [m/s^2])
@@ -22,7 +22,7 @@ class ImuStream {
   public:
     [[nodiscard]] static Result<ImuStream> open(const std::string& path);
 
-    /// All new samples up to a time, in time order. Stamps must increase.
+    /// Returns all new samples up to a time, in time order. Stamps must increase.
     [[nodiscard]] Result<std::vector<ImuSample>> take_until(std::int64_t time_ns);
 
   private:

@@ -26,7 +26,7 @@ class Recorder {
   public:
     enum class Existing : std::uint8_t {
         refuse,  ///< error if the folder already holds a recording
-        renew,   ///< restart its lists; images stay until their frame is added
+        renew,   ///< restart its lists; keep images until their frame is added
     };
     /// Creates the folders and calibration files. Refuses a rig with a problem.
     [[nodiscard]] static Result<Recorder> create(const std::string& folder,
@@ -63,8 +63,8 @@ struct RecordingInfo {
     int frames = 0;
     int unpaired = 0;           ///< frames of one camera without a partner
     int missing_images = 0;     ///< listed files that do not exist
-    std::string first_missing;  ///< the first of them
-    int bad_stamps = 0;         ///< stamps that do not increase
+    std::string first_missing;  ///< first listed file that does not exist
+    int bad_stamps = 0;         ///< number of stamps that do not increase
     double duration_s = 0.0;    ///< time from the first to the last stamp
     double rate_hz = 0.0;       ///< rate from the median interval; 0 for fewer than two frames
     int gaps = 0;               ///< intervals longer than 1.5 times the median
@@ -77,8 +77,8 @@ struct RecordingInfo {
     std::string incomplete = {};    ///< first unreadable frame of a video; empty = none
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;
-    std::vector<std::string> notes = {};  ///< notes for the user about how the recorder was opened
-    bool has_truth = false;  ///< groundtruth.tum, groundtruth.txt or poses.txt is there
+    std::vector<std::string> notes = {};  ///< notes for the user about opening the recording
+    bool has_truth = false;               ///< groundtruth.tum, groundtruth.txt or poses.txt exists
 };
 
 [[nodiscard]] Result<RecordingInfo> inspect(const std::string& path,

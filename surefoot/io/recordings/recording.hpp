@@ -21,15 +21,15 @@ namespace surefoot::io {
 struct OpenOptions {
     std::optional<std::string> rig_file;  ///< replaces the recording's own calibration
     std::optional<double> rate_hz;        ///< frame rate of recordings without stamps
-    int first_frame = 0;                  ///< earlier frames are skipped
+    int first_frame = 0;                  ///< index of the first frame to read
     /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
     std::optional<double> pair_tolerance_s = {};
-    std::optional<double> depth_codes_per_m = {};  ///< RGB-D only; default kDepthCodesPerMetre
+    std::optional<double> depth_codes_per_m = {};  ///< RGB-D; default kDepthCodesPerMetre
     /// Bits of the largest value in 16-bit images (9..16); the upper 8 of them are used. Default:
     /// as many bits as the first, the middle and the last image need.
     std::optional<int> image_bits = {};
-    bool skip_broken = false;  ///< continue after unusable frames, see skip_broken_frames
+    bool skip_broken = false;  ///< continue after unusable frames (skip_broken_frames)
 };
 
 /// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
@@ -53,9 +53,9 @@ struct Recording {
     std::vector<ImuSample> imu;     ///< strictly increasing stamps
     int unpaired = 0;               ///< frames of one camera without a partner in the other's list
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
-    double largest_pair_difference_s = 0.0;  ///< between the stamps of both images of a frame
-    float depth_codes_per_m = kDepthCodesPerMetre;  ///< RGB-D only
-    int image_bits = 8;                             ///< more than 8: 16-bit images, see OpenOptions
+    double largest_pair_difference_s = 0.0;         ///< between the two images of a frame
+    float depth_codes_per_m = kDepthCodesPerMetre;  ///< of the depth images; RGB-D only
+    int image_bits = 8;                             ///< used bits; more than 8 = 16-bit images
 };
 
 /// Indexes EuRoC ASL: `folder` contains cam0 and cam1 ("mav0").
@@ -68,7 +68,7 @@ struct Recording {
 /// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
-/// Whether a folder contains such a pair.
+/// Whether a folder contains left and right images in one of these layouts.
 [[nodiscard]] bool has_pair_folders(const std::string& folder);
 /// Indexes images with the left camera in the left half and the right camera in the right half, in
 /// natural order, at the rig's rate or 15 Hz; rig.yaml in the folder.
@@ -114,7 +114,7 @@ struct AssociatedRow {
 /// of one camera, if known (see read_rig).
 [[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(
     const std::string& folder, const OpenOptions& options, std::optional<ImageSize> size = {});
-/// Size in the header of an image file; no value if it cannot be read.
+/// Returns the size in the header of an image file; no value if the file cannot be read.
 [[nodiscard]] std::optional<ImageSize> image_size_of(const std::string& path);
 /// Image size of one camera in a side-by-side image (half the width); no value for odd widths.
 [[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
@@ -135,7 +135,7 @@ void set_pair_tolerance(const OpenOptions& options,
                                    Recording& recording);
 /// Frame rate for frames without stamps: the rate of the options, or `otherwise_hz` without one.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
-/// Error if the options give a rate although the recording has stamps.
+/// Returns an error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
 /// Stamp of frame `index` at a constant rate, starting at 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;

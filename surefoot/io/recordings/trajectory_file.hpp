@@ -17,14 +17,14 @@ namespace surefoot::io {
 struct TrajectoryFile {
     Trajectory poses;    ///< stamps strictly increasing
     std::string format;  ///< "TUM", "EuRoC csv", "KITTI poses" or "columns by name"
-    std::string stamps;  ///< unit in the file ("s", "ms", "us", "ns"); with KITTI poses "none", or
-                         ///< where they are from
-    std::int64_t repeated = 0;      ///< rows left out: their stamp already existed
-    double repeated_apart_m = 0.0;  ///< largest distance of such a row from the kept row
-    std::int64_t not_finite = 0;    ///< rows left out: a number is NaN or infinite
+    std::string stamps;  ///< unit in the file ("s", "ms", "us", "ns"); for KITTI poses "none" or
+                         ///< the source of the stamps
+    std::int64_t repeated = 0;      ///< number of left-out rows with a repeated stamp
+    double repeated_apart_m = 0.0;  ///< largest distance of a left-out row from its kept row
+    std::int64_t not_finite = 0;    ///< number of left-out rows with NaN or infinity
     bool sorted = false;            ///< the rows of the file were not in time order
-    /// KITTI poses have no stamps: they count as 10 Hz from 0 until `give_stamps`, which needs the
-    /// row number of each pose and the number of rows. Empty if the file has stamps.
+    /// Row number of each pose, for `give_stamps`; empty if the file has stamps. KITTI poses have
+    /// no stamps: until `give_stamps` they have a rate of 10 Hz and start at 0 s.
     std::vector<std::size_t> row_of_pose;
     std::size_t rows = 0;
 

@@ -22,12 +22,12 @@ struct IniFile {
     std::string name;  ///< file name for messages
     std::map<std::string, Section> sections;
 
-    /// The section, or nullptr.
+    /// Returns the section; nullptr if the file has no such section.
     [[nodiscard]] const Section* find(std::string_view section) const;
-    /// The value, or nullptr.
+    /// Returns the value; nullptr if the section has no such key.
     [[nodiscard]] const Value* find(std::string_view section, std::string_view key) const;
-    /// A required finite number. A comma in it is an explicit error: otherwise "0,5" of a file that
-    /// was written in another locale would be read as 0.
+    /// Returns a required finite number. A comma is an error: otherwise "0,5" from a file that was
+    /// written in another locale would be read as 0.
     [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
 };
 

@@ -14,7 +14,7 @@
 namespace surefoot::io {
 
 struct RatedLimit {
-    const char* key;  ///< "limits.tilt_deg", in the unit of the file
+    const char* key;  ///< key in the file, for example "limits.tilt_deg"
     double rated;
     bool larger_allows_more;  ///< false: a smaller value allows more
     const char* reason;       ///< consequence of a laxer value
@@ -31,7 +31,7 @@ struct Deviation {
     std::string date;  ///< YYYY-MM-DD, as written: the library reads no clock
 };
 
-/// "limits.tilt_deg is 11 (rated 6), signed by NAME on DATE: REASON".
+/// Formats "limits.tilt_deg is 11 (rated 6), signed by NAME on DATE: REASON".
 [[nodiscard]] std::string text_of(const Deviation& deviation);
 
 /// Reads `deviations` (optional) and checks every limit of the document against its rated value;

@@ -19,11 +19,11 @@ struct YamlNode {
 
     Kind kind = Kind::null;
     int line = 0;     ///< line number, from 1
-    std::string key;  ///< key of an item of a mapping
+    std::string key;  ///< key, if the node is an item of a mapping
     std::string scalar;
     std::vector<YamlNode> items;  ///< items of a sequence or a mapping, in file order
 
-    /// The value of a key of this mapping, or nullptr.
+    /// Returns the value of a key of this mapping, or nullptr.
     [[nodiscard]] const YamlNode* find(std::string_view name) const noexcept;
     [[nodiscard]] bool is_mapping() const noexcept { return kind == Kind::mapping; }
     [[nodiscard]] bool is_scalar() const noexcept { return kind == Kind::scalar; }
@@ -46,7 +46,7 @@ class YamlReader {
 
     /// Reports `what` about a key, unless there already is an error.
     void fail(const YamlNode& node, std::string_view key, const std::string& what);
-    /// A required key of `mapping`.
+    /// Returns the value of a required key of `mapping`.
     const YamlNode* required(const YamlNode& mapping, std::string_view key);
 
     /// A finite number within [min, max].
