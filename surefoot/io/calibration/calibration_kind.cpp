@@ -19,7 +19,7 @@ constexpr const char* kReadFormats =
     "ORB-SLAM2/3 stereo settings, ZED SN*.conf, KITTI calib.txt and calib_cam_to_cam.txt, "
     "Middlebury calib.txt, and EuRoC folders";
 
-/// Number of first lines that are searched for a format; files can be long.
+/// The program searches this many lines at the start of a file for a format; files can be long.
 constexpr int kHeadLines = 200;
 
 bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {
@@ -47,8 +47,8 @@ bool any_key_starts_with(const YamlNode& root, std::initializer_list<const char*
     });
 }
 
-/// A line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes "P1:
-/// !!opencv-matrix".
+/// Returns true for a line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes
+/// "P1: !!opencv-matrix".
 bool is_kitti_line(std::string_view line) {
     if (line.size() < 3 || line[0] != 'P' || line[1] < '0' || line[1] > '3' || line[2] != ':')
         return false;

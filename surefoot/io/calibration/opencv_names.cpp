@@ -8,7 +8,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Key without case and separators.
+/// Returns the letters and digits of a key in lower case.
 std::string plain(const std::string& key) {
     std::string out;
     for (const char c : key) {
@@ -23,7 +23,7 @@ struct Entry {
     NamedNode named;
 };
 
-/// The keys of the document and of its groups. A matrix {rows, cols, data} is not a group.
+/// Returns the keys of the document and of its groups. A matrix {rows, cols, data} is not a group.
 std::vector<Entry> entries_of(const YamlNode& root) {
     std::vector<Entry> entries;
     for (const YamlNode& item : root.items) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC ASL format after Burri et al. 2016, "The EuRoC micro aerial vehicle datasets": T_BS maps
-// sensor into body coordinates. Keys that are not read (comment, noise densities) are left alone.
+// EuRoC ASL format after Burri et al. 2016, "The EuRoC micro aerial vehicle datasets". T_BS maps
+// sensor coordinates into body coordinates. The reader ignores other keys (comment, noise
+// densities).
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_file.hpp"
@@ -12,7 +13,7 @@
 namespace surefoot::io {
 namespace {
 
-/// T_BS: {cols: 4, rows: 4, data: [16 numbers]}.
+/// Reads T_BS: {cols: 4, rows: 4, data: [16 numbers]}.
 Pose read_sensor_pose(YamlReader& yaml) {
     const YamlNode* pose = yaml.required(yaml.root(), "T_BS");
     if (pose == nullptr) return {};
@@ -67,7 +68,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         }
         return make_pinhole(k, coefficients);
     }
-    if (distortion == "rational_polynomial") {  // our extension; the name is that of ROS
+    if (distortion == "rational_polynomial") {  // extension of EuRoC with ROS's name
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
@@ -199,7 +200,7 @@ Result<camera::StereoRig> read_euroc_rig(const std::string& mav_folder) {
         if (!imu) return imu.error();
         rig.imu = *imu;
     } else if (is_file(join_path(imu_folder, "data.csv"))) {
-        rig.imu = camera::ImuMount{};  // EuRoC: the IMU frame is the body frame
+        rig.imu = camera::ImuMount{};  // in EuRoC the IMU frame is the body frame
     }
     mark_if_rectified(rig);
     return checked_rig(std::move(rig), mav_folder);

@@ -128,7 +128,7 @@ Result<RigFile> parse_document(const YamlNode& root,
     }
 }
 
-/// Parses a text format that is not YAML; no value if the text may be YAML.
+/// Parses a text format other than YAML. Returns no value if the text may be YAML.
 std::optional<Result<RigFile>> parse_other(const std::string& text,
                                            const std::string& file,
                                            std::optional<ImageSize> size) {
@@ -152,7 +152,8 @@ Result<YamlNode> parse_mapping(const std::string& text, const std::string& file)
     return input_error(fmt::format("{}: {}", file, why_no_rig(CalibrationKind::unknown, &*root)));
 }
 
-/// Writes left.yaml and right.yaml into a folder, or the two files beside each other.
+/// Writes left.yaml and right.yaml into a folder. A `path` that ends in .yaml or .yml is the left
+/// file, and the right file is written beside it.
 Result<std::vector<std::string>> write_ros(const std::string& path, const RosTexts& texts) {
     std::string left = path;
     if (extension_of(path) != ".yaml" && extension_of(path) != ".yml") {

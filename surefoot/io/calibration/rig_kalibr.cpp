@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kalibr's camera chain, after its wiki "Yaml formats" (Furgale, Rehder and Siegwart 2013).
+// Reads and writes Kalibr's camera chain, after the wiki page "Yaml formats" (Furgale, Rehder and
+// Siegwart 2013).
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_formats.hpp"
@@ -68,7 +69,8 @@ camera::Camera read_camera(YamlReader& yaml, const std::string& name) {
     return camera;
 }
 
-/// Pose of the IMU in a camera: T_cam_imu of Kalibr, or the inverse, T_imu_cam, of OpenVINS.
+/// Reads the pose of the IMU in a camera: T_cam_imu of Kalibr, or the inverse, T_imu_cam, of
+/// OpenVINS.
 std::optional<Pose> read_imu_pose(YamlReader& yaml, const std::string& name) {
     const YamlNode& node = *yaml.root().find(name);
     if (const YamlNode* pose = node.find("T_cam_imu"); pose != nullptr)
@@ -78,7 +80,7 @@ std::optional<Pose> read_imu_pose(YamlReader& yaml, const std::string& name) {
     return std::nullopt;
 }
 
-/// T_left_right from T_cn_cnm1, or from the poses of the IMU in both cameras.
+/// Reads T_left_right from T_cn_cnm1, or computes it from the poses of the IMU in both cameras.
 Pose read_extrinsics(YamlReader& yaml,
                      const std::optional<Pose>& T_left_imu,
                      const std::optional<Pose>& T_right_imu,
@@ -145,7 +147,7 @@ std::string format_camera(const char* name,
     return out;
 }
 
-/// Kalibr's radtan has four coefficients.
+/// Refuses lenses that Kalibr cannot store. Kalibr's radtan has four coefficients.
 Status check_lens(const camera::CameraModel& model, const char* name) {
     if (is_rational(model)) {
         return output_error(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// calib_cam_to_cam.txt of KITTI's raw recordings, after Geiger et al. 2013, "Vision meets
-// robotics": for each camera i the raw image (S K D), its pose (x_i = R_i x_0 + T_i, m), and the
-// rectified image (S_rect P_rect). The recordings that most people have ("synced+rectified") show
-// the second.
+// Reads calib_cam_to_cam.txt of KITTI's raw recordings, after Geiger et al. 2013, "Vision meets
+// robotics". For each camera i the file has the raw image (S K D), the pose (x_i = R_i x_0 + T_i
+// [m]) and the rectified image (S_rect P_rect). The common "synced+rectified" recordings contain
+// rectified images.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Values {
     int line = 0;
 };
 
-/// "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
+/// Finds "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
 class RawLines {
   public:
     RawLines(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -92,7 +92,7 @@ camera::Camera read_raw_camera(RawLines& raw, const std::string& number) {
     return {lens ? *lens : camera::CameraModel{}, size.width, size.height};
 }
 
-/// T_i_0 of a camera.
+/// Reads the pose T_i_0 of camera i.
 Pose read_raw_pose(RawLines& raw, const std::string& number) {
     const std::vector<double> R = raw.numbers("R_" + number, 9);
     const std::vector<double> T = raw.numbers("T_" + number, 3);

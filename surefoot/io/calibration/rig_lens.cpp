@@ -10,7 +10,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Coefficients of OpenCV that PinholeRational has.
+/// Number of OpenCV's coefficients that PinholeRational supports.
 constexpr std::size_t kRationalCount = 8;
 constexpr std::array<const char*, 6> kUnsupported{"s1", "s2", "s3", "s4", "taux", "tauy"};
 

@@ -16,10 +16,10 @@ namespace surefoot::io {
 /// term that is not 0 stays, and the length check of the reader refuses it.
 void drop_zero_tail(std::vector<double>& coefficients, std::size_t count);
 
-/// Builds a lens from intrinsics (fx fy cx cy) and coefficients in OpenCV's order
-///   k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 taux tauy
-/// whose last ones may be missing; rational if k4, k5 or k6 is not 0. Error if a thin-prism term
-/// (s1 .. s4) or a tilt (taux, tauy) is not 0: no lens model here supports them.
+/// Builds a lens from intrinsics (fx fy cx cy) and coefficients in OpenCV's order k1 k2 p1 p2 k3 k4
+/// k5 k6 s1 s2 s3 s4 taux tauy. The last ones may be missing; the lens is rational if k4, k5 or k6
+/// is not 0. Error if a thin-prism term (s1 .. s4) or a tilt (taux, tauy) is not 0: no lens model
+/// here supports them.
 [[nodiscard]] Result<camera::CameraModel> pinhole_lens(const std::vector<double>& intrinsics,
                                                        std::vector<double> coefficients);
 /// Builds a Kannala-Brandt lens from exactly four coefficients (trailing zeros are ignored).

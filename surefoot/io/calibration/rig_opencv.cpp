@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV FileStorage YAML as its stereo calibration sample and most users write it. A matrix is
+// Reads and writes FileStorage YAML in the form of OpenCV's stereo calibration sample. A matrix is
 // {rows, cols, dt, data}; x_right = R x_left + T (stereoCalibrate).
 #include <fmt/format.h>
 
@@ -31,7 +31,8 @@ bool is_fisheye(const YamlNode& root) {
     return false;
 }
 
-/// Requires a matrix; `other` is the same matrix of the other camera, for the message.
+/// Requires a matrix. `other` is the same matrix of the other camera; the error message names its
+/// key.
 bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
     if (found.node != nullptr) return true;
     yaml.fail(yaml.root(),
@@ -92,7 +93,7 @@ std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigF
     return R;
 }
 
-/// R and T turned into T_left_right = (R, T)^-1.
+/// Reads R and T and returns T_left_right = (R, T)^-1.
 Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
     if (names.R.node == nullptr) yaml.required(yaml.root(), "R");
     if (names.T.node == nullptr) yaml.required(yaml.root(), "T");
@@ -128,7 +129,7 @@ ImageSize find_size(YamlReader& yaml, const OpenCvNames& names, std::optional<Im
     return fallback.value_or(ImageSize{});
 }
 
-/// A matrix as cv::FileStorage writes it, doubles row by row.
+/// Formats a matrix of doubles, row by row, as cv::FileStorage does.
 std::string format_matrix(std::string_view key,
                           std::size_t rows,
                           std::size_t cols,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS camera_info files, after the comments of sensor_msgs/CameraInfo and REP 104: K and D belong
-// to the raw image, R turns it into the rectified one, P projects from there; P(0, 3) = -fx' * Tx.
+// Reads and writes ROS camera_info files, after the comments of sensor_msgs/CameraInfo and REP 104.
+// K and D belong to the raw image. R rotates the raw camera frame into the rectified frame, and P
+// projects from the rectified frame; P(0, 3) = -fx' * Tx.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ const RosKeys& keys_of(const YamlNode& root) {
 struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
-    double x_m = 0.0;          ///< camera centre on the x axis of the rectified frame
+    double x_m = 0.0;          ///< x of the camera centre in the rectified frame
     bool has_rotation = true;  ///< false: R is all zero, "not rectified"
     std::vector<std::string> notes;
 };
@@ -54,7 +55,7 @@ const YamlNode& required_matrix(YamlReader& yaml, const char* key) {
 
 std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, bool zero) {
     const YamlNode* node = yaml.root().find("distortion_model");
-    if (node == nullptr) return "plumb_bob";  // the meaning of a missing key
+    if (node == nullptr) return "plumb_bob";  // the default if the key is missing
     std::string model = yaml.text(*node, "distortion_model");
     if (!model.empty() && model != "none") return model;
     if (zero) return "none";
@@ -92,7 +93,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
         return lens_or_fail(yaml, list, keys.D, pinhole_lens(k, std::move(D)));
     }
     if (model != "plumb_bob") {
-        yaml.fail(*yaml.root().find("distortion_model"),  // the default is plumb_bob
+        yaml.fail(*yaml.root().find("distortion_model"),  // exists: a missing key means plumb_bob
                   "distortion_model",
                   quoted(model) + " is not one of plumb_bob | rational_polynomial | equidistant");
         return {};

@@ -14,7 +14,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Rotations that are printed with four digits have smaller errors than this.
+/// Limit of R^T R - I. A rotation that was printed with four digits stays below this limit.
 constexpr double kRotationTolerance = 1e-3;
 
 }  // namespace
@@ -274,7 +274,7 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
 }
 
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
-    // A common rate; it is used only to detect gaps.
+    // A common IMU rate, used only to detect gaps.
     constexpr double kAssumedImuRate_hz = 200.0;
     out.rig.T_body_left = T_body_optical();
     const bool known = rate_hz > 0.0;
@@ -289,7 +289,7 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
 
 void mark_if_rectified(camera::StereoRig& rig) {
     if (!rig.right) return;
-    rig.rectified = true;  // StereoRig::problem() checks this claim
+    rig.rectified = true;  // StereoRig::problem() checks whether this is true
     rig.rectified = !rig.problem().has_value();
 }
 

@@ -32,7 +32,7 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
                                              const YamlNode& node,
                                              std::string_view key);
 /// Builds a lens from intrinsics (fx fy cx cy) and coefficients in OpenCV's order k1 k2 p1 p2 k3 k4
-/// k5 k6, whose last ones may be missing; the rational model if k4, k5 or k6 is not 0.
+/// k5 k6; the last ones may be missing. The lens is rational if k4, k5 or k6 is not 0.
 [[nodiscard]] camera::CameraModel make_pinhole(const std::vector<double>& intrinsics,
                                                std::vector<double> coefficients);
 [[nodiscard]] camera::CameraModel make_rational(const std::vector<double>& intrinsics,

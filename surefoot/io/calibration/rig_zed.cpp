@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stereolabs' SN<serial>.conf, after their camera calibration page and what their open tools read
-// (zed-open-capture) and write (zed stereo calibration tool, which takes R and T from OpenCV).
+// Reads and writes Stereolabs' SN<serial>.conf, after their camera calibration page and their open
+// tools. zed-open-capture reads such files; the ZED stereo calibration tool writes them with R and
+// T of OpenCV.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -82,7 +83,8 @@ bool has_all(const IniFile& ini, const std::string& section, std::span<const cha
     return true;
 }
 
-/// Selects the section: that of `size`, or the only one.
+/// Selects the section of the resolution `size`. Without `size` the file must have only one
+/// resolution.
 Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     std::vector<std::string> found;
     const Mode* chosen = nullptr;
@@ -157,7 +159,7 @@ camera::CameraModel read_lens(ZedReader& zed,
                          zed.number_or(section, "k3", 0.0)});
 }
 
-/// T_left_right from the mode's own values, or from those of all modes.
+/// Reads T_left_right from the values of this mode, or from the values for all modes.
 Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
     const auto value = [&](const char* key) {
         return zed.any_number("STEREO", {fmt::format("{}_{}", key, mode), key});
@@ -276,7 +278,7 @@ Result<std::string> format_zed_rig(const camera::StereoRig& rig) {
     const Eigen::Vector3d rotation = log_so3(T_right_left.rotation);
     std::string out = format_camera("LEFT", mode->name, rig.left.model, !rational) +
                       format_camera("RIGHT", mode->name, rig.right->model, !rational);
-    out.erase(0, 1);  // the empty line before the first section
+    out.erase(0, 1);  // remove the empty line before the first section
     if (rational) {
         out += format_disto("LEFT", rig.left.model) + format_disto("RIGHT", rig.right->model);
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kBlockRows = 1U << 16U;
 constexpr std::size_t kBlockBytes = 4U << 20U;
-/// The header of a file must end within these bytes, or its rows are not found.
+/// The header must end within this number of bytes. Otherwise the file is read whole.
 constexpr std::size_t kHeadBytes = 1U << 16U;
 
 }  // namespace
@@ -30,7 +30,7 @@ class CloudStream::Part {
     [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 };
 
-/// Rows of one size.
+/// Reads a file whose points are rows of one size, block by block.
 class CloudStream::Rows final : public Part {
   public:
     Rows(std::string path, files::InputFile file, CloudRows rows)
@@ -62,7 +62,7 @@ class CloudStream::Rows final : public Part {
     std::uint64_t next_ = 0;
 };
 
-/// Text with a point a line.
+/// Reads a text file with one point per line, block by block.
 class CloudStream::Lines final : public Part {
   public:
     Lines(std::string path, files::InputFile file)
@@ -103,7 +103,7 @@ class CloudStream::Lines final : public Part {
     std::uint64_t at_ = 0;
 };
 
-/// A cloud that must be read whole.
+/// Holds a cloud that must be read whole.
 class CloudStream::Whole final : public Part {
   public:
     explicit Whole(PointCloud cloud) : cloud_(std::move(cloud)) {}
@@ -159,7 +159,7 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
         return CloudStream(
             std::make_unique<Rows>(path, std::move(file).value(), std::move(rows).value()));
     }
-    auto cloud = read_cloud(path);  // or the error
+    auto cloud = read_cloud(path);  // returns the error of the file, if it has one
     if (!cloud) return cloud.error();
     return CloudStream(std::make_unique<Whole>(std::move(cloud).value()));
 }

@@ -16,7 +16,7 @@
 namespace surefoot::io {
 namespace {
 
-/// A comment that fills the space left by a point count with fewer digits.
+/// Returns a comment that fills the space of missing digits of a point count.
 std::string filler(const char* comment, std::int64_t points, int times) {
     constexpr int kDigits = 20;
     const int digits = static_cast<int>(std::to_string(points).size());
@@ -93,7 +93,7 @@ void CloudWriter::note_losses(const PointCloud& block) {
     }
 }
 
-/// The header; its length does not depend on the number of points.
+/// Returns the header. The length of the header does not depend on the number of points.
 std::string CloudWriter::head(std::int64_t points) const {
     std::string head = head_;
     if (kind_ == Kind::ply) {

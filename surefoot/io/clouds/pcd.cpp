@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCD 0.7 of the Point Cloud Library: a text header (FIELDS SIZE TYPE COUNT WIDTH HEIGHT VIEWPOINT
-// POINTS DATA), then rows as text, packed records, or LZF over the fields one after another.
+// Reads and writes PCD 0.7 of the Point Cloud Library. A text header (FIELDS SIZE TYPE COUNT WIDTH
+// HEIGHT VIEWPOINT POINTS DATA) comes first. The points follow as text rows, as packed records, or
+// field after field in LZF compression.
 #include <fmt/format.h>
 
 #include <bit>
@@ -65,7 +66,7 @@ bool names_fields(std::string_view key) {
     return key == "FIELDS" || key == "COLUMNS";
 }
 
-/// FIELDS, SIZE, TYPE or COUNT: one word per field.
+/// Parses a FIELDS, SIZE, TYPE or COUNT line with one word per field.
 Status parse_field_line(const std::vector<std::string_view>& words, Header& header) {
     if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
@@ -94,7 +95,7 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
     return {};
 }
 
-/// VIEWPOINT tx ty tz qw qx qy qz: where the sensor was.
+/// Parses VIEWPOINT tx ty tz qw qx qy qz, the pose of the sensor.
 Status parse_viewpoint(const std::vector<std::string_view>& words, Header& header) {
     double v[7] = {};
     for (std::size_t i = 0; i < 7; ++i) {
@@ -181,7 +182,7 @@ void with_type_of(const Field& field, const Use& use) {
                values);
 }
 
-/// Colour packed as 0x00RRGGBB, as PCL stores it in the bits of a float or an integer.
+/// Unpacks the colour 0x00RRGGBB, which PCL stores in the bits of a float or an integer.
 Rgb unpacked_colour(std::uint32_t bits) {
     return {static_cast<std::uint8_t>(bits >> 16),
             static_cast<std::uint8_t>(bits >> 8),
@@ -195,14 +196,14 @@ bool is_padding(const Field& field) {
     return field.name == "_" || field.count != 1;
 }
 
-/// 0 to 2 for x, y and z, also in capitals.
+/// Returns 0 to 2 for x, y and z, also in capitals.
 std::optional<int> axis_of(const Field& field) {
     const std::string name = lowercase(field.name);
     if (name.size() != 1 || name[0] < 'x' || name[0] > 'z' || field.count != 1) return std::nullopt;
     return name[0] - 'x';
 }
 
-/// Target of the values of a field.
+/// Where the cloud stores the values of a field.
 struct Role {
     enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
     std::size_t index = 0;  ///< index of the axis or of the scalar
@@ -236,7 +237,7 @@ struct Collector {
     }
 };
 
-/// All values of one field, `step` bytes apart.
+/// Stores all values of one field; the values are `step` bytes apart.
 void collect_field(
     const Field& field, const Role& role, const char* data, std::size_t step, PointCloud& cloud) {
     const std::size_t count = cloud.points_m.size();
@@ -264,7 +265,7 @@ void collect_binary(const Header& header, std::string_view data, bool by_field, 
     for (std::size_t f = 0; f < header.fields.size(); ++f) {
         const Field& field = header.fields[f];
         const std::size_t size = field.bytes * field.count;
-        // Records lie point by point; compressed data hold each field of all points in turn.
+        // Uncompressed data are stored point by point, compressed data field by field.
         const std::size_t first = by_field ? offset * *header.points : offset;
         collect_field(
             field, out.roles[f], data.data() + first, by_field ? size : stride, out.cloud);
@@ -272,7 +273,7 @@ void collect_binary(const Header& header, std::string_view data, bool by_field, 
     }
 }
 
-/// Colour as text: the bits of a float, or a whole number.
+/// Parses a colour in text: a float whose bits are the colour, or a whole number.
 std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
     const auto value = parse_value(word);
     if (!value) return std::nullopt;
@@ -377,7 +378,7 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
                         header.stride(),
                         unpacked));
     }
-    if (packed > header.body.size() - 8) {  // more than that is padding
+    if (packed > header.body.size() - 8) {  // bytes after `packed` are padding
         return input_error(fmt::format(
             "{}: truncated PCD: {} of {} compressed bytes", file, header.body.size() - 8, packed));
     }
@@ -456,7 +457,7 @@ std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
         while (const auto line = lines.next()) {
             const auto words = split(*line);
             const std::string_view key = words.empty() ? std::string_view() : words[0];
-            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, POINTS alone counts
+            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, use POINTS
                 with_count += fmt::format("{} {}", key, count);
             } else {
                 with_count += key == "HEIGHT" ? "HEIGHT 1" : std::string(*line);

@@ -42,7 +42,8 @@ PlyStream& PlyStream::operator=(PlyStream&& other) noexcept {
     return *this;
 }
 
-/// The header; a comment keeps its length constant for every number of points.
+/// Returns the header. A comment keeps the length of the header the same for every number of
+/// points.
 std::string PlyStream::header() const {
     constexpr int kDigits = 19;
     const std::string count = std::to_string(points_);
@@ -66,7 +67,7 @@ Status PlyStream::add(std::span<const float> values) {
     const auto row = static_cast<std::int64_t>(properties * sizeof(float));
     const std::int64_t end = static_cast<std::int64_t>(header().size()) + row * points_;
     if (Status status = write_at(descriptor_, end, bytes, path_); !status) {
-        // Truncation fails on devices; the more important error is reported below in any case.
+        // Truncation fails on devices. Ignore this failure: the write error below matters more.
         [[maybe_unused]] const int cut = ::ftruncate(descriptor_, static_cast<off_t>(end));
         return status;
     }

@@ -129,7 +129,7 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
     return {};
 }
 
-/// A number alone in a line: how many points follow it.
+/// Handles a line with a single number: the count of the points that follow.
 Status TextCloudParser::take_count() {
     const auto count = parse_int64(fields_[0]);
     if (*count < 0 || announced_.value_or(0) > points_ || (columns_ != 0 && !announced_)) {

@@ -12,8 +12,8 @@
 namespace surefoot::io {
 namespace {
 
-/// Decodes a checked image; grey or BGR, 8 or 16 bits as stored. Stored rotation hints are ignored:
-/// a calibration belongs to the pixels as they are.
+/// Decodes a checked image as grey or BGR, with 8 or 16 bits as stored. Ignores stored rotation
+/// hints, because a calibration belongs to the stored pixels.
 Result<cv::Mat> decode(std::string_view bytes, const std::string& file) {
     // imdecode only reads, but its interface needs a mutable Mat.
     const cv::Mat encoded(
@@ -150,8 +150,8 @@ Result<DepthCodes> read_depth_codes(const std::string& path) {
 }
 
 Result<std::string> format_png(const GreyImage& image) {
-    // imencode only reads, but a Mat needs a mutable pointer; the same holds for the two functions
-    // below.
+    // imencode only reads, but a Mat needs a mutable pointer. The two functions below cast for the
+    // same reason.
     return encode(
         cv::Mat(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data())),
         image);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests to a live camera: settings, address, mode and controls.
+// Handles the settings, address, mode and controls of a live camera.
 #include <fmt/format.h>
 #include <linux/videodev2.h>
 
@@ -35,7 +35,8 @@ std::string list_of(const std::vector<VideoMode>& modes) {
 
 Status set_automatic(V4l2Device& device, bool on) {
     if (device.control(V4L2_CID_EXPOSURE_AUTO)) {
-        // A menu; UVC cameras offer two of its entries: manual and one of the two automatic modes.
+        // This control is a menu. UVC cameras offer two entries: manual and one of the two
+        // automatic modes.
         constexpr int kOff = V4L2_EXPOSURE_MANUAL;
         Status status = device.set_control(
             V4L2_CID_EXPOSURE_AUTO, "live.auto", on ? V4L2_EXPOSURE_APERTURE_PRIORITY : kOff);
@@ -221,7 +222,7 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
 
 std::int64_t LiveCamera::known_exposure_ns(V4l2Device& device) const {
     if (config_.exposure_ms > 0.0)
-        // in range: below 1000 ms, as above
+        // in range: describe() keeps it below 1000 ms
         return static_cast<std::int64_t>(std::llround(1e6 * config_.exposure_ms));
     const auto automatic = device.control(V4L2_CID_EXPOSURE_AUTO);
     if (!automatic || automatic->value != V4L2_EXPOSURE_MANUAL) return 0;

@@ -23,7 +23,7 @@ struct CameraConfig {
     int white_balance_k = 0;   ///< colour temperature [K]; 0 = unchanged
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
-    double readout_ms = 0.0;    ///< from first to last row (rolling shutter); 0 = global shutter
+    double readout_ms = 0.0;    ///< time from first to last row; 0 = global shutter
     double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened
     double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
     int max_damaged = 30;       ///< the run ends after this many unusable frames in a row

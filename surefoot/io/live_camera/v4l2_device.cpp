@@ -19,7 +19,7 @@ namespace {
 
 /// Limit for lists of the driver: the list of a faulty driver may never end.
 constexpr std::uint32_t kMaxListed = 256;
-/// Drivers round the frame interval to what the sensor can do.
+/// Drivers round the frame interval to a value that the sensor supports.
 constexpr double kRateTolerance = 0.02;
 
 template <std::size_t size>
@@ -129,7 +129,7 @@ void V4l2Device::add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes) 
         mode.width = static_cast<int>(discrete ? size.discrete.width : size.stepwise.max_width);
         mode.height = static_cast<int>(discrete ? size.discrete.height : size.stepwise.max_height);
         add_rates(fourcc, mode, modes);
-        if (!discrete) break;  // a range gives one mode, with its largest size
+        if (!discrete) break;  // a range of sizes gives one mode with the largest size
     }
 }
 

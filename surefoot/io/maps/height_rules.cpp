@@ -16,7 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// A map for a walking machine has no hole or tower of this height without intermediate heights.
+/// Smallest gap between a "no data" mark and all other heights. A map for a walking machine has no
+/// hole or tower of this height without intermediate heights.
 constexpr double kFar_m = 50.0;
 constexpr double kFarOfRange = 10.0;
 /// Largest number of "no data" marks in a file; files have one, seldom two.
@@ -47,11 +48,11 @@ bool is_usual_mark(double value) {
                                  32767.0,
                                  65535.0};
     return std::any_of(std::begin(kMarks), std::end(kMarks), [&](double mark) {
-        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // within float precision
+        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // equal within float precision
     });
 }
 
-/// The two lowest and the two highest values that differ.
+/// The two lowest and the two highest different values.
 struct Ends {
     double lowest = std::numeric_limits<double>::infinity();
     double second_lowest = std::numeric_limits<double>::infinity();
@@ -78,7 +79,7 @@ Ends ends_of(std::span<const float> heights_m) {
     return e;
 }
 
-/// A value that marks "no data", or nothing.
+/// Returns a value that marks "no data"; no value if there is none.
 std::optional<double> find_mark(std::span<const float> heights_m) {
     const Ends e = ends_of(heights_m);
     if (!(e.lowest <= e.highest)) return std::nullopt;

@@ -20,9 +20,9 @@ namespace {
 using grid::MapRegion;
 
 constexpr std::string_view kMagic{"SFREGION", 8};
-/// Before the header: magic, major, minor, bytes of the header.
+/// Bytes of the preamble: magic, major version, minor version, size of the header.
 constexpr std::size_t kPreambleBytes = 16;
-/// A header of version 1.0, preamble included.
+/// Bytes of a header of version 1.0, preamble included.
 constexpr std::size_t kHeaderBytes = 168;
 constexpr std::size_t kFrameBytes = grid::kMaxFrameName + 1;
 constexpr std::size_t kLayerNameBytes = 40;
@@ -83,7 +83,7 @@ void for_each_number(Region& r, const Visit& visit) {
     visit(r.T_frame_body.rotation.w());
 }
 
-/// A line of the layer table.
+/// One entry of the layer table.
 struct LayerEntry {
     std::string name;
     std::string unit;
@@ -92,7 +92,7 @@ struct LayerEntry {
     const char* cells = nullptr;
 };
 
-/// Reads a file front to back; the caller has checked that the bytes are there.
+/// Reads a file from front to back. The caller must check that enough bytes exist.
 struct Cursor {
     const char* at;
     template <typename T>
@@ -196,7 +196,7 @@ Result<std::vector<LayerEntry>> read_layer_table(Cursor& cursor, std::uint32_t c
     return entries;
 }
 
-/// Takes a layer out of `entries`.
+/// Moves a layer from `entries` to `out`.
 template <typename T>
 Status load_layer(const grid::RegionLayer& layer,
                   const grid::LatticeBox& box,

@@ -22,7 +22,7 @@ constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kKeyframeBytes = 176;
 constexpr std::size_t kFeatureBytes = 44;
 constexpr std::size_t kChecksumBytes = 8;
-constexpr std::uint32_t kMostRecordBytes = 4096;  ///< of a keyframe or feature of a newer minor
+constexpr std::uint32_t kMostRecordBytes = 4096;  ///< largest keyframe or feature [bytes]
 
 /// Contents of a header.
 struct Outline {

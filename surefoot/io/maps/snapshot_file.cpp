@@ -27,7 +27,7 @@ void for_each_field(Edge& edge, Visit visit) {
     visit(edge.across_sigma_tenth_mm);
 }
 
-/// Enums are stored as their bytes.
+/// Returns the value to store; an enum is stored as its number.
 template <typename T>
 auto stored(T value) {
     if constexpr (std::is_enum_v<T>) {
@@ -37,7 +37,7 @@ auto stored(T value) {
     }
 }
 
-/// Largest byte that is an enumerator.
+/// Number of the last enumerator.
 constexpr std::uint8_t last_of(grid::EvidenceSource) {
     return 2;
 }

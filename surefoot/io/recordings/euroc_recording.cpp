@@ -29,7 +29,7 @@ std::vector<std::int64_t> times_of(const std::vector<CsvRow>& rows) {
     return times_ns;
 }
 
-/// Pairs the rows of both cameras by their stamps, in the order of the left one.
+/// Pairs the rows of both cameras by their stamps, in the order of the left camera.
 void pair_rows(const std::string& folder,
                const std::vector<CsvRow>& left,
                const std::vector<CsvRow>& right,

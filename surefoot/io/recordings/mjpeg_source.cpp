@@ -77,7 +77,7 @@ class MjpegSource final : public camera::FrameSource {
     camera::StereoRig rig_;
     camera::SourceInfo info_;
     double rate_hz_;
-    std::string rest_;  ///< read, but not decoded yet
+    std::string rest_;  ///< bytes that are read, but not decoded yet
     int index_ = 0;
 };
 
@@ -89,7 +89,7 @@ std::optional<JpegSpan> first_jpeg(std::string_view bytes) {
     std::size_t at = begin + 2;
     while (at + 1 < bytes.size()) {
         const auto marker = static_cast<std::uint8_t>(bytes[at + 1]);
-        if (bytes[at] != '\xff' || marker == 0xd8) {  // damaged, or the next image already
+        if (bytes[at] != '\xff' || marker == 0xd8) {  // damaged image, or start of the next image
             const std::size_t next = bytes.find(kStart, begin + kStart.size());
             if (next == bytes.npos) return std::nullopt;
             return JpegSpan{begin, next};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Left and right images in two folders: KITTI after Geiger et al. 2012 (odometry and raw), and
-// common folder names of other recordings. Calibration and stamps are read from files beside the
-// images.
+// Indexes left and right images in two folders: KITTI odometry and KITTI raw after Geiger et al.
+// 2012, and common folder names of other recordings. Reads calibration and stamps from files beside
+// the images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Layout {
     const char* left;
     const char* right;
     const char* kind;
-    int left_camera;  ///< numbers of KITTI
+    int left_camera;  ///< camera number in KITTI files
     int right_camera;
 };
 constexpr Layout kLayouts[] = {{"image_0", "image_1", "kitti", 0, 1},
@@ -53,14 +53,15 @@ Result<std::vector<std::string>> images_in(const std::string& folder) {
     return list_files(folder, {".png", ".jpg", ".jpeg", ".pgm", ".ppm"});
 }
 
-/// Where the images of a camera are: in data/ of its folder, or in the folder.
+/// Returns the folder with the images of a camera: the subfolder data/ if it exists, otherwise the
+/// camera folder.
 std::string image_folder(const std::string& folder, const char* camera) {
     const std::string outer = join_path(folder, camera);
     const std::string inner = join_path(outer, "data");
     return is_folder(inner) ? inner : outer;
 }
 
-/// left* and right* in one folder.
+/// Finds the images left* and right* in one folder.
 std::optional<PairOfFolders> split_by_prefix(const std::string& folder) {
     const Result<std::vector<std::string>> names = images_in(folder);
     if (!names) return std::nullopt;
@@ -107,7 +108,8 @@ std::optional<std::string> raw_calibration(const std::string& folder) {
     return std::nullopt;
 }
 
-/// Words of the line of a KITTI raw key, without the key: "S_rect_00: 1242 375".
+/// Returns the words of the line of a KITTI raw key, without the key, for example from "S_rect_00:
+/// 1242 375".
 std::vector<std::string_view> words_of(std::string_view text, const std::string& key) {
     LineReader lines(text);
     while (const auto line = lines.next()) {
@@ -119,7 +121,8 @@ std::vector<std::string_view> words_of(std::string_view text, const std::string&
     return {};
 }
 
-/// KITTI raw: images of the rectified size belong to P_rect of their two cameras; others are raw.
+/// Reads the rig of KITTI raw. Images of the rectified size belong to P_rect of the two cameras;
+/// images of another size are raw.
 Result<camera::StereoRig> raw_kitti_rig(const std::string& path,
                                         const Layout& layout,
                                         ImageSize size) {
@@ -172,7 +175,7 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
     if (is_file(join_path(folder, "cam0/sensor.yaml"))) return read_euroc_rig(folder);
     if (const auto raw = raw_calibration(folder)) return raw_kitti_rig(*raw, pair.layout, size);
     if (std::string_view(pair.layout.kind) == "kitti")
-        return calib_txt_rig(kitti, pair.layout, size);  // returns its error
+        return calib_txt_rig(kitti, pair.layout, size);  // returns the error of calib.txt
     return input_error(
         fmt::format("{}: the folder has {} left and {} right images but no calibration. Put a "
                     "rig.yaml beside the two image folders, or give a rig with --rig",
@@ -211,8 +214,8 @@ void add_frame(const PairOfFolders& pair,
     recording.frames.push_back(std::move(entry));
 }
 
-/// Pairs by names, else by the stamps in the names, else by order. Stamps are 0 where the names
-/// hold none.
+/// Pairs images by names, else by the stamps in the names, else by order. A stamp is 0 if the names
+/// hold no stamps.
 Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Recording& recording) {
     const auto left_stamps = stamps_of_names(pair.left);
     const auto time_of = [&](std::size_t i) { return left_stamps ? left_stamps->times_ns[i] : 0; };
@@ -255,7 +258,7 @@ void constant_rate(double rate_hz, Recording& recording) {
     recording.rig.rate_hz = rate_hz;
 }
 
-/// Stamps of a list with a row for each left image.
+/// Sets the stamps from a list with a row for each left image.
 Status listed_stamps(const std::string& path,
                      const Result<std::vector<std::int64_t>>& times_ns,
                      Recording& recording) {
@@ -274,7 +277,8 @@ Status listed_stamps(const std::string& path,
     return {};
 }
 
-/// --rate; else times.txt or timestamps.txt; else the stamps in the names; else the rig's rate.
+/// Sets the stamps from the first available source: --rate, times.txt or timestamps.txt, the stamps
+/// in the names, the rate of the rig.
 Status set_stamps(const std::string& folder,
                   const OpenOptions& options,
                   const PairOfFolders& pair,
@@ -318,7 +322,7 @@ Status set_stamps(const std::string& folder,
 
 bool has_pair_folders(const std::string& folder) {
     for (const Layout& layout : kLayouts) {
-        const bool by_cameras = std::string_view(layout.left) == "cam0";  // may also be EuRoC
+        const bool by_cameras = std::string_view(layout.left) == "cam0";  // may be EuRoC
         if (!is_folder(join_path(folder, layout.left))) continue;
         if (!by_cameras) return true;
         const auto images = images_in(image_folder(folder, layout.left));

@@ -17,7 +17,7 @@ struct Match {
     std::size_t right;
 };
 
-/// Every pair within the tolerance, the closest first.
+/// Returns every pair within the tolerance, the closest pair first.
 std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
                               const std::vector<std::int64_t>& right_ns,
                               std::int64_t tolerance_ns) {
@@ -46,7 +46,8 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
     return matches;
 }
 
-/// Nanoseconds per unit of a stamp since 1970 with this number of digits; 0 = not such a stamp.
+/// Returns the nanoseconds per unit of a stamp since 1970 with this number of digits. 0 = no stamp
+/// has this number of digits.
 std::int64_t tick_ns(std::size_t digits) {
     switch (digits) {
         case 13: return 1'000'000;

@@ -51,7 +51,7 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
     unsigned largest = 0;
     for (const std::size_t i : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
         const Result<std::string> bytes = read_file(frames[i].left, limits::kImageBytes);
-        if (!bytes) return {};  // reported when the frame is read
+        if (!bytes) return {};  // reading the frame reports the error
         const Result<ImageHeader> header = check_image(*bytes, frames[i].left);
         if (!header || header->bits != 16) return {};
         const Result<DepthCodes> codes = parse_depth_codes(*bytes, frames[i].left);
@@ -59,7 +59,7 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
         for (std::size_t k = 0; k < codes->size(); ++k)
             largest = std::max<unsigned>(largest, codes->data()[k]);
     }
-    // Sensors have 10, 12, 14 or 16 bits; cameras often shift shorter values up to 16 bits.
+    // Sensors have 10, 12, 14 or 16 bits. Cameras often shift values of fewer bits up to 16 bits.
     int guess = 16;
     for (const int bits : {14, 12, 10})
         if (largest > 0 && static_cast<int>(std::bit_width(largest)) <= bits) guess = bits;

@@ -14,18 +14,19 @@
 namespace surefoot::io {
 namespace {
 
-/// Six printed decimals keep a unit quaternion to 1e-6; more than this is not a rounding error.
+/// Limit of the length error of a quaternion. Six printed decimals keep the length to 1e-6; an
+/// error above this limit is not a rounding error.
 constexpr double kNormTolerance = 0.01;
-/// KITTI prints seven digits.
+/// Limit of R^T R - I; KITTI prints seven digits.
 constexpr double kRotationTolerance = 1e-3;
-constexpr double kFarthest_m = 1e9;  ///< a micrometre still differs there
+constexpr double kFarthest_m = 1e9;  ///< largest coordinate; a double still resolves 1 um there
 constexpr std::int64_t kKittiPeriod_ns = 100'000'000;
 
 Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// x y z qx qy qz qw.
+/// Builds a pose from x y z qx qy qz qw.
 Result<Pose> pose_of_seven(const std::array<double, 12>& v) {
     const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
     if (std::abs(rotation.norm() - 1.0) > kNormTolerance) {
@@ -35,7 +36,7 @@ Result<Pose> pose_of_seven(const std::array<double, 12>& v) {
     return Pose{rotation.normalized(), {v[0], v[1], v[2]}};
 }
 
-/// The upper 3x4 of a matrix, row by row.
+/// Builds a pose from the upper 3x4 part of a matrix, row by row.
 Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
     Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
     for (Eigen::Index i = 0; i < 12; ++i) T(i / 4, i % 4) = v[static_cast<std::size_t>(i)];
@@ -56,7 +57,7 @@ StampUnit unit_of(const TrajectoryTable& table) {
     return stamp_unit_of(stamps);
 }
 
-/// Sorts by time; of poses with one stamp the first of the file is kept.
+/// Sorts poses by time. Keeps the first pose of the file if several poses have the same stamp.
 void sort_and_thin(TrajectoryFile& out) {
     const auto earlier = [](const StampedPose& a, const StampedPose& b) {
         return a.time_ns < b.time_ns;

@@ -23,8 +23,8 @@ bool is_one_of(std::string_view word, const std::array<std::string_view, N>& wor
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Role of a column among the eight numbers of a stamped pose. The axis is the end of the column
-/// name, after the prefixes of TUM, EuRoC, ROS and evo.
+/// Returns the role of a column among the eight numbers of a stamped pose. The axis is the end of
+/// the column name, after the prefixes of TUM, EuRoC, ROS and evo.
 std::optional<std::size_t> role_of(std::string_view key) {
     constexpr std::array<std::string_view, 9> kStamps = {"t",
                                                          "time",
@@ -48,7 +48,8 @@ std::optional<std::size_t> role_of(std::string_view key) {
     return is_one_of(key, kRotations) ? std::optional(4 + axis) : std::nullopt;
 }
 
-/// Column numbers from a header line; no value unless each of the eight roles occurs exactly once.
+/// Returns column numbers from a header line; no value unless each of the eight roles occurs
+/// exactly once.
 std::optional<PosePlaces> places_of(const std::vector<Column>& columns) {
     PosePlaces places{};
     std::array<int, 8> count{};
@@ -62,7 +63,7 @@ std::optional<PosePlaces> places_of(const std::vector<Column>& columns) {
     return all ? std::optional(places) : std::nullopt;
 }
 
-/// Layout of a table without a header line.
+/// Returns the layout of a table without a header line.
 Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, char separator) {
     TrajectoryLayout layout{"TUM", true, words.size(), separator, kTumPlaces, {}};
     if (words.size() == kKittiColumns) {
@@ -115,7 +116,7 @@ Result<TrajectoryTable> TrajectoryTable::read(std::string_view text, const std::
 
 Status TrajectoryTable::take_line(std::string_view content, int number) {
     if (is_comment(content)) {
-        if (rows_.empty()) (void)take_head(content);  // otherwise it is an ordinary comment
+        if (rows_.empty()) (void)take_head(content);  // else an ordinary comment
         return {};
     }
     const char separator = rows_.empty() ? separator_of(content) : layout_.separator;
@@ -124,7 +125,7 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
     const bool no_number = std::none_of(words_.begin(), words_.end(), [](std::string_view word) {
         return parse_value(word) || has_decimal_comma(word);
     });
-    if (no_number && content == head_line_) return {};  // a header of a concatenated file
+    if (no_number && content == head_line_) return {};  // repeated header in concatenated files
     if (no_number && rows_.empty()) {
         if (take_head(content)) return {};
         return input_error(

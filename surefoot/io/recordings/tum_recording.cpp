@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TUM RGB-D benchmark after Sturm et al. 2012: colour and depth have stamps of their own and are
-// associated by time.
+// Indexes the TUM RGB-D benchmark, after Sturm et al. 2012: colour and depth have stamps of their
+// own and are associated by time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,9 +34,9 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
     return parse_tum_list(*text, path);
 }
 
-/// Pairs of images: from associations.txt, or by time without this file.
+/// Pairs of images from associations.txt; without this file, pairs by time.
 struct Association {
-    std::string list;  ///< list of the colour images
+    std::string list;  ///< path of the list of the colour images
     std::vector<CsvRow> colour;
     std::vector<CsvRow> depth;
     Partners partners;
@@ -102,7 +102,7 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     }
     const Result<DepthCodes> codes = read_depth_codes(recording.frames.front().right);
-    if (!codes) return {};  // reported when the frame is read
+    if (!codes) return {};  // reading the frame reports the error
     std::vector<std::uint16_t> known;
     for (std::size_t i = 0; i < codes->size(); ++i)
         if (codes->data()[i] != 0) known.push_back(codes->data()[i]);

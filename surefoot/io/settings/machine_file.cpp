@@ -36,7 +36,8 @@ GroundBox read_box(Group& group) {
     return box;
 }
 
-/// Yaw, then pitch, then roll about the body's axes (REP-103); pitch is positive downward.
+/// Reads the mount. The rotation is yaw, then pitch, then roll about the body's axes (REP-103);
+/// pitch is positive downward.
 void read_mount(Group& mount, MachineFile& out) {
     const Eigen::Vector3d position_m(mount.number("x_m", -2.0, 2.0),
                                      mount.number("y_m", -2.0, 2.0),
@@ -93,7 +94,7 @@ void read_movement(Group& group, Machine& machine) {
         movement.movement_class = MovementClass::stair;
     else if (name_of_class != "walk")
         group.fail("class", quoted(name_of_class) + " is neither walk nor stair");
-    if (code == 0) return;  // missing or refused; this is reported elsewhere or by finish()
+    if (code == 0) return;  // the code is missing or refused; finish() or another check reports it
     Movement& slot = machine.movements[static_cast<std::size_t>(code)];
     if (slot.configured)
         group.fail("code", fmt::format("{} appears twice; give each movement its own code", code));
@@ -139,8 +140,8 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.attestation_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
 }
 
-/// Checks limits that no gait of the class can reach: a foot cannot land higher than
-/// `swing_clearance`, to which it is lifted.
+/// Refuses limits that no gait of the class can reach. A foot cannot land higher than
+/// `swing_clearance`, the height to which the foot is lifted.
 void check_gait(Group& root, const GateLimits& limits) {
     constexpr double kTenthMmPerMetre = 1e4;
     const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];

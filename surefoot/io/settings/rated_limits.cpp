@@ -88,8 +88,8 @@ const YamlNode* node_at(const YamlNode& root, std::string_view key) {
     return node;
 }
 
-/// The number in the file; no value if its reader has already reported it, or if its class is
-/// disabled.
+/// Returns the number in the file. No value if another check has already reported the number, or if
+/// its step class is disabled.
 std::optional<double> value_at(const YamlNode& root, std::string_view key) {
     for (const std::string_view group : {"limits.walk", "limits.stair"}) {
         if (!key.starts_with(group)) continue;
@@ -111,7 +111,7 @@ const RatedLimit* find_limit(std::string_view key) {
     return found == kRatedLimits.end() ? nullptr : &*found;
 }
 
-/// YYYY-MM-DD.
+/// Whether the text is a date YYYY-MM-DD.
 bool is_date(std::string_view text) {
     const auto parts = split(text, "-");
     if (text.size() != 10 || parts.size() != 3 || parts[0].size() != 4 || parts[1].size() != 2)
