@@ -14,8 +14,8 @@
 namespace surefoot::io {
 
 /// Reads the points of a cloud file block by block, for clouds larger than the memory. Binary PLY
-/// and PCD, LAS and text (a point a line) are read in pieces. Compressed PCD, lists, and text PLY,
-/// PCD and VTK are read whole and returned in pieces. Reads the formats of `read_cloud`.
+/// and PCD, LAS and text (one point per line) are read in pieces. Compressed PCD, lists, and text
+/// PLY, PCD and VTK are read whole and returned in pieces. Reads the formats of `read_cloud`.
 class CloudStream {
   public:
     [[nodiscard]] static Result<CloudStream> open(const std::string& path);

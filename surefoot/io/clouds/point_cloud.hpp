@@ -39,7 +39,7 @@ struct CloudFormat {
     bool double_precision = false;  ///< for large (projected) coordinates; a float has 24 bits
 };
 
-/// Whether the extension is a text cloud with a point a line: .xyz .asc .txt .csv .pts.
+/// Whether the extension is a text cloud with one point per line: .xyz .asc .txt .csv .pts.
 [[nodiscard]] bool is_text_cloud(std::string_view extension) noexcept;
 
 /// Reads a cloud by its extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv .pts as text.
@@ -47,16 +47,16 @@ struct CloudFormat {
 /// Parses the content of a cloud file; the extension of `file` selects the format.
 [[nodiscard]] Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file);
 
-/// PLY 1.0: ascii, binary_little_endian, binary_big_endian; vertices with x y z, optional colours
-/// (red green blue, all three as uchar) and any further numeric property as scalar. Lists and other
-/// elements are skipped.
+/// Parses PLY 1.0: ascii, binary_little_endian, binary_big_endian; vertices with x y z, optional
+/// colours (red green blue, all three as uchar) and any further numeric property as scalar. Lists
+/// and other elements are skipped.
 [[nodiscard]] Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_ply(const PointCloud& cloud, const CloudFormat& format = {});
 [[nodiscard]] Status write_ply(const std::string& path,
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
 
-/// PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF). Padding fields and COUNT > 1 are
+/// Parses PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF). Padding fields and COUNT > 1 are
 /// skipped. Also reads X Y Z, COLUMNS instead of FIELDS, and a header without WIDTH.
 [[nodiscard]] Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_pcd(const PointCloud& cloud, const CloudFormat& format = {});
@@ -64,14 +64,14 @@ struct CloudFormat {
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
 
-/// LAS 1.0 to 1.4, point formats 0 to 10, not LAZ. The fields of a point become scalars and 8-bit
-/// colours. Flags, wave packets and extra bytes are skipped.
+/// Parses LAS 1.0 to 1.4, point formats 0 to 10, but not LAZ. The fields of a point become scalars
+/// and 8-bit colours. Flags, wave packets and extra bytes are skipped.
 [[nodiscard]] Result<PointCloud> parse_las(std::string_view bytes, const std::string& file);
 
 /// Parses the POINTS of a legacy VTK file in text form.
 [[nodiscard]] Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file);
 
-/// Text with a point a line. Blanks (or tabs), commas or semicolons separate the fields. A header
+/// Parses text, one point per line. Blanks, tabs, commas or semicolons separate fields. A header
 /// line, with or without '#' or '//', names the columns; x, y and z are found by name. Without a
 /// header x, y and z are the first three columns. Further columns become scalars; an empty field is
 /// NaN. A single number in a line before the points is their count. Errors name the line.

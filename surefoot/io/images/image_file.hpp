@@ -40,7 +40,7 @@ struct ImageHeader {
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 /// Reads the header and checks the rest: PNG chunks with their checksums up to IEND, JPEG up to its
-/// end marker, PGM/PPM by its size. `file` is only the name in errors.
+/// end marker, PGM/PPM by its size. `file` is used only in error texts.
 [[nodiscard]] Result<ImageHeader> check_image(std::string_view bytes, const std::string& file);
 
 /// Decodes an 8-bit image as grey. Colour is weighted 0.299 R + 0.587 G + 0.114 B (BT.601); alpha

@@ -43,7 +43,7 @@ struct LiveAddress {
 };
 [[nodiscard]] Result<LiveAddress> parse_live_address(std::string_view text);
 
-/// Frames of a side-by-side stereo camera on V4L2, YUYV or MJPEG.
+/// Reads frames of a side-by-side stereo camera on V4L2, in YUYV or MJPEG.
 ///
 /// * `next` waits for an image and returns the newest one. `StereoFrame::frame_status` counts the
 ///   images skipped, lost by the device or damaged since the previous frame. If all buffers were
@@ -92,7 +92,7 @@ class LiveCamera final : public camera::FrameSource {
     /// Returns the exposure in ns; 0 = unknown, because the camera controls it.
     [[nodiscard]] std::int64_t known_exposure_ns(V4l2Device& device) const;
     void count_sequence(const VideoBuffer& buffer);
-    /// Converts the image to a frame; no value if the image is damaged (counts it).
+    /// Converts the image to a frame. Counts damaged images and returns no value for them.
     [[nodiscard]] Result<std::optional<StereoFrame>> frame_of(const VideoBuffer& buffer);
     [[nodiscard]] Result<GreyImage> decode(const VideoBuffer& buffer) const;
     [[nodiscard]] std::int64_t middle_of_exposure_ns(const VideoBuffer& buffer) const;
@@ -105,13 +105,13 @@ class LiveCamera final : public camera::FrameSource {
     std::function<bool()> stop_;
     std::optional<V4l2Device> device_;  // declared after system_: is closed first
     VideoMode mode_;
-    std::int64_t exposure_ns_ = 0;  ///< 0 = not known
+    std::int64_t exposure_ns_ = 0;  ///< exposure time in use; 0 = not known
     std::string lost_because_;
     int silent_ms_ = 0;  ///< waiting time since the last usable frame
-    int waited_ms_ = 0;  ///< waiting time since the device was opened
+    int waited_ms_ = 0;  ///< part of silent_ms_ since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;
-    FrameStatus frame_status_;  ///< since the previous frame
+    FrameStatus frame_status_;  ///< images skipped, lost or damaged since the last frame
     std::optional<std::uint32_t> last_sequence_;
     std::optional<std::int64_t> last_time_ns_;
 };

@@ -47,7 +47,7 @@ class Recorder {
     /// Closes all files and reports late errors of the operating system.
     [[nodiscard]] Status finish();
     [[nodiscard]] int frames() const noexcept;
-    /// Size of all written images.
+    /// Returns the size of all written images [bytes].
     [[nodiscard]] std::int64_t bytes() const noexcept;
 
   private:
@@ -62,12 +62,12 @@ struct RecordingInfo {
     camera::StereoRig rig;
     int frames = 0;
     int unpaired = 0;           ///< frames of one camera without a partner
-    int missing_images = 0;     ///< listed files that do not exist
+    int missing_images = 0;     ///< number of listed files that do not exist
     std::string first_missing;  ///< first listed file that does not exist
     int bad_stamps = 0;         ///< number of stamps that do not increase
     double duration_s = 0.0;    ///< time from the first to the last stamp
     double rate_hz = 0.0;       ///< rate from the median interval; 0 for fewer than two frames
-    int gaps = 0;               ///< intervals longer than 1.5 times the median
+    int gaps = 0;               ///< number of intervals longer than 1.5 times the median
     double longest_gap_s = 0.0;
     std::int64_t bytes = 0;  ///< size of all images
     int imu_samples = 0;

@@ -14,8 +14,8 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/recordings/pairing.hpp"
 
-/// Recordings on disk, indexed before any image is opened. One indexer per layout; all of them
-/// return the same list, from which RecordingSource makes frames.
+/// Indexes recordings on disk before any image is opened. Each layout has an indexer. All indexers
+/// return the same kind of list, from which RecordingSource makes frames.
 namespace surefoot::io {
 
 struct OpenOptions {
@@ -32,7 +32,7 @@ struct OpenOptions {
     bool skip_broken = false;  ///< continue after unusable frames (skip_broken_frames)
 };
 
-/// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
+/// Depth codes per metre of TUM RGB-D; code 0 means no measurement.
 inline constexpr float kDepthCodesPerMetre = 5000.0F;
 /// Depth codes per metre for depth cameras that store millimetres.
 inline constexpr float kMillimetresPerMetre = 1000.0F;
@@ -110,8 +110,8 @@ struct AssociatedRow {
 [[nodiscard]] Result<std::vector<std::int64_t>> parse_timestamps(std::string_view text,
                                                                  const std::string& file);
 
-/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else no value. `size`: image size
-/// of one camera, if known (see read_rig).
+/// Returns the rig of `options.rig_file`, else of rig.yaml in `folder`, else no value. `size`:
+/// image size of one camera, if known (see read_rig).
 [[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(
     const std::string& folder, const OpenOptions& options, std::optional<ImageSize> size = {});
 /// Returns the size in the header of an image file; no value if the file cannot be read.
@@ -133,11 +133,11 @@ void set_pair_tolerance(const OpenOptions& options,
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
-/// Frame rate for frames without stamps: the rate of the options, or `otherwise_hz` without one.
+/// Returns the rate for frames without stamps: that of the options, otherwise `otherwise_hz`.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
 /// Returns an error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
-/// Stamp of frame `index` at a constant rate, starting at 0.
+/// Returns the stamp of frame `index` at a constant rate; frame 0 has the stamp 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
 
 /// Opens the frames of an index one after another. An unusable frame is an error that names the
