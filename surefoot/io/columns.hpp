@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-/// Tables in text files: separators and named columns.
+/// Reads tables in text files: separators and named columns.
 namespace surefoot::io {
 
-/// Separator of the fields of a line: ';' if the line has one, otherwise ',' if the line has one.
-/// Otherwise ' ', which means white space of any length.
+/// Returns the separator of the fields of a line: ';' if the line has a ';', otherwise ',' if the
+/// line has a ','. Otherwise returns ' ', which means white space of any length.
 [[nodiscard]] char separator_of(std::string_view line) noexcept;
 
 /// Splits a line into fields without surrounding white space and quotes. Fields between two ';',
@@ -29,8 +29,8 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// One column of a header line.
 struct Column {
     std::string name;  ///< name as written, without quotes
-    std::string key;   ///< in lower case, without its unit
-    std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty without a unit
+    std::string key;   ///< name in lower case, without its unit
+    std::string unit;  ///< unit: "m" of "x [m]" or "x(m)"; may be empty
 };
 
 /// Returns the columns that a header line names; the line may be a comment.

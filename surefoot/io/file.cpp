@@ -47,7 +47,7 @@ int write_and_close(const std::string& path, int flags, std::string_view bytes) 
 }
 
 std::string temporary_name(const std::string& path) {
-    static std::atomic<unsigned> counter{0};  // unique among the threads of this process
+    static std::atomic<unsigned> counter{0};  // names are unique among the threads
     const fs::path target(path);
     const std::string name =
         fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), counter.fetch_add(1));

@@ -11,7 +11,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/files/input_file.hpp"
 
-/// Reads and writes whole files; every error holds the reason of the operating system.
+/// Reads and writes whole files; every error names the reason of the operating system.
 namespace surefoot::io {
 
 /// The namespace `files` reads regular files only, with a size limit per format.
@@ -30,8 +30,8 @@ using files::read_file;
 /// Creates a folder and its parents; an existing folder is not an error.
 [[nodiscard]] Status make_folder(const std::string& path);
 
-/// Names (without folder) of the regular files in a folder whose lower-case extension is one of
-/// `extensions` (".png"), in natural order. Hidden files are left out.
+/// Lists the names (without folder) of regular files in a folder whose lower-case extension is one
+/// of `extensions` (".png"), in natural order. Hidden files are left out.
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 

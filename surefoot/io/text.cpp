@@ -139,7 +139,7 @@ std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept 
 }
 
 std::string format_seconds(std::int64_t time_ns) {
-    // Unsigned, because the magnitude of the smallest int64 does not fit in int64.
+    // Use unsigned, because the magnitude of the smallest int64 does not fit in int64.
     const auto magnitude =
         time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
     constexpr auto kSecond = static_cast<std::uint64_t>(kNanosecondsPerSecond);

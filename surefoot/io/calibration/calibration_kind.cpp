@@ -56,8 +56,8 @@ bool is_kitti_line(std::string_view line) {
     return !words.empty() && parse_double(words[0]).has_value();
 }
 
-/// Whether the document is a file of camera_calibration_parsers or a printed sensor_msgs/CameraInfo
-/// (ROS 1 writes K, ROS 2 writes k).
+/// Returns true for a file of camera_calibration_parsers or a printed sensor_msgs/CameraInfo (ROS 1
+/// writes K, ROS 2 writes k).
 bool is_ros(const YamlNode& root) {
     if (has_any(root, {"camera_matrix"}) &&
         has_any(root, {"projection_matrix", "rectification_matrix", "camera_name"}))
@@ -72,7 +72,7 @@ bool is_surefoot(const YamlNode& root) {
     return has_group_with(root, "left", {"focal_px", "principal_px", "coefficients"});
 }
 
-/// Whether the document may be a rig.yaml whose important keys are missing or misspelled.
+/// Returns true if the document may be a rig.yaml whose important keys are missing or misspelled.
 bool may_be_surefoot(const YamlNode& root) {
     return count_of(
                root,

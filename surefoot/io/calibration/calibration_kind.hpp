@@ -8,8 +8,8 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Detects the format of a calibration file. Only this header distinguishes formats. Every command
-/// that reads a rig or a machine file uses it, so no reader checks a file against the keys of
-/// another format.
+/// that reads a rig or a machine file uses this header, so no reader checks a file against the keys
+/// of another format.
 namespace surefoot::io {
 
 enum class CalibrationKind : std::uint8_t {
@@ -37,12 +37,12 @@ enum class CalibrationKind : std::uint8_t {
     unknown
 };
 
-/// Detects formats that are not YAML, by their text; `unknown` for all other formats.
+/// Detects formats other than YAML by their text; returns `unknown` for all other formats.
 [[nodiscard]] CalibrationKind kind_of_text(std::string_view text);
 /// Detects the format by the keys of a YAML (or JSON) document.
 [[nodiscard]] CalibrationKind kind_of_document(const YamlNode& root);
 
-/// Name of the format in messages: "an ORB-SLAM settings file".
+/// Returns the name of the format for messages, for example "an ORB-SLAM settings file".
 [[nodiscard]] const char* title_of(CalibrationKind kind) noexcept;
 /// Explains why a file of this kind cannot be read as a rig, and what to do. The text continues a
 /// sentence that begins with the file name. For an unknown file the text names the first keys of

@@ -88,8 +88,8 @@ NamedNode find_sided(const std::vector<Entry>& entries, const std::string& base,
     return is_matrix(found) ? found : NamedNode{};
 }
 
-/// Finds the first naming with the matrix of both cameras, else the first naming with the matrix of
-/// one camera.
+/// Finds the first naming scheme that has the matrix of both cameras. If there is none, finds the
+/// first scheme that has the matrix of one camera.
 Pair find_pair(const std::vector<Entry>& entries,
                std::initializer_list<const char*> bases,
                const Sides* wanted) {

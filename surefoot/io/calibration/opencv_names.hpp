@@ -6,10 +6,10 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Finds the matrices of a stereo calibration in an OpenCV file; private to the rig readers.
-/// cv::FileStorage lets the writer choose the names, so every tutorial uses its own.
+/// cv::FileStorage lets the writer choose the names, so every tutorial uses other names.
 namespace surefoot::io {
 
-/// A value and its key ("left.K" for a key inside a group).
+/// Value of a key, and the key itself ("left.K" for a key inside a group).
 struct NamedNode {
     const YamlNode* node = nullptr;
     std::string key;

@@ -71,9 +71,9 @@ struct KittiCalibration {
                                                   const std::string& file);
 
 /// Reads OpenCV FileStorage YAML or JSON: camera matrices and distortion under any usual name (see
-/// surefoot/io/calibration/opencv_names.hpp), R (or a rotation vector) and T with x_right = R
-/// x_left + T [m], and the image size if the file has it. Four coefficients are a fisheye lens if
-/// the file says "fisheye: 1" or "model: fisheye".
+/// surefoot/io/calibration/opencv_names.hpp). R (or a rotation vector) and T [m] mean x_right = R
+/// x_left + T. The image size is optional. Four coefficients are a fisheye lens if the file says
+/// "fisheye: 1" or "model: fisheye".
 [[nodiscard]] Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                                          const std::string& file,
                                                          std::optional<ImageSize> size = {});

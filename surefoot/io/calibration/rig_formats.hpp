@@ -12,7 +12,7 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 
 /// Reads and writes calibration files of other programs. Returned rigs have no problem(). Writers
-/// refuse a rig that the format cannot hold and name the part that does not fit.
+/// refuse a rig that the format cannot store, and name the unsupported part.
 namespace surefoot::io {
 
 enum class RigFormat {
@@ -54,7 +54,7 @@ struct RigFile {
 /// Names the parts of this rig that the format cannot store.
 [[nodiscard]] std::vector<std::string> lost_in(RigFormat format, const camera::StereoRig& rig);
 
-/// Formats M1 D1 M2 D2 R T, and R1 R2 P1 P2 Q of our rectification; cv::FileStorage can read it.
+/// Formats M1 D1 M2 D2 R T, and R1 R2 P1 P2 Q of Surefoot's rectification, for cv::FileStorage.
 [[nodiscard]] Result<std::string> format_opencv_rig(const camera::StereoRig& rig);
 
 /// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right camera; camera_model

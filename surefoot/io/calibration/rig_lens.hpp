@@ -8,8 +8,8 @@
 #include "surefoot/camera/camera_model.hpp"
 #include "surefoot/core/result.hpp"
 
-/// Distortion coefficients of calibration files; private to the rig readers. Every reader builds
-/// its lenses here, so that trailing zeros and thin-prism terms are treated alike.
+/// Reads distortion coefficients of calibration files; private to the rig readers. All readers
+/// build lenses here, so that they treat trailing zeros and thin-prism terms in the same way.
 namespace surefoot::io {
 
 /// Removes zeros after the first `count` coefficients. Many programs fill lists up with zeros. A

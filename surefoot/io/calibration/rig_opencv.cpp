@@ -59,8 +59,8 @@ camera::CameraModel read_lens(YamlReader& yaml,
                         is_fisheye(yaml.root()) ? fisheye_lens(k, D) : pinhole_lens(k, D));
 }
 
-/// Adds a note about an ambiguous lens: cv::fisheye and cv::calibrateCamera without k3 both write
-/// four coefficients, and cv::fisheye does not write the name of its model.
+/// Adds a note about an ambiguous lens. Both cv::fisheye and cv::calibrateCamera without k3 write
+/// four coefficients, and cv::fisheye does not write the name of its lens model.
 void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& out) {
     const YamlNode& root = yaml.root();
     for (const char* key : {"fisheye", "model", "distortion_model", "camera_model"}) {

@@ -16,8 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// The keys of the two forms: files of camera_calibration_parsers, and a sensor_msgs/CameraInfo as
-/// `ros2 topic echo` and `rostopic echo` print it.
+/// Keys of two forms: files of camera_calibration_parsers, and a sensor_msgs/CameraInfo that `ros2
+/// topic echo` or `rostopic echo` printed.
 struct RosKeys {
     const char *width, *height, *K, *D, *R, *P;
 };
@@ -40,7 +40,7 @@ struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
     double x_m = 0.0;          ///< x of the camera centre in the rectified frame
-    bool has_rotation = true;  ///< false: R is all zero, "not rectified"
+    bool has_rotation = true;  ///< false if R is all zero ("not rectified")
     std::vector<std::string> notes;
 };
 
@@ -155,7 +155,7 @@ int count_or_zero(YamlReader& yaml,
 
 void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, double bin_y) {
     std::visit(
-        [&](auto& m) {  // pixel centres lie at whole coordinates
+        [&](auto& m) {  // pixel centres have whole coordinates
             m.fx_px /= bin_x;
             m.fy_px /= bin_y;
             m.cx_px = (m.cx_px - x_px + 0.5) / bin_x - 0.5;
@@ -164,8 +164,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to. First
-/// `roi` (in pixels of that image; all 0 = the whole image), then binning.
+/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to.
+/// Applies `roi` first (in pixels of that image; all 0 = the whole image), then binning.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;
@@ -249,7 +249,7 @@ Result<RosCamera> parse_camera(const NamedText& in) {
     return out;
 }
 
-/// Checks the rotations. A driver that does not rectify writes an all-zero R; the cameras then
+/// Checks the rotations. A driver that does not rectify writes an R of zeros. The cameras then
 /// count as parallel.
 Status check_rotations(const RosCamera& l, const RosCamera& r, RigFile& out) {
     if (l.has_rotation != r.has_rotation) {

@@ -12,7 +12,7 @@
 /// Helpers that the rig readers share; private to them.
 namespace surefoot::io {
 
-/// Largest side of a camera image that a rig file may claim.
+/// Largest side of a camera image in a rig file.
 inline constexpr int kMaxRigSide_px = 1 << 15;
 
 /// Reads [width, height].
@@ -23,7 +23,7 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
                                   const YamlNode& node,
                                   std::string_view key,
                                   const std::vector<double>& rows);
-/// Formats "[a, b, c]"; the numbers read back exactly.
+/// Formats numbers as "[a, b, c]", with all digits that an exact value needs.
 [[nodiscard]] std::string format_list(const std::vector<double>& values);
 /// Formats the 16 matrix numbers of a pose.
 [[nodiscard]] std::string format_pose_rows(const Pose& pose);
@@ -67,13 +67,13 @@ void check_focal(YamlReader& yaml,
                  std::string_view key,
                  const std::vector<double>& K);
 
-/// The rectification of a camera pair in the form of OpenCV and ROS, row by row.
+/// Matrices of the rectification of a camera pair, in the form of OpenCV and ROS, row by row.
 struct RectifiedMatrices {
     std::vector<double> R_left, R_right;  ///< 3x3, x_rectified = R x_raw
     std::vector<double> P_left, P_right;  ///< 3x4; P_right(0, 3) = -fx * baseline [px m]
     std::vector<double> Q;                ///< 4x4, maps (u, v, disparity, 1) to (X, Y, Z, W) [m]
 };
-/// Computes our rectification (camera::Rectifier). `rig`: two cameras and no problem().
+/// Computes Surefoot's rectification (camera::Rectifier). `rig` must be valid and a pair.
 [[nodiscard]] RectifiedMatrices rectified_matrices(const camera::StereoRig& rig);
 
 /// Works like parse_opencv_rig, but on a parsed document; also returns the notes.
@@ -87,8 +87,8 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out);
 /// Returns the rig, the error of the reader, or the problem of the rig with the file name.
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const YamlReader& yaml);
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& file);
-/// Final step for every file of another program: marks the rig as rectified if it is, checks it,
-/// and adds a note if its baseline is unusual.
+/// Final step for every file of another program. Checks the rig, marks rectified rigs, and adds a
+/// note if the baseline is unusual.
 [[nodiscard]] Result<RigFile> checked_file(RigFile out, const std::string& file);
 
 }  // namespace surefoot::io

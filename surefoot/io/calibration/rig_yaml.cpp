@@ -11,7 +11,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Hint for missing keys of the second camera: the file may describe an RGB-D camera.
+/// Hint for a missing key of the second camera, because the file may describe an RGB-D camera.
 constexpr const char* kRgbdHint =
     "; a camera that measures depth itself (RGB-D) needs 'layout: rgbd' and no second camera";
 

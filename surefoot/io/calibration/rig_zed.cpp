@@ -174,7 +174,7 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
                !zed.error() && problem) {
         zed.fail(fmt::format("[STEREO] Baseline = {}, in millimetres: {}", baseline_mm, *problem));
     }
-    const double y_mm = value("TY");  // read in order, so that the first missing key is reported
+    const double y_mm = value("TY");  // in order: reports the first missing key
     const double z_mm = value("TZ");
     const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(

@@ -24,9 +24,9 @@ using ScalarValues = std::variant<std::vector<float>,
                                   std::vector<std::int64_t>,
                                   std::vector<std::uint64_t>>;
 
-/// An additional value per point: intensity, time, identifier, variance, component of a normal. It
-/// keeps the type of the file, so that a time in seconds since 1970 and an identifier above 2^24
-/// keep all their digits.
+/// An additional value per point: intensity, time, identifier, variance, component of a normal. The
+/// values keep the type of the file, so that a time in seconds since 1970 and an identifier above
+/// 2^24 keep all their digits.
 struct CloudScalar {
     std::string name;
     ScalarValues values;

@@ -39,7 +39,7 @@ class CloudStream {
             if (Status status = use(*block); !status) return status;
         }
     }
-    /// Number of points, if the file states it.
+    /// Returns the number of points, if the file states the number.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
     /// Contents of the file that the blocks so far do not hold, one sentence each; the blocks
     /// themselves have no notes.
@@ -55,9 +55,9 @@ class CloudStream {
     class Whole;
 };
 
-/// Origin for float coordinates. A float has 24 bits: 0.06 mm at 1 km, half a metre in a national
-/// grid. From 1 km on, an axis therefore starts at the multiple of 100 m nearest to the first
-/// point. This shift changes no digit of a coordinate that was a float.
+/// Origin for float coordinates. A float has 24 bits and resolves 0.06 mm at 1 km, but only half a
+/// metre in a national grid. From 1 km on, an axis therefore starts at the multiple of 100 m
+/// nearest to the first point. This shift changes no digit of a coordinate that was a float.
 [[nodiscard]] Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m);
 
 /// Points as floats relative to a shift.
@@ -68,7 +68,7 @@ struct ShiftedCloud {
 };
 
 /// Reads points into floats block by block. The shift comes from the first finite point, unless the
-/// caller gives one. Errors: those of the stream; a point more than 100 km from the shift.
+/// caller gives one. Fails on errors of the stream and on a point more than 100 km from the shift.
 class ShiftedReader {
   public:
     ShiftedReader(std::string path, std::optional<Eigen::Vector3d> shift_m)

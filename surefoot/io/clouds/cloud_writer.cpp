@@ -45,7 +45,7 @@ bool holds_the_same(const PointCloud& a, const PointCloud& b) {
 Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
     const std::string extension = extension_of(path);
     const bool text =
-        is_text_cloud(extension) && extension != ".pts";  // .pts has a different header
+        is_text_cloud(extension) && extension != ".pts";  // .pts files need a different header
     if (!text && extension != ".ply" && extension != ".pcd") {
         return usage_error(fmt::format(
             "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));

@@ -29,10 +29,10 @@ constexpr std::size_t kHeader14 = 375;
 
 struct RecordFormat {
     std::size_t bytes;     ///< size of all fields [bytes]
-    std::size_t time;      ///< offset of the GPS time; 0 = no GPS time
-    std::size_t colour;    ///< offset of red
-    std::size_t infrared;  ///< offset of the near infrared channel
-    std::size_t waves;     ///< offset of the wave packet
+    std::size_t time;      ///< byte offset of the GPS time; 0 = no GPS time
+    std::size_t colour;    ///< byte offset of red
+    std::size_t infrared;  ///< byte offset of the near-infrared channel
+    std::size_t waves;     ///< byte offset of the wave packet
 };
 // Point formats 0 to 10, from tables 7 to 17 of the specification.
 constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
@@ -49,7 +49,7 @@ constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
 constexpr std::size_t kIntensity = 12;
 constexpr std::size_t kReturns = 14;
 constexpr std::size_t kFirstWideFormat = 6;  ///< from here on, records have another layout
-constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format
+constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format number
 
 struct Header {
     std::size_t header_bytes = 0;
@@ -187,7 +187,7 @@ void add_scalars(const Header& header, std::string_view records, PointCloud& clo
     }
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header,
                                   std::string_view records,
                                   bool wide_colours) {

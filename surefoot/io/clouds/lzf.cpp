@@ -73,7 +73,7 @@ std::string pack_lzf(std::string_view data) {
         const std::uint32_t triple = static_cast<std::uint32_t>(byte_at(data, at)) << 16 |
                                      static_cast<std::uint32_t>(byte_at(data, at + 1)) << 8 |
                                      byte_at(data, at + 2);
-        // Multiplicative hash: the upper bits of the product depend on all three bytes.
+        // Computes a multiplicative hash: the upper bits of the product depend on all three bytes.
         std::size_t& slot = last[(triple * 2654435761U) >> (32 - kHashBits)];
         const std::size_t candidate = slot;
         slot = at;

@@ -156,9 +156,9 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         if (words[0] != "DATA") continue;
         header.body = lines.rest();
         header.last_line = lines.number();
-        // Version 0.5 has no WIDTH: all points are one row, as PCL reads it.
+        // Version 0.5 has no WIDTH: all points are one row, as in PCL.
         if (!header.width) header.width = header.points.value_or(0);
-        const std::uint64_t cells = *header.width * header.height;  // both at most 2^30
+        const std::uint64_t cells = *header.width * header.height;  // both factors are at most 2^30
         if (cells > kMaxPoints || header.points.value_or(cells) != cells) {
             return at_line(file,
                            lines.number(),
@@ -347,7 +347,7 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
     return {};
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Field& field : header.fields) {

@@ -208,8 +208,8 @@ ScalarValues no_values(Type type) {
     return std::vector<float>();
 }
 
-/// Finds three numeric properties with these names, each once; else no value. `type`: required
-/// type.
+/// Finds three numeric properties with these names. No value unless each occurs once. `type`:
+/// required type.
 std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
                                                       const std::array<std::string_view, 3>& names,
                                                       std::optional<Type> type) {
@@ -255,8 +255,8 @@ std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud&
     return targets;
 }
 
-/// Reads one vertex; returns false if the data end, or a word is not a number or does not fit its
-/// type.
+/// Reads one vertex. Returns false if the data end, or if a word is not a number or does not fit
+/// the type of its property.
 bool read_vertex(ValueReader& values,
                  const Element& vertex,
                  const std::vector<Target>& targets,
@@ -345,7 +345,7 @@ Result<PointCloud> read_vertices(const Element& vertex,
     return cloud;
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Element& element : header.elements) {

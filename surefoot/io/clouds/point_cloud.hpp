@@ -17,14 +17,14 @@ namespace surefoot::io {
 /// Points of a file, in the frame of the file [m].
 struct PointCloud {
     std::vector<Eigen::Vector3d> points_m;  ///< NaN = no measurement (organised clouds)
-    int width = 0;                          ///< organised: columns; otherwise all points in one row
-    int height = 1;            ///< organised: rows > 1; point of (u, v) at v * width + u
+    int width = 0;                          ///< columns if organised; otherwise number of points
+    int height = 1;            ///< rows; above 1 if organised: (u, v) is at v * width + u
     std::vector<Rgb> colours;  ///< one colour per point, or empty
     std::vector<CloudScalar> scalars;
     /// Viewpoint, if the file has one (PCD's VIEWPOINT). The points keep the frame of the file: the
     /// viewpoint is not applied to them.
     std::optional<Pose> T_cloud_sensor;
-    bool double_precision = false;   ///< the file's coordinates may need more than 24 bits
+    bool double_precision = false;   ///< true if coordinates may need more than 24 bits
     std::vector<std::string> notes;  ///< sentences about contents of the file that are missing here
 
     [[nodiscard]] bool organised() const noexcept { return height > 1; }
@@ -36,7 +36,7 @@ struct PointCloud {
 /// Options for writing a cloud.
 struct CloudFormat {
     bool binary = true;
-    bool double_precision = false;  ///< for large (projected) coordinates; a float has 24 bits
+    bool double_precision = false;  ///< write doubles, for large coordinates (float: 24 bits)
 };
 
 /// Whether the extension is a text cloud with one point per line: .xyz .asc .txt .csv .pts.

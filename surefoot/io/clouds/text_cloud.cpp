@@ -24,7 +24,8 @@ bool is_long_number(std::string_view word) {
     return value && std::abs(*value) >= kExact;
 }
 
-/// Names of the columns after x, y and z in a Leica or potree .pts file, which has no header.
+/// Returns the names of the columns after x, y and z in a Leica or potree .pts file, which has no
+/// header.
 std::vector<std::string> pts_names(std::size_t further) {
     if (further == 1) return {"intensity"};
     if (further == 3) return {"r", "g", "b"};

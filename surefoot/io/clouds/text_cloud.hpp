@@ -27,7 +27,7 @@ class TextCloudParser {
     [[nodiscard]] Result<PointCloud> parse(std::string_view lines);
     /// Returns an error if there were no points, or fewer points than the file announces.
     [[nodiscard]] Status finish() const;
-    /// Values that were not read exactly as written, a sentence each.
+    /// Describes values that were not read exactly as written, one sentence each.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:

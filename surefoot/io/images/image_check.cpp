@@ -68,7 +68,7 @@ Result<ImageHeader> parse_ihdr(std::string_view data, const std::string& file) {
     return checked_size(header, file);
 }
 
-/// Walks over the chunks: length (big-endian), type, data, CRC of type and data.
+/// Checks all chunks. A chunk has length (big-endian), type, data, and CRC of type and data.
 Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
     std::size_t at = kPngSignature.size();
     Result<ImageHeader> header = damaged(file, "PNG without a header");
@@ -104,7 +104,7 @@ constexpr bool is_frame_header(int marker) noexcept {  // SOF0 to SOF15, except 
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/// Walks over the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
+/// Checks the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
 Result<ImageHeader> check_jpeg(std::string_view bytes, const std::string& file) {
     std::size_t at = 2;
     Result<ImageHeader> header = damaged(file, "JPEG without a size");

@@ -67,7 +67,7 @@ Result<std::string> encode(const cv::Mat& image, const Image<Pixel>& original) {
     if (original.empty()) return output_error("an image without pixels cannot be written");
     std::vector<uchar> bytes;
     try {
-        // Level 1 costs little space on camera images and saves most of the time.
+        // Compression level 1 needs little more space for camera images and saves most of the time.
         if (cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
             return std::string(bytes.begin(), bytes.end());
         }

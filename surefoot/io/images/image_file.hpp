@@ -8,8 +8,8 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/core/views.hpp"
 
-/// Image files: reads PNG, JPEG and PGM/PPM, writes PNG. A file is checked for completeness before
-/// it is decoded, because decoders silently fill the missing part of a truncated image with grey.
+/// Reads PNG, JPEG and PGM/PPM, writes PNG. Checks that a file is complete before decoding, because
+/// decoders silently fill the missing part of a truncated image with grey.
 namespace surefoot::io {
 
 struct Rgb {

@@ -33,11 +33,11 @@ struct CameraConfig {
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height are those
-/// of the whole image with both cameras side by side, as the driver lists them.
+/// Address "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height
+/// are those of the whole image with both cameras side by side, as the driver lists them.
 struct LiveAddress {
     std::string device;
-    std::optional<int> width;  ///< set together with height
+    std::optional<int> width;  ///< image width; set together with height
     std::optional<int> height;
     std::optional<double> rate_hz;
 };
@@ -60,7 +60,7 @@ struct LiveAddress {
 /// All work happens inside `next`, in the caller's thread.
 class LiveCamera final : public camera::FrameSource {
   public:
-    /// `stop` is polled while waiting; true ends the source. May be empty.
+    /// Polls `stop` while waiting; true ends the source. `stop` may be empty.
     [[nodiscard]] static Result<std::unique_ptr<LiveCamera>> open(
         std::unique_ptr<VideoDevice> system,
         const LiveAddress& address,

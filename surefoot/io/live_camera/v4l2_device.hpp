@@ -40,9 +40,9 @@ struct VideoBuffer {
     int bytes_per_line = 0;
     std::int64_t time_ns = 0;  ///< the driver's stamp, in `CLOCK_MONOTONIC` if `monotonic`
     bool monotonic = false;
-    bool at_exposure_start = false;  ///< false: the stamp is at the end of the transfer
+    bool at_exposure_start = false;  ///< if false, the stamp is the end of the transfer
     std::uint32_t sequence = 0;      ///< the driver's frame counter
-    bool damaged = false;            ///< the driver reports a damaged image
+    bool damaged = false;            ///< true if the driver reports a damaged image
     std::uint32_t slot = 0;
 };
 
@@ -90,7 +90,7 @@ class V4l2Device {
     void add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes);
     void add_rates(std::uint32_t fourcc, const VideoMode& mode, std::vector<VideoMode>& modes);
 
-    VideoDevice* system_;  // null after a move
+    VideoDevice* system_;  // nullptr after a move
     std::string path_;
     std::string card_;
     std::string driver_;

@@ -8,8 +8,8 @@
 
 namespace surefoot::io {
 
-/// The system calls that a V4L2 camera needs; tests replace them by a scripted device. Failures are
-/// errno values, 0 is success. Not thread-safe.
+/// The system calls that a V4L2 camera needs; tests replace them by a scripted device. Calls return
+/// 0 or an errno value. Not thread-safe.
 class VideoDevice {
   public:
     virtual ~VideoDevice() = default;
@@ -27,7 +27,7 @@ class VideoDevice {
     virtual void pause(int time_ms) = 0;
 };
 
-/// The kernel's video device, not open yet.
+/// Returns the kernel's video device, not open yet.
 [[nodiscard]] std::unique_ptr<VideoDevice> kernel_video_device();
 
 }  // namespace surefoot::io

@@ -46,7 +46,7 @@ struct Header {
     bool y_is_center = false;
 };
 
-/// Reads one "key value" pair; returns false if the word is not a key (the data begin).
+/// Reads one "key value" pair; returns false if the word is not a key, because the data begin.
 bool take_pair(const std::string& key, double value, Header& header) {
     if (key == "ncols") {
         header.columns = value;

@@ -27,16 +27,16 @@ struct Dem {
 /// Reads heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).
 [[nodiscard]] Result<Dem> parse_height_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_height_grid(const std::string& path);
-/// Formats values with 9 significant digits, which read back to the same float.
+/// Formats values with 9 significant digits, enough to read the same float back.
 [[nodiscard]] std::string format_esri_grid(const grid::GridGeometry& geometry,
                                            const grid::Layer& values);
 [[nodiscard]] Status write_esri_grid(const std::string& path,
                                      const grid::GridGeometry& geometry,
                                      const grid::Layer& values);
 
-/// Reads a height image: grey 255 (or 65535) is `full_height_m`, 0 is 0. One cell per pixel of
-/// `scale_m`, lower left corner at (0, 0), top row at the largest y. Impossible heights are unknown
-/// (surefoot/io/maps/height_rules.hpp); a full height beyond kMaxHeight_m is an error.
+/// Reads a height image: grey 255 (or 65535) means `full_height_m`, grey 0 means 0 m. One cell per
+/// pixel of `scale_m`, lower left corner at (0, 0), top row at the largest y. Impossible heights
+/// are unknown (surefoot/io/maps/height_rules.hpp); a full height beyond kMaxHeight_m is an error.
 [[nodiscard]] Result<Dem> parse_dem_image(std::string_view bytes,
                                           const std::string& file,
                                           double scale_m,

@@ -20,7 +20,7 @@ namespace {
 /// hole or tower of this height without intermediate heights.
 constexpr double kFar_m = 50.0;
 constexpr double kFarOfRange = 10.0;
-/// Largest number of "no data" marks in a file; files have one, seldom two.
+/// Largest number of "no data" marks in a file; most files have one mark.
 constexpr int kMostMarks = 4;
 
 std::int64_t replace(std::span<float> heights_m, double low_m, double high_m) {

@@ -108,7 +108,7 @@ struct Cursor {
     }
 };
 
-/// Contents of the preamble and sizes of the parts of the file.
+/// Version and header size from the preamble.
 struct Outline {
     std::uint16_t minor = 0;
     std::size_t header_bytes = 0;
@@ -242,8 +242,7 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
     auto entries = read_layer_table(cursor, layers);
     if (!entries) return entries.error();
     for (LayerEntry& entry : *entries) {
-        // If the file is too short this pointer is not used: the check of the total size fails
-        // later.
+        // If the file is too short, this pointer is not used, because the size check below fails.
         entry.cells = bytes.data() + std::min<std::uint64_t>(needed - kChecksumBytes, bytes.size());
         needed += cells * entry.cell_bytes;
     }

@@ -24,7 +24,7 @@ constexpr std::size_t kFeatureBytes = 44;
 constexpr std::size_t kChecksumBytes = 8;
 constexpr std::uint32_t kMostRecordBytes = 4096;  ///< largest keyframe or feature [bytes]
 
-/// Contents of a header.
+/// Contents of the header of a place file.
 struct Outline {
     std::uint16_t minor = kPlaceFileMinor;
     std::uint32_t header_bytes = kHeaderBytes;
@@ -141,7 +141,7 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
     return outline;
 }
 
-/// Reads one keyframe with its features; removes the bytes it has read from `left`.
+/// Reads one keyframe with its features; removes the bytes of the keyframe from `left`.
 Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& keyframe) {
     const auto too_short = [&] {
         return input_error(

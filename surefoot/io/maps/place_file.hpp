@@ -8,7 +8,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/place_recognition/place.hpp"
 
-/// Places for place recognition as files. docs/reference/place_format.md defines every byte.
+/// Reads and writes recognisable places. docs/reference/place_format.md defines every byte.
 namespace surefoot::io {
 
 /// A newer major version is an error. A newer minor version may add fields to the header, to
@@ -27,7 +27,7 @@ struct PlaceFile {
 [[nodiscard]] Result<std::string> format_place(const place_recognition::Place& place);
 [[nodiscard]] Status write_place(const std::string& path, const place_recognition::Place& place);
 
-/// The returned place has no problem.
+/// The returned place is valid: place.problem() has no value.
 [[nodiscard]] Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<PlaceFile> read_place(const std::string& path);
 

@@ -14,7 +14,7 @@ namespace surefoot::io {
 namespace {
 
 constexpr std::string_view kStart("\xff\xd8\xff", 3);
-/// Larger than the JPEG of any camera; a file with a larger image is not an MJPEG stream.
+/// Limit above the JPEG size of any camera. A file with a larger image is not an MJPEG stream.
 constexpr std::size_t kMaxImageBytes = std::size_t{64} << 20;
 
 class MjpegSource final : public camera::FrameSource {

@@ -40,7 +40,7 @@ constexpr Layout kLayouts[] = {{"image_0", "image_1", "kitti", 0, 1},
                                {"left_images", "right_images", "folders", 0, 1},
                                {"infra1", "infra2", "folders", 0, 1}};
 
-/// The images of both cameras, in natural order.
+/// Names of the images of both cameras, in natural order.
 struct PairOfFolders {
     Layout layout = {};
     std::string left_folder;
@@ -100,7 +100,8 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
     return input_error(folder + ": no folders of left and right images");
 }
 
-/// calib_cam_to_cam.txt of KITTI raw belongs to all drives of a day and lies beside them.
+/// Finds calib_cam_to_cam.txt of KITTI raw. The file belongs to all drives of a day and lies beside
+/// their folders.
 std::optional<std::string> raw_calibration(const std::string& folder) {
     for (const char* name : {"calib_cam_to_cam.txt", "../calib_cam_to_cam.txt"}) {
         if (std::string path = join_path(folder, name); is_file(path)) return path;
@@ -157,7 +158,7 @@ Result<camera::StereoRig> calib_txt_rig(const std::string& path,
     return kitti_rig(*calibration, layout.left_camera, layout.right_camera, size, path);
 }
 
-/// Chooses the rig. calib.txt has no image size, so it is read from the first image.
+/// Chooses the rig. calib.txt has no image size, so the size comes from the first image.
 Result<camera::StereoRig> choose_rig(const std::string& folder,
                                      const OpenOptions& options,
                                      const PairOfFolders& pair) {
@@ -184,7 +185,8 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
                     pair.right.size()));
 }
 
-/// File name of the right image for a left image: the same name, or with "right" instead of "left".
+/// Returns the file name of the right image for a left image: the same name, or with "right"
+/// instead of "left".
 std::string partner_name(const std::string& name) {
     std::string partner = name;
     const std::string lower = lowercase(name);

@@ -34,7 +34,8 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
             order.end(),
             time_ns - tolerance_ns,
             [&](std::size_t i, std::int64_t earliest_ns) { return right_ns[i] < earliest_ns; });
-        // Few frames lie within the tolerance; the limit bounds the work for damaged lists.
+        // Normally few frames lie within the tolerance. The limit bounds the work for damaged
+        // lists.
         for (int n = 0; n < 16 && r != order.end() && right_ns[*r] <= time_ns + tolerance_ns; ++n) {
             matches.push_back({std::abs(right_ns[*r] - time_ns), l, *r});
             ++r;

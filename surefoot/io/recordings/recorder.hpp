@@ -16,12 +16,12 @@ namespace surefoot::io {
 /// Writes a recording. A stereo rig uses the EuRoC ASL layout:
 ///   mav0/cam0, mav0/cam1: sensor.yaml (T_BS, lens), data.csv, data/STAMP_NS.png
 ///   mav0/imu0: sensor.yaml, data.csv        if the rig has an IMU
-/// An RGB-D rig uses the layout of the TUM RGB-D benchmark, whose depths are steps of 0.2 mm below
-/// 13.1 m and which cannot store an IMU:
+/// An RGB-D rig uses the layout of the TUM RGB-D benchmark. This layout stores depths below 13.1 m
+/// in steps of 0.2 mm, and cannot store an IMU:
 ///   rgb.txt, rgb/STAMP_S.png, depth.txt, depth/STAMP_S.png, rig.yaml
-/// Both get groundtruth.tum if truth is added.
-/// Images are written before the lines that name them, and every line is flushed: a recording stays
-/// readable if it is interrupted at any time. Raw images are stored unchanged, without loss.
+/// Both layouts get groundtruth.tum if the caller adds true poses.
+/// Writes an image before the line that names it and flushes every line: a recording stays readable
+/// after an interruption at any time. Stores raw images unchanged, without loss.
 class Recorder {
   public:
     enum class Existing : std::uint8_t {
@@ -40,7 +40,7 @@ class Recorder {
     /// Appends a frame with its IMU samples; stamps must increase.
     [[nodiscard]] Status add(const StereoFrame& frame);
     /// Reads the images that an earlier recorder wrote for the stamp of `frame`. Returns false and
-    /// leaves the frame unchanged unless all are present, complete and of the rig's size.
+    /// leaves the frame unchanged unless all images exist, are complete and have the rig's size.
     [[nodiscard]] bool read_back(StereoFrame& frame) const;
     /// Appends a pose to `groundtruth.tum` (base_link, or another frame that the caller documents).
     [[nodiscard]] Status add_truth(std::int64_t time_ns, const Pose& T_world_body);

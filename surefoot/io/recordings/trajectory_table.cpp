@@ -16,7 +16,7 @@ constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;
 constexpr PosePlaces kTumPlaces = {0, 1, 2, 3, 4, 5, 6, 7};
-constexpr PosePlaces kEurocPlaces = {0, 1, 2, 3, 5, 6, 7, 4};  // the quaternion begins with w
+constexpr PosePlaces kEurocPlaces = {0, 1, 2, 3, 5, 6, 7, 4};  // here the quaternion begins with w
 
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {

@@ -89,7 +89,7 @@ Result<Association> associate(const std::string& folder,
 }
 
 /// Guesses the depth unit from the first image. The nearest depth decides between millimetres and
-/// the codes of the benchmark, because no depth camera measures nearer than a quarter of a metre.
+/// the codes of the benchmark, because no depth camera measures nearer than 0.25 m.
 Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (options.depth_codes_per_m) {
         const double codes = *options.depth_codes_per_m;

@@ -71,7 +71,7 @@ class ListVisitor final : public PathVisitor {
 /// A value found in a file or on the command line.
 struct Given {
     std::string text;
-    std::string where;  ///< "file.yaml:12", "--set"; empty = no known source
+    std::string where;  ///< source: "file.yaml:12" or "--set"; empty = unknown
 };
 
 std::string begin_of_sentence(const std::string& where) {
@@ -80,7 +80,7 @@ std::string begin_of_sentence(const std::string& where) {
 
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
-/// Checks all given values, and assigns them when asked to.
+/// Checks all given values; assigns the values in a second pass.
 class AssignVisitor final : public PathVisitor {
   public:
     AssignVisitor(const GivenValues& given, bool assign) : given_(given), assign_(assign) {}

@@ -10,8 +10,8 @@
 
 namespace surefoot::io {
 
-/// An INI file: [section] lines and key = value lines, names in any case (stored in lower case),
-/// comments from ';' or '#' to the end of the line.
+/// Contents of an INI file: [section] lines and key = value lines. Names are stored in lower case.
+/// Comments begin with ';' or '#'.
 struct IniFile {
     struct Value {
         std::string text;
@@ -31,7 +31,7 @@ struct IniFile {
     [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
 };
 
-/// Errors: a repeated key or section, an unreadable line, more than 1 MB of text.
+/// Fails on a repeated key or section, an unreadable line, or more than 1 MB of text.
 [[nodiscard]] Result<IniFile> parse_ini(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::io

@@ -13,7 +13,7 @@
 
 namespace surefoot::io {
 
-/// Position in the parent's frame; rotation Rz(yaw) Ry(pitch) Rx(roll).
+/// Pose in the frame of the parent; rotation Rz(yaw) Ry(pitch) Rx(roll).
 struct ModelPlace {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();

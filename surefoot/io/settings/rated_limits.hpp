@@ -16,7 +16,7 @@ namespace surefoot::io {
 struct RatedLimit {
     const char* key;  ///< key in the file, for example "limits.tilt_deg"
     double rated;
-    bool larger_allows_more;  ///< false: a smaller value allows more
+    bool larger_allows_more;  ///< if false, a smaller value allows more
     const char* reason;       ///< consequence of a laxer value
 };
 [[nodiscard]] std::span<const RatedLimit> rated_limits() noexcept;
@@ -28,7 +28,7 @@ struct Deviation {
     double rated = 0.0;
     std::string reason;
     std::string signed_by;
-    std::string date;  ///< YYYY-MM-DD, as written: the library reads no clock
+    std::string date;  ///< YYYY-MM-DD as written; the library reads no clock
 };
 
 /// Formats "limits.tilt_deg is 11 (rated 6), signed by NAME on DATE: REASON".

@@ -153,7 +153,7 @@ double YamlReader::number(const YamlNode& node, std::string_view key, double min
                          node.is_scalar() ? quoted(node.scalar) : node.kind_name()));
         return min;
     }
-    if (!(*value >= min && *value <= max)) {  // NaN fails too
+    if (!(*value >= min && *value <= max)) {  // NaN also fails here
         fail(node, key, fmt::format("{} is outside {} .. {}", *value, min, max));
         return min;
     }

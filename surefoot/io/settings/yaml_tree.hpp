@@ -44,7 +44,7 @@ class YamlReader {
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
     [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
 
-    /// Reports `what` about a key, unless there already is an error.
+    /// Reports `what` about a key, unless there is an earlier error.
     void fail(const YamlNode& node, std::string_view key, const std::string& what);
     /// Returns the value of a required key of `mapping`.
     const YamlNode* required(const YamlNode& mapping, std::string_view key);
