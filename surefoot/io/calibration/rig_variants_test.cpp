@@ -139,7 +139,7 @@ TEST(RigVariants, RosModelsAreWhatTheirCoefficientsSay) {
     const auto rational = with("plumb_bob", "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0]");
     ASSERT_TRUE(rational.ok()) << message(rational);
     EXPECT_EQ(std::get<camera::PinholeRational>(rational->rig.left.model).k5, 0.2);
-    EXPECT_TRUE(has_note(rational, "read as rational_polynomial"));
+    EXPECT_TRUE(has_note(rational, "coefficients as rational_polynomial"));
     const std::string rational_8 = "[0.1, 0.2, 0.001, 0.001, 0.05, 0.1, 0.2, 0.05";
     EXPECT_TRUE(with("rational_polynomial", rational_8 + ", 0, 0, 0, 0, 0, 0]").ok());
     EXPECT_TRUE(contains(message(with("rational_polynomial", rational_8 + ", 0.001, 0, 0, 0]")),

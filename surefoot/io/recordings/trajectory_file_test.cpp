@@ -236,7 +236,7 @@ TEST(RawFloats, RoundTripAndRefuseWrongSizes) {
     EXPECT_TRUE(
         contains(message(read_floats(folder / "a.f32", 4)), "3 float32 values; 4 are expected"));
     EXPECT_TRUE(
-        contains(message(parse_floats("abc", "a.f32")), "a.f32: 3 bytes are no whole number"));
+        contains(message(parse_floats("abc", "a.f32")), "a.f32: 3 bytes are not a multiple of 4"));
     const std::string path = data_path("conformance/traversability/elevation.f32");
     if (!path.empty()) {
         EXPECT_EQ(read_floats(path)->size(), 230400U / 4U);
