@@ -181,7 +181,7 @@ AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
 }
 
 Status AppendFile::append(std::string_view text) {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is closed already", path_));
+    if (descriptor_ < 0) return output_error(fmt::format("{}: this file is closed already", path_));
     const int error = write_all(descriptor_, text);
     if (error != 0) {
         // Truncation fails on devices. Ignore this failure: the write error below matters more.

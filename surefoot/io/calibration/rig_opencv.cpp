@@ -35,13 +35,14 @@ bool is_fisheye(const YamlNode& root) {
 /// key.
 bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
     if (found.node != nullptr) return true;
-    yaml.fail(yaml.root(),
-              what,
-              other.node != nullptr
-                  ? fmt::format("not found; the key of the other camera is '{}'. The two keys may "
-                                "differ only in 1 and 2, left and right, or l and r",
-                                other.key)
-                  : "not found under any of its usual names");
+    yaml.fail(
+        yaml.root(),
+        what,
+        other.node != nullptr
+            ? fmt::format("not found; the key of the other camera is '{}'. The two keys may "
+                          "differ only in 1 and 2, left and right, or l and r",
+                          other.key)
+            : "not found under any of its usual names; use OpenCV's names M1, D1, M2, D2, R and T");
     return false;
 }
 

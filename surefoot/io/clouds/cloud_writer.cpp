@@ -110,7 +110,8 @@ std::string CloudWriter::head(std::int64_t points) const {
 }
 
 Status CloudWriter::add(const PointCloud& block) {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (descriptor_ < 0)
+        return output_error(fmt::format("{}: this cloud is finished already", path_));
     if (const auto problem = block.problem()) return output_error(path_ + ": " + *problem);
     if (size_ == 0) {
         format_.double_precision = format_.double_precision || block.double_precision;
@@ -145,7 +146,8 @@ Status CloudWriter::add(const PointCloud& block) {
 }
 
 Status CloudWriter::finish() {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (descriptor_ < 0)
+        return output_error(fmt::format("{}: this cloud is finished already", path_));
     if (size_ == 0) {
         if (Status status = add(PointCloud{}); !status) return status;
     }

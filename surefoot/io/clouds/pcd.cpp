@@ -89,7 +89,7 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
         } else if (const auto count = parse_count(word, 65536); words[0] == "COUNT" && count) {
             field.count = *count;
         } else {
-            return input_error(fmt::format("{} {} is not valid", words[0], quoted(word)));
+            return input_error(fmt::format("{} {} is not a valid value", words[0], quoted(word)));
         }
     }
     return {};

@@ -60,7 +60,7 @@ std::string PlyStream::header() const {
 Status PlyStream::add(std::span<const float> values) {
     const std::size_t properties = 3 + scalars_.size();
     SUREFOOT_ASSERT(values.size() % properties == 0);
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is closed already", path_));
+    if (descriptor_ < 0) return output_error(fmt::format("{}: this file is closed already", path_));
     std::string bytes;
     bytes.reserve(values.size() * sizeof(float));
     for (const float value : values) store_le(bytes, value);

@@ -195,8 +195,8 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
     frame.time_ns = middle_of_exposure_ns(buffer);
     Status status;
     if (last_time_ns_ && frame.time_ns <= *last_time_ns_)
-        status = input_error("its time stamp does not increase");
-    if (buffer.damaged) status = input_error("the driver reports it as damaged");
+        status = input_error("the time stamp does not increase");
+    if (buffer.damaged) status = input_error("the driver reports a damaged image");
     if (status) {
         const Result<GreyImage> image = decode(buffer);
         status =

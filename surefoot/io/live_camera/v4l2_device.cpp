@@ -75,7 +75,8 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
     }
     v4l2_capability capability = {};
     if (const int error = system.request(VIDIOC_QUERYCAP, &capability); error != 0)
-        return device.failed("not a video device", error);
+        return device.failed("this is not a video device (surefoot doctor lists the cameras)",
+                             error);
     const std::uint32_t can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
                                   ? capability.device_caps
                                   : capability.capabilities;
@@ -225,7 +226,7 @@ Status V4l2Device::set_mode(const VideoMode& mode) {
     format.fmt.pix.pixelformat = code_of(mode);
     format.fmt.pix.field = V4L2_FIELD_NONE;
     if (const int error = system_->request(VIDIOC_S_FMT, &format); error != 0)
-        return failed("its image format cannot be set", error);
+        return failed("the image format cannot be set", error);
     const v4l2_pix_format& got = format.fmt.pix;
     if (static_cast<int>(got.width) != mode.width || static_cast<int>(got.height) != mode.height ||
         format_of(got.pixelformat) != mode.format) {

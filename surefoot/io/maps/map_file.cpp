@@ -159,7 +159,7 @@ Status read_header(Cursor& cursor, MapRegion& region, std::uint32_t& layers) {
     const auto frame = load_name(cursor.field(kFrameBytes));
     layers = cursor.number<std::uint32_t>();
     const auto reserved = cursor.number<std::uint32_t>();
-    if (!frame) return input_error("the name of its frame is not filled up with zeros");
+    if (!frame) return input_error("the name of the frame is not filled up with zeros");
     region.frame = *frame;
     if (reserved != 0)
         return input_error(fmt::format("reserved bytes hold {}, but must be 0", reserved));
@@ -181,7 +181,7 @@ Result<std::vector<LayerEntry>> read_layer_table(Cursor& cursor, std::uint32_t c
                          .type = cursor.number<std::uint32_t>(),
                          .cell_bytes = cursor.number<std::uint32_t>()};
         if (!name || !unit || entry.name.empty())
-            return input_error(fmt::format("layer {} has no name or unit", i));
+            return input_error(fmt::format("layer {} has no valid name or unit", i));
         if (entry.cell_bytes < 1 || entry.cell_bytes > kMaxCellBytes) {
             return input_error(fmt::format("layer {} has {} bytes per cell; 1 to {} are allowed",
                                            quoted(entry.name),

@@ -97,7 +97,7 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
         return pair;
     }
     if (auto pair = split_by_prefix(folder)) return std::move(*pair);
-    return input_error(folder + ": no folders of left and right images");
+    return input_error(folder + ": this folder has no folders of left and right images");
 }
 
 /// Finds calib_cam_to_cam.txt of KITTI raw. The file belongs to all drives of a day and lies beside

@@ -113,7 +113,8 @@ bool Recorder::read_back(StereoFrame& frame) const {
 Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {
     if (impl_->last_truth_ns && time_ns <= *impl_->last_truth_ns) {
         return input_error(
-            fmt::format("{}: the time stamp {} s of the ground truth does not increase",
+            fmt::format("{}: the time stamp {} s of the ground truth does not increase; write "
+                        "poses in order of time",
                         impl_->folder,
                         format_seconds(time_ns)));
     }

@@ -73,7 +73,10 @@ void read_joint(Group& group, std::vector<JointRange>& joints) {
     joint.min_deg = group.number("min_deg", -180.0, 180.0);
     joint.max_deg = group.number("max_deg", -180.0, 180.0);
     if (joint.min_deg > joint.max_deg)
-        group.fail("max_deg", fmt::format("{} is below min_deg {}", joint.max_deg, joint.min_deg));
+        group.fail("max_deg",
+                   fmt::format("{} is below min_deg {}; max_deg must be the larger angle",
+                               joint.max_deg,
+                               joint.min_deg));
     joints.push_back(std::move(joint));
 }
 
