@@ -35,7 +35,7 @@ using files::read_file;
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 
-/// Free bytes in the file system of a folder; no value if the system does not report it.
+/// Returns the free bytes of a folder's file system; no value if the system does not report it.
 [[nodiscard]] std::optional<std::uint64_t> free_bytes(const std::string& folder) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 [[nodiscard]] bool is_file(const std::string& path) noexcept;

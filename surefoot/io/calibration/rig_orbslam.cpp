@@ -119,7 +119,7 @@ void read_two_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
               "key; for rectified cameras add Stereo.b instead");
 }
 
-/// Raw camera from LEFT.* or RIGHT.* of ORB-SLAM2. The keys have the meaning that they have in ROS.
+/// Raw camera from LEFT.* or RIGHT.* of ORB-SLAM2. The keys K, D, R and P mean the same as in ROS.
 struct RawCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
@@ -165,7 +165,7 @@ void read_rgbd_camera(YamlReader& yaml, RigFile& out, ImageSize size) {
         read_lens(yaml, left_prefix(yaml.root()), read_type(yaml)), size.width, size.height};
     out.notes.emplace_back(
         "the file has a depth factor, so it is read as a rig of one camera with depth");
-    out.rig.rectified = true;  // StereoRig::problem() checks whether this is true
+    out.rig.rectified = true;  // assumed; the next line checks this
     out.rig.rectified = !out.rig.problem().has_value();
 }
 

@@ -289,7 +289,7 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
 
 void mark_if_rectified(camera::StereoRig& rig) {
     if (!rig.right) return;
-    rig.rectified = true;  // StereoRig::problem() checks whether this is true
+    rig.rectified = true;  // assumed; the next line checks this
     rig.rectified = !rig.problem().has_value();
 }
 

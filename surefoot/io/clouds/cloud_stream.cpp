@@ -159,7 +159,7 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
         return CloudStream(
             std::make_unique<Rows>(path, std::move(file).value(), std::move(rows).value()));
     }
-    auto cloud = read_cloud(path);  // returns the error of the file, if it has one
+    auto cloud = read_cloud(path);  // a damaged file gives an error here
     if (!cloud) return cloud.error();
     return CloudStream(std::make_unique<Whole>(std::move(cloud).value()));
 }

@@ -287,7 +287,7 @@ std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
     return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));  // in range
 }
 
-/// Stores a word of point `i`; returns false if it is not a number of the field's type.
+/// Stores a word of point `i`; returns false if the word is not a number of the field's type.
 bool collect_word(
     std::string_view word, const Field& field, const Role& role, std::size_t i, PointCloud& cloud) {
     switch (role.kind) {

@@ -145,7 +145,7 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
     return at_line(file, lines.number(), "truncated PLY header: 'end_header' is missing");
 }
 
-/// Reads value after value from the body, whatever its encoding.
+/// Reads values from the body in any of the three encodings.
 class ValueReader {
   public:
     ValueReader(const Header& header)

@@ -52,8 +52,8 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 
 namespace {
 
-/// Refuses a file that is not a cloud by its first bytes, before gigabytes are read. Every cloud
-/// format begins with text; LAS begins with four letters.
+/// Checks the first bytes and refuses a file that is not a cloud, before the program reads
+/// gigabytes. Every cloud format begins with text; LAS begins with four letters.
 Status check_beginning(const std::string& path) {
     auto file = files::InputFile::open(path, limits::kCloudBytes);
     if (!file) return file.error();

@@ -26,7 +26,7 @@ struct CameraConfig {
     double readout_ms = 0.0;    ///< time from first to last row; 0 = global shutter
     double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened
     double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
-    int max_damaged = 30;       ///< the run ends after this many unusable frames in a row
+    int max_damaged = 30;       ///< number of unusable frames in a row that ends the run
 
     void describe(ConfigVisitor& visitor);
     /// Returns a problem if a manual value is set together with `auto = on`.

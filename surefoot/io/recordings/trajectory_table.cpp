@@ -116,7 +116,7 @@ Result<TrajectoryTable> TrajectoryTable::read(std::string_view text, const std::
 
 Status TrajectoryTable::take_line(std::string_view content, int number) {
     if (is_comment(content)) {
-        if (rows_.empty()) (void)take_head(content);  // else an ordinary comment
+        if (rows_.empty()) (void)take_head(content);  // or a plain comment without names
         return {};
     }
     const char separator = rows_.empty() ? separator_of(content) : layout_.separator;

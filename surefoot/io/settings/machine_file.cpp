@@ -129,7 +129,7 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.drop_band_tenth_mm = group.length("drop_band_m", 0.05, 0.5);
     // in range: number() gives at most 1.0
     limits.drop_evidence = static_cast<std::uint8_t>(
-        // in range: the same
+        // in range: number() gives 0.004 to 1.0
         std::max(1L, std::lround(255.0 * group.number("drop_evidence", 0.004, 1.0))));
     limits.drift_tenth_mm = group.length("drift_m", 0.0001, 0.1);
     limits.tread_share_permille =

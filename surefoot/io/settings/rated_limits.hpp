@@ -9,7 +9,7 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Limits of the gate that the evidence of docs/evidence/safety.md covers. A machine file that
-/// allows more is outside this evidence, so that a person must sign for each such limit (see
+/// allows more is outside this evidence. A person must then sign for each such limit (see
 /// docs/reference/machine_file.md).
 namespace surefoot::io {
 

@@ -11,7 +11,7 @@
 
 namespace surefoot::io {
 
-/// A YAML document as a plain tree. Every value knows its line, so that errors can name
+/// A YAML document as a plain tree. Every value has its line number, so that errors can name
 /// "file.yaml:12". Keys of a mapping are unique. Supports the needed part of YAML 1.2, OpenCV's
 /// "%YAML:1.0" header and its "!!opencv-matrix" tags; scalars stay text.
 struct YamlNode {
