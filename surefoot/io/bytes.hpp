@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-/// Numbers of binary files in a fixed byte order, on machines of either byte order.
+/// Reads and writes numbers of binary files in a fixed byte order, on any machine.
 namespace surefoot::io {
 
 template <typename T>

@@ -83,7 +83,7 @@ std::vector<Column> columns_of(std::string_view line, char separator) {
     split_fields(line, separator, names);
     std::vector<Column> columns;
     for (const std::string_view name : names) {
-        // "x [m] y [m]": with blanks between, the unit of a column is a word of its own.
+        // In "x [m] y [m]" with blanks as separators, the unit of a column is a separate word.
         const bool unit = separator == ' ' && name.size() > 2 && name.front() == '[';
         if (unit && !columns.empty()) {
             columns.back().unit = name.substr(1, name.find(']') - 1);

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-/// Tables in text files: separators and named columns.
+/// Reads tables in text files: separators and named columns.
 namespace surefoot::io {
 
-/// Separator of the fields of a line: ';' if the line has one, otherwise ',' if the line has one.
-/// Otherwise ' ', which means white space of any length.
+/// Returns the separator of the fields of a line: ';' if the line has a ';', otherwise ',' if the
+/// line has a ','. Otherwise returns ' ', which means white space of any length.
 [[nodiscard]] char separator_of(std::string_view line) noexcept;
 
 /// Splits a line into fields without surrounding white space and quotes. Fields between two ';',
@@ -20,7 +20,7 @@ namespace surefoot::io {
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& out);
 
 /// Explains why the separator is ambiguous: commas and blanks both stand between numbers, as with
-/// decimal commas ("0,5 1,5 2,5"). No value if it is clear.
+/// decimal commas ("0,5 1,5 2,5"). No value if the separator is clear.
 [[nodiscard]] std::optional<std::string> separator_problem(std::string_view line);
 
 /// Whether the line begins with '#' or "//".
@@ -29,17 +29,17 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// One column of a header line.
 struct Column {
     std::string name;  ///< name as written, without quotes
-    std::string key;   ///< in lower case, without its unit
-    std::string unit;  ///< "m" of "x [m]" and of "x(m)"; empty without a unit
+    std::string key;   ///< name in lower case, without its unit
+    std::string unit;  ///< unit: "m" of "x [m]" or "x(m)"; may be empty
 };
 
-/// The columns that a header line names; the line may be a comment.
+/// Returns the columns that a header line names; the line may be a comment.
 [[nodiscard]] std::vector<Column> columns_of(std::string_view line, char separator);
 
 /// 0, 1 or 2 for a column named x, y or z (also "x_m"; ParaView's "points:0" and "points_0").
 [[nodiscard]] std::optional<int> axis_named(std::string_view key) noexcept;
 
-/// Column numbers of x, y and z; no value unless each occurs exactly once.
+/// Returns the column numbers of x, y and z; no value unless each occurs exactly once.
 [[nodiscard]] std::optional<std::array<std::size_t, 3>> axes_of(const std::vector<Column>& columns);
 
 }  // namespace surefoot::io

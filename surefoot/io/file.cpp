@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes everything, or returns errno.
+/// Writes all bytes. Returns 0, or errno after a failure.
 int write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
@@ -33,10 +33,10 @@ int write_all(int descriptor, std::string_view bytes) {
     return 0;
 }
 
-/// Opens, writes and closes; errno or 0. The result of close counts: some file systems report a
-/// full disk only there.
+/// Opens, writes and closes a file. Returns 0, or errno after a failure. Checks the result of
+/// close, because some file systems report a full disk only in close.
 int write_and_close(const std::string& path, int flags, std::string_view bytes) {
-    // Opening a FIFO without a reader is an error; it must not block.
+    // Opening a FIFO without a reader must fail, not block.
     const int descriptor =
         ::open(path.c_str(), flags | O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
     if (descriptor < 0) return errno;
@@ -47,7 +47,7 @@ int write_and_close(const std::string& path, int flags, std::string_view bytes) 
 }
 
 std::string temporary_name(const std::string& path) {
-    static std::atomic<unsigned> counter{0};  // unique among the threads of this process
+    static std::atomic<unsigned> counter{0};  // names are unique among the threads
     const fs::path target(path);
     const std::string name =
         fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), counter.fetch_add(1));
@@ -181,10 +181,10 @@ AppendFile& AppendFile::operator=(AppendFile&& other) noexcept {
 }
 
 Status AppendFile::append(std::string_view text) {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is closed already", path_));
+    if (descriptor_ < 0) return output_error(fmt::format("{}: this file is closed already", path_));
     const int error = write_all(descriptor_, text);
     if (error != 0) {
-        // Truncation fails on devices; the more important error is reported below in any case.
+        // Truncation fails on devices. Ignore this failure: the write error below matters more.
         [[maybe_unused]] const int cut = ::ftruncate(descriptor_, static_cast<off_t>(size_));
         return cannot_write(path_, error);
     }

@@ -11,10 +11,10 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/files/input_file.hpp"
 
-/// Reads and writes whole files; every error holds the reason of the operating system.
+/// Reads and writes whole files; every error names the reason of the operating system.
 namespace surefoot::io {
 
-/// Reading is in `files`: only regular files, with a size limit per format.
+/// The namespace `files` reads regular files only, with a size limit per format.
 namespace limits = files::limits;
 using files::read_file;
 
@@ -30,20 +30,20 @@ using files::read_file;
 /// Creates a folder and its parents; an existing folder is not an error.
 [[nodiscard]] Status make_folder(const std::string& path);
 
-/// Names (without folder) of the regular files in a folder whose lower-case extension is one of
-/// `extensions` (".png"), in natural order. Hidden files are left out.
+/// Lists the names (without folder) of regular files in a folder whose lower-case extension is one
+/// of `extensions` (".png"), in natural order. Hidden files are left out.
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 
-/// Free bytes in the file system of a folder; no value if the system does not report it.
+/// Returns the free bytes of a folder's file system; no value if the system does not report it.
 [[nodiscard]] std::optional<std::uint64_t> free_bytes(const std::string& folder) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 [[nodiscard]] bool is_file(const std::string& path) noexcept;
 /// Joins "a" and "b" to "a/b"; returns `b` alone if it is absolute.
 [[nodiscard]] std::string join_path(const std::string& folder, const std::string& name);
-/// Folder part of a path; "." if there is none.
+/// Returns the folder part of a path; "." if there is none.
 [[nodiscard]] std::string folder_of(const std::string& path);
-/// Lower-case extension with its dot; empty if there is none.
+/// Returns the lower-case extension with its dot; empty if there is none.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
 /// A text file that grows line by line. `append` hands the line to the system before it returns. A

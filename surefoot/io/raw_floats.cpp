@@ -13,12 +13,14 @@ Result<std::vector<float>> parse_floats(std::string_view bytes,
                                         std::optional<std::size_t> count) {
     if (bytes.size() % sizeof(float) != 0) {
         return input_error(
-            fmt::format("{}: {} bytes are no whole number of float32 values", file, bytes.size()));
+            fmt::format("{}: {} bytes are not a multiple of 4, the size of a float32 value",
+                        file,
+                        bytes.size()));
     }
     std::vector<float> values(bytes.size() / sizeof(float));
     if (count && values.size() != *count) {
-        return input_error(
-            fmt::format("{}: {} float32 values; {} are expected", file, values.size(), *count));
+        return input_error(fmt::format(
+            "{}: the file has {} float32 values; {} are expected", file, values.size(), *count));
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
         values[i] = load_le<float>(bytes.data() + i * sizeof(float));

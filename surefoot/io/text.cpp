@@ -21,7 +21,7 @@ constexpr bool is_space(char c) noexcept {
 }
 
 std::string_view without_plus(std::string_view text) noexcept {
-    // from_chars knows no '+'; "+-1" stays an error.
+    // from_chars does not accept '+', so remove it. "+-1" stays an error.
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     return text;
 }
@@ -43,7 +43,8 @@ std::optional<double> parse_double(std::string_view text) noexcept {
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     if (error == std::errc{} && stop == end && !text.empty()) return value;
     if (error == std::errc::result_out_of_range && stop == end) {
-        // Too small for a double is zero; too large stays an error.
+        // A number too small for a double becomes zero. A number too large for a double is an
+        // error.
         const bool tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
         if (tiny) return 0.0;
         return std::nullopt;
@@ -107,7 +108,7 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) n
     text = without_plus(text);
     const bool negative = !text.empty() && text[0] == '-';
     std::string_view digits = text.substr(negative ? 1 : 0);
-    if (digits.find_first_not_of("0123456789.") != digits.npos) {  // exponent, as KITTI writes
+    if (digits.find_first_not_of("0123456789.") != digits.npos) {  // exponent, as in KITTI
         const auto value = parse_double(text);
         if (!value) return std::nullopt;
         const double scaled = std::round(*value * static_cast<double>(scale));
@@ -138,7 +139,7 @@ std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept 
 }
 
 std::string format_seconds(std::int64_t time_ns) {
-    // Unsigned, because the magnitude of the smallest int64 does not fit in int64.
+    // Use unsigned, because the magnitude of the smallest int64 does not fit in int64.
     const auto magnitude =
         time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
     constexpr auto kSecond = static_cast<std::uint64_t>(kNanosecondsPerSecond);
@@ -221,15 +222,15 @@ bool natural_less(std::string_view a, std::string_view b) noexcept {
         }
     }
     if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-    return a < b;  // "01" and "1": a total order all the same
+    return a < b;  // "01" and "1" are equal numbers; this keeps the order total
 }
 
 LineReader::LineReader(std::string_view text) noexcept : rest_(text), next_feed_(text.size() + 1) {}
 
 std::optional<std::string_view> LineReader::next() noexcept {
     if (rest_.empty()) return std::nullopt;
-    // Search the next LF only once: otherwise a file with CR line ends would be searched to its end
-    // for every line.
+    // Search for the next LF only once. Otherwise the program would search a file with CR line ends
+    // to its end for every line.
     if (next_feed_ > rest_.size()) {
         const std::size_t feed = rest_.find('\n');
         next_feed_ = feed == rest_.npos ? 0 : rest_.size() - feed;

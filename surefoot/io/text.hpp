@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-/// Numbers and lines of text files, independent of the locale.
+/// Reads numbers and lines of text files, independent of the locale.
 namespace surefoot::io {
 
-/// Parses the whole text as a number (also a leading '+', nan, inf, .nan and .inf), or no value.
+/// Parses the whole text as a number (also '+1', nan, inf, .nan and .inf); otherwise no value.
 [[nodiscard]] std::optional<double> parse_double(std::string_view text) noexcept;
 /// Parses the whole text as a decimal integer; no value otherwise, also on overflow.
 [[nodiscard]] std::optional<std::int64_t> parse_int64(std::string_view text) noexcept;
@@ -23,7 +23,7 @@ namespace surefoot::io {
 [[nodiscard]] bool has_decimal_comma(std::string_view text) noexcept;
 /// Explains why a word of a data file is not a number; names decimal commas.
 [[nodiscard]] std::string why_no_number(std::string_view word);
-/// Explains why the encoding of a text is not readable (UTF-16); no value if it is.
+/// Explains why an encoding is not readable (UTF-16); no value if it is readable.
 [[nodiscard]] std::optional<std::string> encoding_problem(std::string_view text);
 
 /// Parses a decimal number times 10^`decimals` (0 to 9), rounded to the nearest whole number. Exact
@@ -36,11 +36,11 @@ namespace surefoot::io {
 /// Formats nanoseconds as seconds with 9 decimals, exact.
 [[nodiscard]] std::string format_seconds(std::int64_t time_ns);
 
-/// Shortest text that reads back to the same double.
+/// Formats the shortest text that reads back to the same double.
 [[nodiscard]] std::string format_double(double value);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-/// Non-empty parts of the text between any of the `separators`.
+/// Returns the non-empty parts of the text between any of the `separators`.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text,
                                                   std::string_view separators = " \t");
 [[nodiscard]] std::string lowercase(std::string_view text);
@@ -54,16 +54,16 @@ namespace surefoot::io {
 /// Sorts "frame2" before "frame10": runs of digits compare as numbers.
 [[nodiscard]] bool natural_less(std::string_view a, std::string_view b) noexcept;
 
-/// Lines of a text without line ends (LF, CR LF or CR), counted from 1. Skips a UTF-8 byte order
-/// mark at the beginning of any line, because files can be concatenated.
+/// Reads the lines of a text without line ends (LF, CR LF or CR), counted from 1. Skips a UTF-8
+/// byte order mark at the beginning of any line, because files can be concatenated.
 class LineReader {
   public:
     explicit LineReader(std::string_view text) noexcept;
 
     [[nodiscard]] std::optional<std::string_view> next() noexcept;
-    /// Number of the line that `next` returned last.
+    /// Returns the number of the line that `next` returned last.
     [[nodiscard]] int number() const noexcept { return number_; }
-    /// Everything after the line that `next` returned last.
+    /// Returns everything after the line that `next` returned last.
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
   private:
@@ -72,11 +72,11 @@ class LineReader {
     int number_ = 0;
 };
 
-/// White-space separated words of a text, without copying it.
+/// Reads white-space separated words of a text, without copying the text.
 class WordReader {
   public:
     explicit WordReader(std::string_view text) noexcept : rest_(text) {}
-    /// The next word, or an empty view at the end.
+    /// Returns the next word, or an empty view at the end.
     [[nodiscard]] std::string_view next() noexcept;
 
   private:

@@ -19,7 +19,7 @@ constexpr const char* kReadFormats =
     "ORB-SLAM2/3 stereo settings, ZED SN*.conf, KITTI calib.txt and calib_cam_to_cam.txt, "
     "Middlebury calib.txt, and EuRoC folders";
 
-/// Number of first lines that are searched for a format; files can be long.
+/// The program searches this many lines at the start of a file for a format; files can be long.
 constexpr int kHeadLines = 200;
 
 bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {
@@ -47,8 +47,8 @@ bool any_key_starts_with(const YamlNode& root, std::initializer_list<const char*
     });
 }
 
-/// A line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes "P1:
-/// !!opencv-matrix".
+/// Returns true for a line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes
+/// "P1: !!opencv-matrix".
 bool is_kitti_line(std::string_view line) {
     if (line.size() < 3 || line[0] != 'P' || line[1] < '0' || line[1] > '3' || line[2] != ':')
         return false;
@@ -56,8 +56,8 @@ bool is_kitti_line(std::string_view line) {
     return !words.empty() && parse_double(words[0]).has_value();
 }
 
-/// Whether the document is a file of camera_calibration_parsers or a printed sensor_msgs/CameraInfo
-/// (ROS 1 writes K, ROS 2 writes k).
+/// Returns true for a file of camera_calibration_parsers or a printed sensor_msgs/CameraInfo (ROS 1
+/// writes K, ROS 2 writes k).
 bool is_ros(const YamlNode& root) {
     if (has_any(root, {"camera_matrix"}) &&
         has_any(root, {"projection_matrix", "rectification_matrix", "camera_name"}))
@@ -72,7 +72,7 @@ bool is_surefoot(const YamlNode& root) {
     return has_group_with(root, "left", {"focal_px", "principal_px", "coefficients"});
 }
 
-/// Whether the document may be a rig.yaml whose important keys are missing or misspelled.
+/// Returns true if the document may be a rig.yaml whose important keys are missing or misspelled.
 bool may_be_surefoot(const YamlNode& root) {
     return count_of(
                root,
@@ -152,7 +152,7 @@ const char* title_of(CalibrationKind kind) noexcept {
         case CalibrationKind::surefoot: return "a rig.yaml of Surefoot";
         case CalibrationKind::opencv: return "an OpenCV stereo calibration";
         case CalibrationKind::kalibr: return "a Kalibr camera chain";
-        case CalibrationKind::ros: return "a ROS camera_info";
+        case CalibrationKind::ros: return "a ROS camera_info file";
         case CalibrationKind::zed: return "a ZED calibration (SN*.conf)";
         case CalibrationKind::kitti: return "a KITTI calib.txt";
         case CalibrationKind::kitti_raw: return "a KITTI raw calib_cam_to_cam.txt";
@@ -160,7 +160,7 @@ const char* title_of(CalibrationKind kind) noexcept {
         case CalibrationKind::orbslam: return "an ORB-SLAM settings file";
         case CalibrationKind::euroc_sensor: return "the sensor.yaml of one EuRoC sensor";
         case CalibrationKind::opencv_camera: return "an OpenCV calibration of one camera";
-        case CalibrationKind::opencv_xml: return "an XML file, as OpenCV writes it";
+        case CalibrationKind::opencv_xml: return "an XML file of OpenCV";
         case CalibrationKind::kitti_sensors:
             return "a KITTI calibration of the laser scanner or the IMU";
         case CalibrationKind::vins: return "a VINS or camodocal calibration";
@@ -171,7 +171,7 @@ const char* title_of(CalibrationKind kind) noexcept {
         case CalibrationKind::binary: return "a binary file";
         case CalibrationKind::unknown: break;
     }
-    return "no calibration that is known here";
+    return "a file of an unknown kind";
 }
 
 std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
@@ -180,31 +180,29 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
     };
     switch (kind) {
         case CalibrationKind::euroc_sensor:
-            return looks_like("give its folder (with cam0 and cam1)");
+            return looks_like("give the folder that contains cam0 and cam1");
         case CalibrationKind::opencv_camera:
             return looks_like(
                 "a rig needs the matrices of both cameras, and R and T from stereoCalibrate. "
                 "Calibrate both at once ('surefoot calibrate stereo')");
         case CalibrationKind::opencv_xml:
             return looks_like(
-                "only its YAML and JSON are read. Write the matrices again with a file name that "
-                "ends in .yml (cv::FileStorage, cv2.FileStorage)");
+                "only YAML and JSON files of OpenCV are read. Write the matrices again, to a file "
+                "whose name ends in .yml (cv::FileStorage, cv2.FileStorage)");
         case CalibrationKind::kitti_sensors:
             return looks_like("give calib_cam_to_cam.txt of the same folder");
         case CalibrationKind::vins:
             return looks_like(
-                "it is not read. Copy fx fy cx cy, k1 k2 p1 p2 and the pose of the right camera "
-                "into "
-                "a rig.yaml (docs/get_started/own_camera.md shows one)");
+                "this format is not supported. Copy fx fy cx cy, k1 k2 p1 p2 and the pose of the "
+                "right camera into a rig.yaml (docs/get_started/own_camera.md shows one)");
         case CalibrationKind::okvis:
             return looks_like(
-                "it is not read. Copy focal length, principal point, distortion and the poses T_SC "
-                "into a rig.yaml (docs/get_started/own_camera.md shows one)");
+                "this format is not supported. Copy focal length, principal point, distortion and "
+                "the poses T_SC into a rig.yaml (docs/get_started/own_camera.md shows one)");
         case CalibrationKind::basalt:
             return looks_like(
-                "it is not read. Give the Kalibr camchain or the EuRoC folder that it was made "
-                "from, "
-                "or calibrate with Kalibr's pinhole-equi");
+                "this format is not supported. Give the Kalibr camchain or the EuRoC folder from "
+                "which the file was made, or calibrate with Kalibr's pinhole-equi");
         case CalibrationKind::machine: return looks_like("give it with --machine");
         case CalibrationKind::settings: return looks_like("give it with --config");
         case CalibrationKind::binary:
@@ -221,7 +219,7 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
     std::string listed;
     for (const std::string& key : keys) listed += (listed.empty() ? "" : ", ") + key;
     return fmt::format("not a known calibration format{}. Known formats: {}",
-                       listed.empty() ? "" : fmt::format(" (its keys: {} ..)", listed),
+                       listed.empty() ? "" : fmt::format(" (first keys of the file: {})", listed),
                        kReadFormats);
 }
 

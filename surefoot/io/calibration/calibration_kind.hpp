@@ -8,12 +8,12 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Detects the format of a calibration file. Only this header distinguishes formats. Every command
-/// that reads a rig or a machine file uses it, so no reader checks a file against the keys of
-/// another format.
+/// that reads a rig or a machine file uses this header, so no reader checks a file against the keys
+/// of another format.
 namespace surefoot::io {
 
 enum class CalibrationKind : std::uint8_t {
-    // Read as rigs.
+    // These formats are read as rigs.
     surefoot,
     opencv,
     kalibr,
@@ -23,11 +23,11 @@ enum class CalibrationKind : std::uint8_t {
     kitti_raw,
     middlebury,
     orbslam,
-    // Recognised, but not read as rigs.
-    euroc_sensor,   ///< one camera of an EuRoC recording
-    opencv_camera,  ///< one camera, without a second one
+    // These formats are recognised, but not read as rigs.
+    euroc_sensor,   ///< sensor.yaml of one EuRoC sensor
+    opencv_camera,  ///< OpenCV calibration of a single camera
     opencv_xml,
-    kitti_sensors,  ///< calib_imu_to_velo.txt, calib_velo_to_cam.txt
+    kitti_sensors,  ///< KITTI calib_imu_to_velo.txt or calib_velo_to_cam.txt
     vins,
     okvis,
     basalt,
@@ -37,16 +37,16 @@ enum class CalibrationKind : std::uint8_t {
     unknown
 };
 
-/// Detects formats that are not YAML, by their text; `unknown` for all other formats.
+/// Detects formats other than YAML by their text; returns `unknown` for all other formats.
 [[nodiscard]] CalibrationKind kind_of_text(std::string_view text);
 /// Detects the format by the keys of a YAML (or JSON) document.
 [[nodiscard]] CalibrationKind kind_of_document(const YamlNode& root);
 
-/// Name of the format in messages: "an ORB-SLAM settings file".
+/// Returns the name of the format for messages, for example "an ORB-SLAM settings file".
 [[nodiscard]] const char* title_of(CalibrationKind kind) noexcept;
-/// Explains why a file of a kind that is not a rig cannot be read as one, and what to do. The text
-/// continues a sentence that begins with the file name. `root`: the document, if any, for the keys
-/// of an unknown file.
+/// Explains why a file of this kind cannot be read as a rig, and what to do. The text continues a
+/// sentence that begins with the file name. For an unknown file the text names the first keys of
+/// `root`; `root` may be nullptr.
 [[nodiscard]] std::string why_no_rig(CalibrationKind kind, const YamlNode* root);
 
 }  // namespace surefoot::io

@@ -8,7 +8,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Key without case and separators.
+/// Returns the letters and digits of a key in lower case.
 std::string plain(const std::string& key) {
     std::string out;
     for (const char c : key) {
@@ -23,7 +23,7 @@ struct Entry {
     NamedNode named;
 };
 
-/// The keys of the document and of its groups. A matrix {rows, cols, data} is not a group.
+/// Returns the keys of the document and of its groups. A matrix {rows, cols, data} is not a group.
 std::vector<Entry> entries_of(const YamlNode& root) {
     std::vector<Entry> entries;
     for (const YamlNode& item : root.items) {
@@ -88,8 +88,8 @@ NamedNode find_sided(const std::vector<Entry>& entries, const std::string& base,
     return is_matrix(found) ? found : NamedNode{};
 }
 
-/// Finds the first naming with the matrix of both cameras, else the first naming with the matrix of
-/// one camera.
+/// Finds the first naming scheme that has the matrix of both cameras. If there is none, finds the
+/// first scheme that has the matrix of one camera.
 Pair find_pair(const std::vector<Entry>& entries,
                std::initializer_list<const char*> bases,
                const Sides* wanted) {

@@ -6,10 +6,10 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Finds the matrices of a stereo calibration in an OpenCV file; private to the rig readers.
-/// cv::FileStorage lets the writer choose the names, so every tutorial uses its own.
+/// cv::FileStorage lets the writer choose the names, so every tutorial uses other names.
 namespace surefoot::io {
 
-/// A value and its key ("left.K" for a key inside a group).
+/// Value of a key, and the key itself ("left.K" for a key inside a group).
 struct NamedNode {
     const YamlNode* node = nullptr;
     std::string key;
@@ -17,13 +17,13 @@ struct NamedNode {
 
 /// Nodes point into the document; nullptr if a matrix was not found.
 struct OpenCvNames {
-    NamedNode left_matrix, right_matrix;  ///< K1, M1, cameraMatrixL, left_camera_matrix, mtxL ..
-    NamedNode left_distortion, right_distortion;  ///< D1, distL, left_distortion ..
+    NamedNode left_matrix, right_matrix;          ///< for example K1, M1, cameraMatrixL or mtxL
+    NamedNode left_distortion, right_distortion;  ///< for example D1, distL or left_distortion
     NamedNode R, T;  ///< x_right = R x_left + T; R may be a rotation vector
     NamedNode width, height, size;
 };
 
-/// Ignores case, '_', '-' and '.' in keys. Keys may be in one group for each camera.
+/// Finds the matrices. Ignores case, '_', '-' and '.' in keys. Each camera may have a group.
 [[nodiscard]] OpenCvNames find_opencv_names(const YamlNode& root);
 
 }  // namespace surefoot::io

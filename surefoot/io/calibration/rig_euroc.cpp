@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC ASL format after Burri et al. 2016, "The EuRoC micro aerial vehicle datasets": T_BS maps
-// sensor into body coordinates. Keys that are not read (comment, noise densities) are left alone.
+// EuRoC ASL format after Burri et al. 2016, "The EuRoC micro aerial vehicle datasets". T_BS maps
+// sensor coordinates into body coordinates. The reader ignores other keys (comment, noise
+// densities).
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_file.hpp"
@@ -12,12 +13,12 @@
 namespace surefoot::io {
 namespace {
 
-/// T_BS: {cols: 4, rows: 4, data: [16 numbers]}.
+/// Reads T_BS: {cols: 4, rows: 4, data: [16 numbers]}.
 Pose read_sensor_pose(YamlReader& yaml) {
     const YamlNode* pose = yaml.required(yaml.root(), "T_BS");
     if (pose == nullptr) return {};
     if (!pose->is_mapping()) {
-        yaml.fail(*pose, "T_BS", "expected rows, cols and data");
+        yaml.fail(*pose, "T_BS", "expected a group with rows, cols and data");
         return {};
     }
     const YamlNode* data = yaml.required(*pose, "data");
@@ -36,7 +37,10 @@ camera::CameraModel read_model(YamlReader& yaml) {
     }
     if (const YamlNode* model = root.find("camera_model"); model != nullptr) {
         if (yaml.text(*model, "camera_model") != "pinhole") {
-            yaml.fail(*model, "camera_model", quoted(model->scalar) + " is not 'pinhole'");
+            yaml.fail(
+                *model,
+                "camera_model",
+                quoted(model->scalar) + " is not supported; the camera model must be 'pinhole'");
         }
     }
     std::string distortion = "none";
@@ -51,23 +55,24 @@ camera::CameraModel read_model(YamlReader& yaml) {
         if (count != 4 && distortion_node != nullptr) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; equidistant has 4", count));
+                      fmt::format("{} numbers; the equidistant model has 4", count));
         }
         return make_kannala_brandt(k, coefficients);
     }
     if (distortion == "radial-tangential" || distortion == "radtan") {
         if (count != 4 && count != 5) {
-            yaml.fail(list != nullptr ? *list : *distortion_node,
-                      "distortion_coefficients",
-                      fmt::format("{} numbers; radial-tangential has 4 (or 5 with k3)", count));
+            yaml.fail(
+                list != nullptr ? *list : *distortion_node,
+                "distortion_coefficients",
+                fmt::format("{} numbers; the radial-tangential model has 4, or 5 with k3", count));
         }
         return make_pinhole(k, coefficients);
     }
-    if (distortion == "rational_polynomial") {  // our extension; the name is that of ROS
+    if (distortion == "rational_polynomial") {  // extension of EuRoC with ROS's name
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
-                      fmt::format("{} numbers; rational_polynomial has 8", count));
+                      fmt::format("{} numbers; the rational_polynomial model has 8", count));
         }
         if (yaml.error()) return {};
         return lens_or_fail(
@@ -195,7 +200,7 @@ Result<camera::StereoRig> read_euroc_rig(const std::string& mav_folder) {
         if (!imu) return imu.error();
         rig.imu = *imu;
     } else if (is_file(join_path(imu_folder, "data.csv"))) {
-        rig.imu = camera::ImuMount{};  // EuRoC: the IMU frame is the body frame
+        rig.imu = camera::ImuMount{};  // in EuRoC the IMU frame is the body frame
     }
     mark_if_rectified(rig);
     return checked_rig(std::move(rig), mav_folder);

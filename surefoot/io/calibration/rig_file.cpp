@@ -42,10 +42,11 @@ Result<RigFile> parse_kitti(const std::string& text,
                             const std::string& path,
                             std::optional<ImageSize> size) {
     if (!size) {
-        return input_error(fmt::format(
-            "{}: a KITTI calibration has no image size; use it with its images, or convert it to a "
-            "rig.yaml with 'surefoot rig FILE --resolution WIDTHxHEIGHT --out rig.yaml'",
-            path));
+        return input_error(
+            fmt::format("{}: a KITTI calibration has no image size. Use the file with its images, "
+                        "or convert the file to a rig.yaml with 'surefoot rig FILE --resolution "
+                        "WIDTHxHEIGHT --out rig.yaml'",
+                        path));
     }
     const Result<KittiCalibration> calibration = parse_kitti_calibration(text, path);
     if (!calibration) return calibration.error();
@@ -65,17 +66,20 @@ Result<std::string> read_ros_text(const std::string& file) {
     if (kind == CalibrationKind::ros || kind == CalibrationKind::unknown ||
         kind == CalibrationKind::opencv_camera)
         return text;
-    return input_error(fmt::format(
-        "{}: this looks like {}, not like one camera of a ROS pair", file, title_of(kind)));
+    return input_error(
+        fmt::format("{}: this looks like {}, not like one camera of a ROS pair; give the "
+                    "camera_info file of this camera",
+                    file,
+                    title_of(kind)));
 }
 
 Result<RigFile> read_ros(const std::string& left_file) {
     const std::optional<std::string> right_file = ros_partner(left_file);
     if (!right_file) {
         return input_error(
-            fmt::format("{}: a ROS calibration has one file for each camera; give the file of the "
-                        "left camera, with 'left' in its name, and put the other file, with "
-                        "'right' in its name, into the same folder",
+            fmt::format("{}: a ROS calibration has one file for each camera. Give the file of the "
+                        "left camera, with 'left' in its name. Put the file of the right camera, "
+                        "with 'right' in its name, into the same folder",
                         left_file));
     }
     Result<std::string> left = read_ros_text(left_file);
@@ -98,11 +102,10 @@ Result<RigFile> read_folder(const std::string& path, std::optional<ImageSize> si
         const std::string file = join_path(path, name);
         if (is_file(file)) return read_rig_file(file, size);
     }
-    return input_error(
-        fmt::format("{}: this folder holds no calibration: neither cam0/sensor.yaml and "
-                    "cam1/sensor.yaml (EuRoC), "
-                    "nor left.yaml and right.yaml (ROS), nor rig.yaml; give the file itself",
-                    path));
+    return input_error(fmt::format(
+        "{}: this folder has no calibration: no cam0/sensor.yaml and cam1/sensor.yaml (EuRoC), no "
+        "left.yaml and right.yaml (ROS), and no rig.yaml. Give the calibration file itself",
+        path));
 }
 
 /// Parses a YAML or JSON document of a recognised kind, except formats with two files.
@@ -119,12 +122,13 @@ Result<RigFile> parse_document(const YamlNode& root,
             return with_format(parse_rig_yaml(text, file), RigFormat::surefoot, file);
         case CalibrationKind::ros:
             return input_error(file +
-                               ": ROS has a file for each camera; give the folder with both files");
+                               ": a ROS calibration has one file for each camera; give the folder "
+                               "with both files");
         default: return input_error(fmt::format("{}: {}", file, why_no_rig(kind, &root)));
     }
 }
 
-/// Parses a text format that is not YAML; no value if the text may be YAML.
+/// Parses a text format other than YAML. Returns no value if the text may be YAML.
 std::optional<Result<RigFile>> parse_other(const std::string& text,
                                            const std::string& file,
                                            std::optional<ImageSize> size) {
@@ -148,7 +152,8 @@ Result<YamlNode> parse_mapping(const std::string& text, const std::string& file)
     return input_error(fmt::format("{}: {}", file, why_no_rig(CalibrationKind::unknown, &*root)));
 }
 
-/// Writes left.yaml and right.yaml into a folder, or the two files beside each other.
+/// Writes left.yaml and right.yaml into a folder. A `path` that ends in .yaml or .yml is the left
+/// file, and the right file is written beside it.
 Result<std::vector<std::string>> write_ros(const std::string& path, const RosTexts& texts) {
     std::string left = path;
     if (extension_of(path) != ".yaml" && extension_of(path) != ".yml") {
@@ -157,10 +162,10 @@ Result<std::vector<std::string>> write_ros(const std::string& path, const RosTex
     }
     const std::optional<std::string> right = ros_partner(left);
     if (!right) {
-        return usage_error(fmt::format(
-            "{}: ROS needs a file for each camera; give a folder, or the name of the left one with "
-            "'left' in it",
-            path));
+        return usage_error(
+            fmt::format("{}: a ROS calibration needs one file for each camera. Give a folder, or "
+                        "give a name with 'left' in it for the file of the left camera",
+                        path));
     }
     if (Status status = write_file(left, texts.left); !status) return status.error();
     if (Status status = write_file(*right, texts.right); !status) return status.error();

@@ -20,19 +20,19 @@ struct ImageSize {
     friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// Our rig.yaml. Short form for rectified cameras:
+/// Reads a rig.yaml of Surefoot. Short form for rectified cameras:
 ///   layout: side_by_side     (side_by_side | separate | rgbd; default separate)
 ///   resolution: [672, 376]   (one camera)
 ///   baseline_m: 0.12, focal_px: 350 or [fx, fy], principal_px: [336, 188], distortion: none
 /// Full form, one block per camera:
-///   left:  {model: pinhole, focal_px: [fx, fy], principal_px: [cx, cy], coefficients: [k1, k2, p1,
-///   p2, k3]} (pinhole_rational: [k1, k2, p1, p2, k3, k4, k5, k6])
-///   right: {model: kannala_brandt, ..., coefficients: [k1, k2, k3, k4]} T_left_right:
-///   4x4, row by row; rectified: true where the images are rectified
-/// In both: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
+///   left:  {model: pinhole, focal_px: [fx, fy], principal_px: [cx, cy], coefficients: [...]}
+///          (pinhole: k1 k2 p1 p2 k3; pinhole_rational: k1 k2 p1 p2 k3 k4 k5 k6)
+///   right: {model: kannala_brandt, ..., coefficients: [k1, k2, k3, k4]}
+///   T_left_right: 4x4, row by row; rectified: true if the images are rectified
+/// Keys of both forms: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
 [[nodiscard]] Result<camera::StereoRig> parse_rig_yaml(std::string_view text,
                                                        const std::string& file);
-/// Formats the full form; it reads back to the same rig (poses to 1e-15).
+/// Formats a rig in the full form. Reading it gives the same rig (poses to 1e-15).
 [[nodiscard]] std::string format_rig_yaml(const camera::StereoRig& rig);
 [[nodiscard]] Status write_rig_yaml(const std::string& path, const camera::StereoRig& rig);
 
@@ -41,10 +41,10 @@ struct EurocCamera {
     camera::Camera camera;
     Pose T_body_camera;
     double rate_hz = 0.0;
-    double readout_s = 0.0;  ///< our extension; 0 if the file has no value
+    double readout_s = 0.0;  ///< rolling shutter; extension of EuRoC, 0 if the file has none
 };
-/// Reads sensor.yaml of a camera: T_BS, resolution, pinhole intrinsics; radial-tangential,
-/// equidistant or no distortion, and rational_polynomial, which is our extension.
+/// Reads sensor.yaml of a camera: T_BS, resolution, pinhole intrinsics and the distortion
+/// (radial-tangential, equidistant, rational_polynomial as an extension of EuRoC, or none).
 [[nodiscard]] Result<EurocCamera> parse_euroc_camera(std::string_view text,
                                                      const std::string& file);
 [[nodiscard]] std::string format_euroc_camera(const EurocCamera& camera);
@@ -62,8 +62,8 @@ struct KittiCalibration {
 };
 [[nodiscard]] Result<KittiCalibration> parse_kitti_calibration(std::string_view text,
                                                                const std::string& file);
-/// Rectified rig of the cameras `left` and `right` (0 and 1: grey, 2 and 3: colour); baseline =
-/// (P_left[3] - P_right[3]) / fx. The image size is an argument: the file has none.
+/// Builds the rectified rig of two cameras (0 and 1: grey, 2 and 3: colour); baseline = (P_left[3]
+/// - P_right[3]) / fx. The image size is an argument, because the file has none.
 [[nodiscard]] Result<camera::StereoRig> kitti_rig(const KittiCalibration& calibration,
                                                   int left,
                                                   int right,
@@ -71,9 +71,9 @@ struct KittiCalibration {
                                                   const std::string& file);
 
 /// Reads OpenCV FileStorage YAML or JSON: camera matrices and distortion under any usual name (see
-/// surefoot/io/calibration/opencv_names.hpp), R (or a rotation vector) and T with x_right = R
-/// x_left + T [m], and the image size if the file has it. Four coefficients are a fisheye lens if
-/// the file says "fisheye: 1" or "model: fisheye".
+/// surefoot/io/calibration/opencv_names.hpp). R (or a rotation vector) and T [m] mean x_right = R
+/// x_left + T. The image size is optional. Four coefficients are a fisheye lens if the file says
+/// "fisheye: 1" or "model: fisheye".
 [[nodiscard]] Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                                          const std::string& file,
                                                          std::optional<ImageSize> size = {});
@@ -81,12 +81,12 @@ struct KittiCalibration {
 /// Reads any format above or in rig_formats.hpp: an EuRoC folder (mav0 or its parent), a folder
 /// with ROS's left.yaml and right.yaml or with a rig.yaml, or a file recognised by its content.
 /// `size` helps formats without an image size and selects the section of a ZED file; the rig of
-/// another format may still have another size. For an OpenCV intrinsics.yml without R and T it
-/// reads them from extrinsics.yml beside it. read_rig_file also returns the notes.
+/// another format may still have another size. R and T that are missing in an OpenCV intrinsics.yml
+/// come from extrinsics.yml beside it. read_rig_file also returns the notes.
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});
 
-/// Marks a rig as rectified if its images are: no distortion, equal intrinsics, baseline along x.
+/// Marks a rig as rectified if it has no distortion, equal intrinsics and a baseline along x.
 void mark_if_rectified(camera::StereoRig& rig);
 
 }  // namespace surefoot::io

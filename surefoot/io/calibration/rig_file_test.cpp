@@ -181,7 +181,8 @@ TEST(RigEuroc, ReadsTheRealRig) {
         EXPECT_FALSE(rig->rectified);
         EXPECT_EQ(rig->rate_hz, 20.0);
     }
-    EXPECT_TRUE(contains(message(read_rig(path + "/mav0/cam0/sensor.yaml")), "give its folder"));
+    EXPECT_TRUE(contains(message(read_rig(path + "/mav0/cam0/sensor.yaml")),
+                         "give the folder that contains cam0"));
 }
 
 TEST(RigKitti, BaselineComesFromTheProjection) {

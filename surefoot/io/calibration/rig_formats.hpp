@@ -12,7 +12,7 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 
 /// Reads and writes calibration files of other programs. Returned rigs have no problem(). Writers
-/// refuse a rig that the format cannot hold and name the part that does not fit.
+/// refuse a rig that the format cannot store, and name the unsupported part.
 namespace surefoot::io {
 
 enum class RigFormat {
@@ -29,19 +29,19 @@ enum class RigFormat {
 };
 [[nodiscard]] const char* name_of(RigFormat format) noexcept;
 
-/// A rig, with notes about the contents of its file that a rig does not hold.
+/// A rig, with notes about the contents of its file that a rig cannot store.
 struct RigFile {
     camera::StereoRig rig;
     RigFormat format = RigFormat::surefoot;
     std::vector<std::string> notes;
 };
 
-/// Reads any calibration file, recognised by its content
-/// (surefoot/io/calibration/calibration_kind.hpp): see read_rig, and the formats below. For an
-/// unknown file the error names the most similar format.
+/// Reads any calibration file of read_rig or of the formats below. The content decides the format
+/// (surefoot/io/calibration/calibration_kind.hpp). For an unknown file the error names the most
+/// similar format.
 [[nodiscard]] Result<RigFile> read_rig_file(const std::string& path,
                                             std::optional<ImageSize> size = {});
-/// As above, for a text. ROS calibrations consist of two files and are an error here.
+/// Parses the text of a file. ROS calibrations consist of two files and are an error here.
 [[nodiscard]] Result<RigFile> parse_rig_file(const std::string& text,
                                              const std::string& file,
                                              std::optional<ImageSize> size = {});
@@ -54,25 +54,25 @@ struct RigFile {
 /// Names the parts of this rig that the format cannot store.
 [[nodiscard]] std::vector<std::string> lost_in(RigFormat format, const camera::StereoRig& rig);
 
-/// Formats M1 D1 M2 D2 R T, and R1 R2 P1 P2 Q of our rectification; cv::FileStorage can read it.
+/// Formats M1 D1 M2 D2 R T, and R1 R2 P1 P2 Q of Surefoot's rectification, for cv::FileStorage.
 [[nodiscard]] Result<std::string> format_opencv_rig(const camera::StereoRig& rig);
 
-/// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right one; camera_model pinhole
-/// with radtan (k1 k2 p1 p2), equidistant or none. T_cn_cnm1 maps cam0 into cam1, T_cam_imu the IMU
-/// into the camera (OpenVINS: T_imu_cam, camera into IMU). Without T_cn_cnm1 the poses of the IMU
-/// in both cameras replace it. With an IMU, base_link is the left camera turned to body axes. The
-/// file has no IMU rate; 200 Hz are assumed.
+/// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right camera; camera_model
+/// pinhole with radtan (k1 k2 p1 p2), equidistant or none. T_cn_cnm1 maps cam0 into cam1, T_cam_imu
+/// the IMU into the camera (OpenVINS: T_imu_cam, camera into IMU). Without T_cn_cnm1 the poses of
+/// the IMU in both cameras replace it. With an IMU, base_link lies at the left camera, with body
+/// axes. The file has no IMU rate; 200 Hz are assumed.
 [[nodiscard]] Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file);
 [[nodiscard]] Result<std::string> format_kalibr_rig(const camera::StereoRig& rig);
 
-/// A text with its file name: ROS camera_calibration_parsers ("camera_info"), or a
+/// Text and name of a file of ROS camera_calibration_parsers ("camera_info"), or a
 /// sensor_msgs/CameraInfo as printed by `ros2 topic echo` or `rostopic echo`.
 struct NamedText {
     std::string text;
     std::string file;
 };
 /// Reads both cameras: K and D of plumb_bob, rational_polynomial or equidistant. Their relative
-/// pose is that of the rectification: x_rectified = R x_raw; P of the right camera holds -fx *
+/// pose follows from the rectification, x_rectified = R x_raw. P of the right camera holds -fx *
 /// baseline. roi and binning are applied, so that the rig fits the images that the driver delivers.
 [[nodiscard]] Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right);
 struct RosTexts {
@@ -80,32 +80,32 @@ struct RosTexts {
     std::string right;
 };
 [[nodiscard]] Result<RosTexts> format_ros_rig(const camera::StereoRig& rig);
-/// "stereo/right.yaml" for "stereo/left.yaml": replaces the last "left" of the file name.
+/// Returns "stereo/right.yaml" for "stereo/left.yaml" (replaces the last "left" of the name).
 [[nodiscard]] std::optional<std::string> ros_partner(const std::string& left_path);
 
 /// Reads Stereolabs' SN<serial>.conf: sections LEFT_CAM_x, RIGHT_CAM_x for each resolution x and
 /// STEREO. Their calibration tool writes Baseline = -T.x, TY = T.y, TZ = T.z [mm] and the rotation
 /// vector (RX, CV or RY, RZ) of x_right = R x_left + T: Baseline is positive in the file, T.x is
 /// negative. A complete LEFT_DISTO replaces the lens of every section: eight coefficients
-/// (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4 other than 0 are refused, as
-/// everywhere. `size` selects the section; a file of one resolution needs no `size`.
+/// (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4 other than 0 are refused.
+/// `size` selects the section; a file of one resolution needs no `size`.
 [[nodiscard]] Result<RigFile> parse_zed_rig(std::string_view text,
                                             const std::string& file,
                                             std::optional<ImageSize> size = {});
 [[nodiscard]] Result<std::string> format_zed_rig(const camera::StereoRig& rig);
 
 /// Reads stereo settings of ORB-SLAM2 (LEFT.* and RIGHT.*, or Camera.bf of rectified images) and of
-/// ORB-SLAM3 (Camera1.*, Camera2.*, Stereo.T_c1_c2). With a depth factor: a rig of one camera.
+/// ORB-SLAM3 (Camera1.*, Camera2.*, Stereo.T_c1_c2). A depth factor gives a rig of one camera.
 [[nodiscard]] Result<RigFile> parse_orbslam_rig(std::string_view text, const std::string& file);
 
-/// Reads calib.txt of Middlebury's stereo sets: rectified except for the principal points, which
-/// differ by doffs. `size` is used if the file does not hold it.
+/// Reads calib.txt of Middlebury's stereo sets. The images are rectified, but their principal
+/// points differ by doffs. `size` is used if the file has no image size.
 [[nodiscard]] Result<RigFile> parse_middlebury_rig(std::string_view text,
                                                    const std::string& file,
                                                    std::optional<ImageSize> size = {});
 
-/// Reads KITTI raw calib_cam_to_cam.txt: the grey cameras (or the colour cameras if the file has
-/// only these), rectified; raw if `size` is that of the raw images.
+/// Reads the grey cameras of KITTI raw calib_cam_to_cam.txt, or the colour cameras if the file has
+/// only these. The rig is rectified, or raw if `size` is that of the raw images.
 [[nodiscard]] Result<RigFile> parse_kitti_raw_rig(std::string_view text,
                                                   const std::string& file,
                                                   std::optional<ImageSize> size = {});

@@ -301,7 +301,7 @@ TEST(RigKalibr, BadValuesNameFileAndKey) {
         {"resolution: [752, 480]",
          "resolution: [320, 240]",
          "c.yaml: left camera: principal point"},
-        {"cam1:\n", "cam1: 5\ncam3:\n", "cam1: expected camera_model"}};
+        {"cam1:\n", "cam1: 5\ncam3:\n", "cam1: expected a group with camera_model"}};
     for (const Bad& bad : table) {
         const std::string said =
             message(parse_kalibr_rig(replaced(kKalibr, bad.from, bad.to), "c.yaml"));
@@ -359,7 +359,7 @@ TEST(RigRos, BadValuesNameFileAndKey) {
         {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 5"},
         {"distortion_model: plumb_bob\n",
          "distortion_model: ''\n",
-         "the coefficients have distortion_model"},
+         "the coefficients are not 0, but distortion_model is"},
         {"plumb_bob", "rational_polynomial", "5 numbers; rational_polynomial has 8"},
         {"[0.8, 0., 0.6", "[0.8, 0., 0.7", "rectification_matrix: not a rigid motion"},
         {"[400., 0., 322.", "[0., 0., 322.", "projection_matrix: focal lengths 0 and 400"},
@@ -436,8 +436,9 @@ TEST(RigZed, TheSizePicksTheSection) {
     EXPECT_EQ(vga->rig.left.width, 672);
     EXPECT_EQ(
         message(parse_zed_rig(kZed, "SN1.conf")),
-        "SN1.conf: the file has several resolutions: HD (1280x720), VGA (672x376); use it "
-        "with its images, or select one with 'surefoot rig FILE --resolution WxH --out rig.yaml'");
+        "SN1.conf: the file has several resolutions: HD (1280x720), VGA (672x376). Use the file "
+        "with its images, or select a resolution with 'surefoot rig FILE --resolution WxH --out "
+        "rig.yaml'");
     EXPECT_TRUE(
         contains(message(parse_zed_rig(kZed, "SN1.conf", ImageSize{1920, 1080})),
                  "SN1.conf: the file has no section for 1920x1080 px, only HD (1280x720), VGA"));
@@ -480,12 +481,12 @@ TEST(RigZed, BadValuesNameFileAndKey) {
         {"Baseline=119.978", "Baseline=-119.978", "[STEREO] Baseline = -119.978 must be above 0"},
         {"Baseline=119.978",
          "Baseline=0.119978",
-         "[STEREO] Baseline = 0.119978, and this file counts in millimetres: baseline 0.120 mm is "
+         "[STEREO] Baseline = 0.119978, in millimetres: baseline 0.120 mm is "
          "below 1 mm: is it in km"},
         {"RX_HD=-0.000916611", "RY_2K=0", "z.conf: [STEREO] has no 'RX_HD'"},
         {"CV_HD=0.00623976", "CV_HD=3", "z.conf: the cameras are turned"},
         {"[STEREO]", "STEREO", "z.conf:35: 'STEREO' is neither [section] nor key = value"},
-        {"fy=701.7", "fx=701.7", "z.conf:3: 'fx=701.7' sets a key of this section again"},
+        {"fy=701.7", "fx=701.7", "z.conf:3: 'fx=701.7' sets a key that this section already has"},
         {"[RIGHT_CAM_HD]", "[LEFT_CAM_HD]", "'[LEFT_CAM_HD]' appears twice"},
         {"cx=641.285", "cx=1641.285", "z.conf: left camera: principal point"}};
     for (const Bad& bad : table) {

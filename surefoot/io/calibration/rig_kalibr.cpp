@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kalibr's camera chain, after its wiki "Yaml formats" (Furgale, Rehder and Siegwart 2013).
+// Reads and writes Kalibr's camera chain, after the wiki page "Yaml formats" (Furgale, Rehder and
+// Siegwart 2013).
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_formats.hpp"
@@ -54,7 +55,8 @@ camera::Camera read_camera(YamlReader& yaml, const std::string& name) {
     const YamlNode* node = yaml.required(yaml.root(), name);
     if (node == nullptr) return {};
     if (!node->is_mapping()) {
-        yaml.fail(*node, name, "expected camera_model, intrinsics and so on");
+        yaml.fail(
+            *node, name, "expected a group with camera_model, intrinsics and distortion_model");
         return {};
     }
     camera::Camera camera;
@@ -67,7 +69,8 @@ camera::Camera read_camera(YamlReader& yaml, const std::string& name) {
     return camera;
 }
 
-/// Pose of the IMU in a camera: T_cam_imu of Kalibr, or the inverse, T_imu_cam, of OpenVINS.
+/// Reads the pose of the IMU in a camera: T_cam_imu of Kalibr, or the inverse, T_imu_cam, of
+/// OpenVINS.
 std::optional<Pose> read_imu_pose(YamlReader& yaml, const std::string& name) {
     const YamlNode& node = *yaml.root().find(name);
     if (const YamlNode* pose = node.find("T_cam_imu"); pose != nullptr)
@@ -77,7 +80,7 @@ std::optional<Pose> read_imu_pose(YamlReader& yaml, const std::string& name) {
     return std::nullopt;
 }
 
-/// T_left_right from T_cn_cnm1, or from the poses of the IMU in both cameras.
+/// Reads T_left_right from T_cn_cnm1, or computes it from the poses of the IMU in both cameras.
 Pose read_extrinsics(YamlReader& yaml,
                      const std::optional<Pose>& T_left_imu,
                      const std::optional<Pose>& T_right_imu,
@@ -93,9 +96,9 @@ Pose read_extrinsics(YamlReader& yaml,
     }
     yaml.fail(cam1,
               "cam1",
-              "key 'T_cn_cnm1' is missing, and the cameras do not both have T_cam_imu: run "
-              "kalibr_calibrate_cameras with both topics in one call; its camchain holds the pose "
-              "between the cameras");
+              "key 'T_cn_cnm1' is missing, and only one camera or no camera has T_cam_imu. Run "
+              "kalibr_calibrate_cameras with both topics in one call: its camchain contains the "
+              "pose between the cameras");
     return {};
 }
 
@@ -144,18 +147,20 @@ std::string format_camera(const char* name,
     return out;
 }
 
-/// Kalibr's radtan has four coefficients.
+/// Refuses lenses that Kalibr cannot store. Kalibr's radtan has four coefficients.
 Status check_lens(const camera::CameraModel& model, const char* name) {
     if (is_rational(model)) {
-        return output_error(fmt::format(
-            "Kalibr has no rational model; the {} camera has one: calibrate with radtan or "
-            "equidistant",
-            name));
+        return output_error(
+            fmt::format("the {} camera has a rational lens model, which Kalibr does not support: "
+                        "calibrate with radtan or equidistant",
+                        name));
     }
     const std::vector<double> D = coefficients_of(model);
     if (D.size() == 5 && D[4] != 0.0) {
-        return output_error(
-            fmt::format("Kalibr's radtan ends with k2; the {} camera has k3 = {}", name, D[4]));
+        return output_error(fmt::format(
+            "Kalibr's radtan model has no k3, but the {} camera has k3 = {}; choose another format",
+            name,
+            D[4]));
     }
     return {};
 }
@@ -166,7 +171,7 @@ Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file)
     const Result<YamlNode> root = parse_yaml(text, file);
     if (!root) return root.error();
     if (!root->is_mapping()) {
-        return input_error(file + ": expected the cameras cam0 and cam1 of a Kalibr chain");
+        return input_error(file + ": expected the cameras cam0 and cam1 of a Kalibr camera chain");
     }
     YamlReader yaml(file, *root);
     RigFile out;

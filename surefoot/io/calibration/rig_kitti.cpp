@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// KITTI odometry calib.txt after Geiger et al. 2012: "P0:" and the 3x4 projection matrix of
-// rectified camera 0 row by row, and so on to P3; P[3] = -fx * (position of the camera along x).
+// Reads calib.txt of KITTI odometry, after Geiger et al. 2012. The lines "P0:" to "P3:" hold the
+// 3x4 projection matrices of the rectified cameras 0 to 3, row by row. P[3] = -fx * (position of
+// the camera along x) [px m].
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace surefoot::io {
 namespace {
 
-/// One "Pn: 12 numbers" line.
+/// Parses one "Pn: 12 numbers" line.
 Result<std::array<double, 12>> parse_matrix(const std::vector<std::string_view>& words,
                                             const std::string& where) {
     if (words.size() != 13) {

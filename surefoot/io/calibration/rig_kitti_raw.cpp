@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// calib_cam_to_cam.txt of KITTI's raw recordings, after Geiger et al. 2013, "Vision meets
-// robotics": for each camera i the raw image (S K D), its pose (x_i = R_i x_0 + T_i, m), and the
-// rectified image (S_rect P_rect). The recordings that most people have ("synced+rectified") show
-// the second.
+// Reads calib_cam_to_cam.txt of KITTI's raw recordings, after Geiger et al. 2013, "Vision meets
+// robotics". For each camera i the file has the raw image (S K D), the pose (x_i = R_i x_0 + T_i
+// [m]) and the rectified image (S_rect P_rect). The common "synced+rectified" recordings contain
+// rectified images.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Values {
     int line = 0;
 };
 
-/// "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
+/// Finds "NAME: numbers" lines by name. Skips lines whose values are not numbers (calib_time).
 class RawLines {
   public:
     RawLines(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -92,7 +92,7 @@ camera::Camera read_raw_camera(RawLines& raw, const std::string& number) {
     return {lens ? *lens : camera::CameraModel{}, size.width, size.height};
 }
 
-/// T_i_0 of a camera.
+/// Reads the pose T_i_0 of camera i.
 Pose read_raw_pose(RawLines& raw, const std::string& number) {
     const std::vector<double> R = raw.numbers("R_" + number, 9);
     const std::vector<double> T = raw.numbers("T_" + number, 3);
@@ -111,7 +111,7 @@ Result<RigFile> raw_rig(RawLines& raw, const std::string& left, const std::strin
     out.rig.right = read_raw_camera(raw, right);
     out.rig.T_left_right = read_raw_pose(raw, left) * read_raw_pose(raw, right).inverse();
     if (raw.error()) return *raw.error();
-    out.notes.emplace_back("the cameras of the raw images are used (S, K, D, R, T)");
+    out.notes.emplace_back("the calibration of the raw images is used (keys S, K, D, R, T)");
     return out;
 }
 
@@ -140,8 +140,8 @@ Result<RigFile> rectified_rig(RawLines& raw,
     RigFile out;
     out.rig = *rig;
     out.notes.emplace_back(
-        "the cameras of the rectified images are used (S_rect, P_rect), as 'synced+rectified' "
-        "recordings show them");
+        "the calibration of the rectified images is used (keys S_rect, P_rect). It fits recordings "
+        "named 'synced+rectified'");
     return out;
 }
 

@@ -10,7 +10,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Coefficients of OpenCV that PinholeRational has.
+/// Number of OpenCV's coefficients that PinholeRational supports.
 constexpr std::size_t kRationalCount = 8;
 constexpr std::array<const char*, 6> kUnsupported{"s1", "s2", "s3", "s4", "taux", "tauy"};
 
@@ -30,13 +30,13 @@ Result<camera::CameraModel> pinhole_lens(const std::vector<double>& intrinsics,
     }
     for (std::size_t i = kRationalCount; i < coefficients.size(); ++i) {
         if (coefficients[i] == 0.0) continue;
-        return input_error(fmt::format(
-            "coefficient {} is {} ({}); thin-prism and tilt terms are not supported, and leaving "
-            "them out moves the rows of the two images against each other. Calibrate with "
-            "k1 k2 p1 p2 k3 k4 k5 k6 alone ('surefoot calibrate stereo')",
-            i + 1,
-            coefficients[i],
-            kUnsupported[i - kRationalCount]));
+        return input_error(
+            fmt::format("coefficient {} is {} ({}); thin-prism and tilt terms are not supported. "
+                        "Without these terms the rows of the two images would not match. Calibrate "
+                        "with k1 k2 p1 p2 k3 k4 k5 k6 alone ('surefoot calibrate stereo')",
+                        i + 1,
+                        coefficients[i],
+                        kUnsupported[i - kRationalCount]));
     }
     return make_pinhole(intrinsics, std::move(coefficients));
 }
@@ -45,8 +45,9 @@ Result<camera::CameraModel> fisheye_lens(const std::vector<double>& intrinsics,
                                          std::vector<double> coefficients) {
     drop_zero_tail(coefficients, 4);
     if (coefficients.size() != 4) {
-        return input_error(fmt::format(
-            "{} coefficients; a fisheye has 4 coefficients (k1 k2 k3 k4)", coefficients.size()));
+        return input_error(
+            fmt::format("{} coefficients; a fisheye lens has 4 coefficients (k1 k2 k3 k4)",
+                        coefficients.size()));
     }
     return make_kannala_brandt(intrinsics, std::move(coefficients));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// calib.txt of the Middlebury stereo sets, after Scharstein et al. 2014, "High-resolution stereo
-// datasets with subpixel-accurate ground truth": rectified images whose principal points differ by
-// doffs = cx1 - cx0 [px], and the baseline in mm: depth = baseline * f / (disparity + doffs).
+// Reads calib.txt of the Middlebury stereo sets, after Scharstein et al. 2014, "High-resolution
+// stereo datasets with subpixel-accurate ground truth". The images are rectified, and their
+// principal points differ by doffs = cx1 - cx0 [px]. The baseline is in mm; depth = baseline * f /
+// (disparity + doffs).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,10 +16,10 @@
 namespace surefoot::io {
 namespace {
 
-/// Middlebury files print doffs with three decimals.
+/// Tolerance of doffs: Middlebury files print doffs with three decimals.
 constexpr double kDoffsTolerance_px = 2e-3;
 
-/// "key=value" lines; the first failure is kept.
+/// Reads "key=value" lines and keeps the first failure.
 class MiddleburyReader {
   public:
     MiddleburyReader(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -33,7 +34,7 @@ class MiddleburyReader {
     }
 
     [[nodiscard]] bool has(const char* key) const { return lines_.contains(key); }
-    /// "4161.221", or "[f 0 cx; 0 f cy; 0 0 1]" row by row.
+    /// Reads the numbers of "4161.221", or of "[f 0 cx; 0 f cy; 0 0 1]" row by row.
     std::vector<double> numbers(const char* key, std::size_t count) {
         std::vector<double> values;
         const auto found = lines_.find(key);
@@ -111,11 +112,12 @@ Result<RigFile> parse_middlebury_rig(std::string_view text,
         const double doffs_px = in.number("doffs");
         const double differ_px = right[2] - left[2];
         if (!(std::abs(doffs_px - differ_px) <= kDoffsTolerance_px)) {
-            in.fail(fmt::format(
-                "{}: doffs is {} px, but the principal points of cam1 and cam0 differ by {:.3f} px",
-                file,
-                doffs_px,
-                differ_px));
+            in.fail(
+                fmt::format("{}: doffs is {} px, but the principal points of cam1 and cam0 differ "
+                            "by {:.3f} px; copy the file again",
+                            file,
+                            doffs_px,
+                            differ_px));
         }
     }
     if (in.error()) return *in.error();
@@ -126,9 +128,8 @@ Result<RigFile> parse_middlebury_rig(std::string_view text,
     out.rig.T_left_right.translation_m.x() = 1e-3 * baseline_mm;
     if (right[2] != left[2]) {
         out.notes.push_back(
-            fmt::format("the principal points differ by doffs = {:.3f} px: disparities of these "
-                        "images are that "
-                        "much smaller than f * baseline / depth",
+            fmt::format("the principal points differ by doffs = {:.3f} px: a disparity of these "
+                        "images is f * baseline / depth - doffs",
                         right[2] - left[2]));
     }
     return checked_file(std::move(out), file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCV FileStorage YAML as its stereo calibration sample and most users write it. A matrix is
+// Reads and writes FileStorage YAML in the form of OpenCV's stereo calibration sample. A matrix is
 // {rows, cols, dt, data}; x_right = R x_left + T (stereoCalibrate).
 #include <fmt/format.h>
 
@@ -31,16 +31,18 @@ bool is_fisheye(const YamlNode& root) {
     return false;
 }
 
-/// Requires a matrix; `other` is the same matrix of the other camera, for the message.
+/// Requires a matrix. `other` is the same matrix of the other camera; the error message names its
+/// key.
 bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
     if (found.node != nullptr) return true;
-    yaml.fail(yaml.root(),
-              what,
-              other.node != nullptr
-                  ? fmt::format("not found; the key of the other camera is '{}': both keys must "
-                                "differ only in 1 and 2, left and right, or l and r",
-                                other.key)
-                  : "not found under any of its usual names");
+    yaml.fail(
+        yaml.root(),
+        what,
+        other.node != nullptr
+            ? fmt::format("not found; the key of the other camera is '{}'. The two keys may "
+                          "differ only in 1 and 2, left and right, or l and r",
+                          other.key)
+            : "not found under any of its usual names; use OpenCV's names M1, D1, M2, D2, R and T");
     return false;
 }
 
@@ -58,8 +60,8 @@ camera::CameraModel read_lens(YamlReader& yaml,
                         is_fisheye(yaml.root()) ? fisheye_lens(k, D) : pinhole_lens(k, D));
 }
 
-/// Adds a note about an ambiguous lens: cv::fisheye and cv::calibrateCamera without k3 both write
-/// four coefficients, and cv::fisheye does not write the name of its model.
+/// Adds a note about an ambiguous lens. Both cv::fisheye and cv::calibrateCamera without k3 write
+/// four coefficients, and cv::fisheye does not write the name of its lens model.
 void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& out) {
     const YamlNode& root = yaml.root();
     for (const char* key : {"fisheye", "model", "distortion_model", "camera_model"}) {
@@ -92,7 +94,7 @@ std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigF
     return R;
 }
 
-/// R and T turned into T_left_right = (R, T)^-1.
+/// Reads R and T and returns T_left_right = (R, T)^-1.
 Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
     if (names.R.node == nullptr) yaml.required(yaml.root(), "R");
     if (names.T.node == nullptr) yaml.required(yaml.root(), "T");
@@ -104,7 +106,7 @@ Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
     if (const auto problem = camera::baseline_problem(length_m)) {
         yaml.fail(*names.T.node,
                   names.T.key,
-                  *problem + " (stereoCalibrate uses the unit of the board's squares)");
+                  *problem + " (stereoCalibrate returns T in the unit of the board's squares)");
     }
     return pose_from_parts(yaml, *names.R.node, names.R.key, R, T).inverse();
 }
@@ -128,7 +130,7 @@ ImageSize find_size(YamlReader& yaml, const OpenCvNames& names, std::optional<Im
     return fallback.value_or(ImageSize{});
 }
 
-/// A matrix as cv::FileStorage writes it, doubles row by row.
+/// Formats a matrix of doubles, row by row, as cv::FileStorage does.
 std::string format_matrix(std::string_view key,
                           std::size_t rows,
                           std::size_t cols,
@@ -157,8 +159,8 @@ Result<std::string> format_opencv_rig(const camera::StereoRig& rig) {
     const bool fisheye = is_kannala_brandt(rig.left.model);
     if (fisheye != is_kannala_brandt(rig.right->model)) {
         return output_error(
-            "an OpenCV file can store two fisheye lenses or two other lenses; this rig has one of "
-            "each");
+            "an OpenCV file stores either two fisheye lenses or two pinhole lenses, but this rig "
+            "has one fisheye lens and one pinhole lens; choose another format");
     }
     const Pose T_right_left = rig.T_left_right.inverse();
     const Eigen::Vector3d& t = T_right_left.translation_m;

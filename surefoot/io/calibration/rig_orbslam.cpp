@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stereo settings of ORB-SLAM2 and ORB-SLAM3, after the examples that come with them and
-// ORB-SLAM3's "Calibration tutorial". ORB-SLAM2: Camera.* is the rectified camera, Camera.bf = fx *
-// baseline [px m], LEFT.* and RIGHT.* (K D R P) the raw ones. ORB-SLAM3: Camera1.*, Camera2.* and
-// Stereo.T_c1_c2, which maps camera 2 into camera 1; IMU.T_b_c1 maps camera 1 into the IMU.
+// Reads stereo settings of ORB-SLAM2 and ORB-SLAM3, after their examples and ORB-SLAM3's
+// "Calibration tutorial". ORB-SLAM2: Camera.* is the rectified camera, and Camera.bf = fx *
+// baseline [px m]. LEFT.* and RIGHT.* (K D R P) are the raw cameras. ORB-SLAM3: Camera1.* and
+// Camera2.* are the cameras. Stereo.T_c1_c2 maps camera 2 into camera 1; IMU.T_b_c1 maps camera 1
+// into the IMU.
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_formats.hpp"
@@ -78,7 +79,7 @@ camera::CameraModel read_lens(YamlReader& yaml,
                         fisheye ? fisheye_lens(k, std::move(D)) : pinhole_lens(k, std::move(D)));
 }
 
-/// A pose as a matrix of 16 numbers, or of 12 without the last row.
+/// Reads a pose from a matrix of 16 numbers, or of 12 numbers without the last row.
 Pose read_matrix_pose(YamlReader& yaml, const YamlNode& node, const char* key) {
     std::vector<double> rows = read_matrix(yaml, node, key, 12, 16);
     if (rows.size() == 12) rows.insert(rows.end(), {0.0, 0.0, 0.0, 1.0});
@@ -114,11 +115,11 @@ void read_two_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     }
     yaml.fail(root,
               "Stereo.T_c1_c2",
-              "this key is missing: without the pose of camera 2 in camera 1 the settings are for "
-              "one camera. Rectified cameras may give Stereo.b instead");
+              "this key is missing, but two cameras need the pose of camera 2 in camera 1. Add the "
+              "key; for rectified cameras add Stereo.b instead");
 }
 
-/// LEFT.* or RIGHT.* of ORB-SLAM2, as ROS has them.
+/// Raw camera from LEFT.* or RIGHT.* of ORB-SLAM2. The keys K, D, R and P mean the same as in ROS.
 struct RawCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
@@ -164,11 +165,11 @@ void read_rgbd_camera(YamlReader& yaml, RigFile& out, ImageSize size) {
         read_lens(yaml, left_prefix(yaml.root()), read_type(yaml)), size.width, size.height};
     out.notes.emplace_back(
         "the file has a depth factor, so it is read as a rig of one camera with depth");
-    out.rig.rectified = true;  // StereoRig::problem() checks this claim
+    out.rig.rectified = true;  // assumed; the next line checks this
     out.rig.rectified = !out.rig.problem().has_value();
 }
 
-/// Reads Camera.* with Camera.bf alone: the images are already rectified.
+/// Reads files with Camera.bf but without LEFT.* and RIGHT.*: the images are already rectified.
 void read_rectified_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
     const std::string prefix = left_prefix(yaml.root());
     out.rig.left = {read_lens(yaml, prefix, read_type(yaml)), size.width, size.height};
@@ -185,7 +186,8 @@ void read_rectified_pair(YamlReader& yaml, RigFile& out, ImageSize size) {
                   "R, P and RIGHT.K, D, R, P of the raw images too");
     }
     out.notes.emplace_back(
-        "Camera.bf without LEFT.* and RIGHT.*: the program assumes rectified images");
+        "the file has Camera.bf but no keys LEFT.* and RIGHT.*: the program assumes rectified "
+        "images");
 }
 
 void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
@@ -195,8 +197,8 @@ void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
             yaml.root(),
             has("LEFT.K") ? "RIGHT.K" : "LEFT.K",
             "this key is missing: these ORB-SLAM settings describe the raw images of one camera "
-            "only. Give K, D, R and P of both LEFT and RIGHT. For rectified images give none of "
-            "them; then Camera.fx .. and Camera.bf are used");
+            "only. Give K, D, R and P of both LEFT and RIGHT. For rectified images remove all keys "
+            "LEFT.* and RIGHT.*; then Camera.fx .. and Camera.bf are used");
     }
     if (has("LEFT.K")) return read_raw_pair(yaml, out, size);
     if (has("DepthMapFactor") || has("RGBD.DepthMapFactor"))
@@ -206,8 +208,8 @@ void read_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     if (has("Camera.bf")) return read_rectified_pair(yaml, out, size);
     yaml.fail(yaml.root(),
               "Stereo.T_c1_c2",
-              "this key is missing: these ORB-SLAM settings are for one camera (Stereo.b and "
-              "Camera.bf are missing too)");
+              "this key is missing, and Stereo.b and Camera.bf are missing too: these ORB-SLAM "
+              "settings are for one camera. Give the settings of a stereo camera");
 }
 
 void read_imu(YamlReader& yaml, RigFile& out) {

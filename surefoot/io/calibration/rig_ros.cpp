@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ROS camera_info files, after the comments of sensor_msgs/CameraInfo and REP 104: K and D belong
-// to the raw image, R turns it into the rectified one, P projects from there; P(0, 3) = -fx' * Tx.
+// Reads and writes ROS camera_info files, after the comments of sensor_msgs/CameraInfo and REP 104.
+// K and D belong to the raw image. R rotates the raw camera frame into the rectified frame, and P
+// projects from the rectified frame; P(0, 3) = -fx' * Tx.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// The keys of the two forms: files of camera_calibration_parsers, and a sensor_msgs/CameraInfo as
-/// `ros2 topic echo` and `rostopic echo` print it.
+/// Keys of two forms: files of camera_calibration_parsers, and a sensor_msgs/CameraInfo that `ros2
+/// topic echo` or `rostopic echo` printed.
 struct RosKeys {
     const char *width, *height, *K, *D, *R, *P;
 };
@@ -38,8 +39,8 @@ const RosKeys& keys_of(const YamlNode& root) {
 struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
-    double x_m = 0.0;          ///< camera centre on the x axis of the rectified frame
-    bool has_rotation = true;  ///< false: R is all zero, "not rectified"
+    double x_m = 0.0;          ///< x of the camera centre in the rectified frame
+    bool has_rotation = true;  ///< false if R is all zero ("not rectified")
     std::vector<std::string> notes;
 };
 
@@ -54,14 +55,14 @@ const YamlNode& required_matrix(YamlReader& yaml, const char* key) {
 
 std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, bool zero) {
     const YamlNode* node = yaml.root().find("distortion_model");
-    if (node == nullptr) return "plumb_bob";  // the meaning of a missing key
+    if (node == nullptr) return "plumb_bob";  // the default if the key is missing
     std::string model = yaml.text(*node, "distortion_model");
     if (!model.empty() && model != "none") return model;
     if (zero) return "none";
     yaml.fail(list,
               key,
-              fmt::format("the coefficients have distortion_model {}; give plumb_bob, "
-                          "rational_polynomial or equidistant",
+              fmt::format("the coefficients are not 0, but distortion_model is {}; set it to "
+                          "plumb_bob, rational_polynomial or equidistant",
                           quoted(model)));
     return "none";
 }
@@ -92,7 +93,7 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
         return lens_or_fail(yaml, list, keys.D, pinhole_lens(k, std::move(D)));
     }
     if (model != "plumb_bob") {
-        yaml.fail(*yaml.root().find("distortion_model"),  // the default is plumb_bob
+        yaml.fail(*yaml.root().find("distortion_model"),  // exists: a missing key means plumb_bob
                   "distortion_model",
                   quoted(model) + " is not one of plumb_bob | rational_polynomial | equidistant");
         return {};
@@ -102,8 +103,8 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     if (given < 8 && !D.empty()) expect(4, 5);
     if (D.size() > 5 && !yaml.error()) {
         out.notes.push_back(
-            fmt::format("distortion_model is plumb_bob, but coefficients after k3 of {} are not 0: "
-                        "they are read as rational_polynomial",
+            fmt::format("distortion_model is plumb_bob, but coefficients after k3 in {} are not 0: "
+                        "the program reads all coefficients as rational_polynomial",
                         keys.D));
     }
     return lens_or_fail(yaml, list, keys.D, pinhole_lens(k, std::move(D)));
@@ -154,7 +155,7 @@ int count_or_zero(YamlReader& yaml,
 
 void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, double bin_y) {
     std::visit(
-        [&](auto& m) {  // pixel centres lie at whole coordinates
+        [&](auto& m) {  // pixel centres have whole coordinates
             m.fx_px /= bin_x;
             m.fy_px /= bin_y;
             m.cx_px = (m.cx_px - x_px + 0.5) / bin_x - 0.5;
@@ -163,8 +164,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to. First
-/// `roi` (in pixels of that image; all 0 = the whole image), then binning.
+/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to.
+/// Applies `roi` first (in pixels of that image; all 0 = the whole image), then binning.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;
@@ -198,8 +199,8 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
         return yaml.fail(
             root,
             "binning_x, binning_y",
-            fmt::format("{} x {} px cannot be binned by {} x {}: the sides are not multiples of "
-                        "it. Calibrate at the size that the camera delivers",
+            fmt::format("{} x {} px cannot be binned by {} x {}: a side is not a multiple of its "
+                        "binning factor. Calibrate at the image size that the camera delivers",
                         width,
                         height,
                         bin_x,
@@ -208,8 +209,8 @@ void apply_window(YamlReader& yaml, RosCamera& out) {
     const bool whole = width == camera.width && height == camera.height;
     if (whole && bin_x == 1 && bin_y == 1) return;
     out.notes.push_back(
-        fmt::format("roi and binning are applied: the rig is for images of {} x {} px, the part of "
-                    "{} x {} px at ({}, {}) of {} x {} px",
+        fmt::format("roi and binning are applied: the rig is for images of {} x {} px. They show "
+                    "the part of {} x {} px at ({}, {}) of the full image of {} x {} px",
                     width / bin_x,
                     height / bin_y,
                     width,
@@ -248,13 +249,13 @@ Result<RosCamera> parse_camera(const NamedText& in) {
     return out;
 }
 
-/// Checks the rotations. A driver that does not rectify writes an all-zero R; the cameras then
+/// Checks the rotations. A driver that does not rectify writes an R of zeros. The cameras then
 /// count as parallel.
 Status check_rotations(const RosCamera& l, const RosCamera& r, RigFile& out) {
     if (l.has_rotation != r.has_rotation) {
         return input_error(
-            "the rectification matrix of one camera is all zero (not rectified), the other's is "
-            "not: both files must come from one stereo calibration");
+            "the rectification matrix of one camera is all zero (not rectified), but that of the "
+            "other camera is not. Both files must come from one stereo calibration");
     }
     if (l.has_rotation) return {};
     out.notes.emplace_back(
@@ -299,12 +300,13 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
     if (!r) return r.error();
     const double baseline_m = r->x_m - l->x_m;
     if (!(baseline_m > 0.0)) {
-        return input_error(fmt::format(
-            "{}: projection_matrix: element (0, 3) says that this camera lies {} m to the right of "
-            "the left one; it must be -fx * baseline, below 0, in the right camera's file (0 is a "
-            "calibration of single cameras; above 0 the cameras are swapped)",
-            right.file,
-            baseline_m));
+        return input_error(
+            fmt::format("{}: projection_matrix: element (0, 3) says that this camera lies {} m to "
+                        "the right of the left camera. In the file of the right camera this "
+                        "element must be -fx * baseline, below 0. If it is 0, the cameras were "
+                        "calibrated one by one; if it is above 0, the cameras are swapped",
+                        right.file,
+                        baseline_m));
     }
     if (const auto problem = camera::baseline_problem(baseline_m)) {
         return input_error(fmt::format(

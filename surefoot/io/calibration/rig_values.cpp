@@ -14,7 +14,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Rotations that are printed with four digits have smaller errors than this.
+/// Limit of R^T R - I. A rotation that was printed with four digits stays below this limit.
 constexpr double kRotationTolerance = 1e-3;
 
 }  // namespace
@@ -43,8 +43,8 @@ Pose pose_from_rows(YamlReader& yaml,
     if (!(error < kRotationTolerance) || !(R.determinant() > 0.0) || !last_row) {
         yaml.fail(node,
                   key,
-                  fmt::format("not a rigid motion (R^T R differs from 1 by {:.3g}, limit {}; "
-                              "last row 0 0 0 1)",
+                  fmt::format("not a rigid motion: R^T R differs from 1 by {:.3g} (limit {}), R is "
+                              "a reflection, or the last row is not 0 0 0 1",
                               error,
                               kRotationTolerance));
         return {};
@@ -191,7 +191,8 @@ bool is_rational(const camera::CameraModel& model) noexcept {
 Status check_pair(const camera::StereoRig& rig, std::string_view format) {
     if (const auto problem = rig.problem()) return output_error(*problem);
     if (rig.right) return {};
-    return output_error(fmt::format("{} files hold stereo rigs; this rig has one camera", format));
+    return output_error(fmt::format(
+        "{} files store stereo rigs, but this rig has one camera; write a rig.yaml", format));
 }
 
 Pose pose_from_parts(YamlReader& yaml,
@@ -273,22 +274,22 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
 }
 
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
-    // A common rate; it is used only to detect gaps.
+    // A common IMU rate, used only to detect gaps.
     constexpr double kAssumedImuRate_hz = 200.0;
     out.rig.T_body_left = T_body_optical();
     const bool known = rate_hz > 0.0;
     out.rig.imu =
         camera::ImuMount{*out.rig.T_body_left * T_left_imu, known ? rate_hz : kAssumedImuRate_hz};
-    out.notes.push_back(fmt::format(
-        "{}base_link is the left camera turned to body axes",
-        known ? ""
-              : fmt::format("the file does not hold the rate of the IMU; {} Hz assumed, and ",
-                            kAssumedImuRate_hz)));
+    out.notes.push_back(
+        fmt::format("{}base_link has its origin at the left camera, with the axes of the body",
+                    known ? ""
+                          : fmt::format("the file has no rate of the IMU: {} Hz is assumed; ",
+                                        kAssumedImuRate_hz)));
 }
 
 void mark_if_rectified(camera::StereoRig& rig) {
     if (!rig.right) return;
-    rig.rectified = true;  // StereoRig::problem() checks this claim
+    rig.rectified = true;  // assumed; the next line checks this
     rig.rectified = !rig.problem().has_value();
 }
 

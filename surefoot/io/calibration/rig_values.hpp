@@ -12,7 +12,7 @@
 /// Helpers that the rig readers share; private to them.
 namespace surefoot::io {
 
-/// Largest side of a camera image that a rig file may claim.
+/// Largest side of a camera image in a rig file.
 inline constexpr int kMaxRigSide_px = 1 << 15;
 
 /// Reads [width, height].
@@ -23,7 +23,7 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
                                   const YamlNode& node,
                                   std::string_view key,
                                   const std::vector<double>& rows);
-/// Formats "[a, b, c]"; the numbers read back exactly.
+/// Formats numbers as "[a, b, c]", with all digits that an exact value needs.
 [[nodiscard]] std::string format_list(const std::vector<double>& values);
 /// Formats the 16 matrix numbers of a pose.
 [[nodiscard]] std::string format_pose_rows(const Pose& pose);
@@ -31,22 +31,22 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
 [[nodiscard]] std::vector<double> read_focal(YamlReader& yaml,
                                              const YamlNode& node,
                                              std::string_view key);
-/// Lens from intrinsics (fx fy cx cy) and coefficients in OpenCV's order k1 k2 p1 p2 k3 k4 k5 k6,
-/// whose last ones may be missing; the rational model if k4, k5 or k6 is not 0.
+/// Builds a lens from intrinsics (fx fy cx cy) and coefficients in OpenCV's order k1 k2 p1 p2 k3 k4
+/// k5 k6; the last ones may be missing. The lens is rational if k4, k5 or k6 is not 0.
 [[nodiscard]] camera::CameraModel make_pinhole(const std::vector<double>& intrinsics,
                                                std::vector<double> coefficients);
 [[nodiscard]] camera::CameraModel make_rational(const std::vector<double>& intrinsics,
                                                 std::vector<double> coefficients);
 [[nodiscard]] camera::CameraModel make_kannala_brandt(const std::vector<double>& intrinsics,
                                                       std::vector<double> coefficients);
-/// Intrinsics (fx fy cx cy); coefficients_of returns the coefficients of the lens.
+/// Returns fx fy cx cy; coefficients_of returns the distortion coefficients of the lens.
 [[nodiscard]] std::vector<double> intrinsics_of(const camera::CameraModel& model);
 [[nodiscard]] std::vector<double> coefficients_of(const camera::CameraModel& model);
 [[nodiscard]] bool is_kannala_brandt(const camera::CameraModel& model) noexcept;
 [[nodiscard]] bool is_rational(const camera::CameraModel& model) noexcept;
-/// Error unless the rig is valid and has two cameras, which the formats of other programs require.
+/// Fails unless the rig is valid and has two cameras, which the formats of other programs require.
 [[nodiscard]] Status check_pair(const camera::StereoRig& rig, std::string_view format);
-/// Rigid motion from a rotation (9 numbers row by row) and a translation [m].
+/// Builds a rigid motion from a rotation (9 numbers row by row) and a translation [m].
 [[nodiscard]] Pose pose_from_parts(YamlReader& yaml,
                                    const YamlNode& node,
                                    std::string_view key,
@@ -56,7 +56,7 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
 /// Reads `min` to `max` numbers of a matrix {rows, cols, data} or of a plain list.
 [[nodiscard]] std::vector<double> read_matrix(
     YamlReader& yaml, const YamlNode& node, std::string_view key, std::size_t min, std::size_t max);
-/// Returns the lens, or fails at the key of its coefficients.
+/// Returns the lens, or reports its error at the key of its coefficients.
 [[nodiscard]] camera::CameraModel lens_or_fail(YamlReader& yaml,
                                                const YamlNode& node,
                                                std::string_view key,
@@ -67,28 +67,28 @@ void check_focal(YamlReader& yaml,
                  std::string_view key,
                  const std::vector<double>& K);
 
-/// The rectification of a camera pair in the form of OpenCV and ROS, row by row.
+/// Matrices of the rectification of a camera pair, in the form of OpenCV and ROS, row by row.
 struct RectifiedMatrices {
     std::vector<double> R_left, R_right;  ///< 3x3, x_rectified = R x_raw
     std::vector<double> P_left, P_right;  ///< 3x4; P_right(0, 3) = -fx * baseline [px m]
-    std::vector<double> Q;                ///< 4x4, (u, v, disparity, 1) to (X, Y, Z, W) [m]
+    std::vector<double> Q;                ///< 4x4, maps (u, v, disparity, 1) to (X, Y, Z, W) [m]
 };
-/// Computes our rectification (camera::Rectifier). `rig`: two cameras and no problem().
+/// Computes Surefoot's rectification (camera::Rectifier). `rig` must be valid and a pair.
 [[nodiscard]] RectifiedMatrices rectified_matrices(const camera::StereoRig& rig);
 
-/// Works as parse_opencv_rig on a parsed document; also returns the notes.
+/// Works like parse_opencv_rig, but on a parsed document; also returns the notes.
 [[nodiscard]] Result<RigFile> opencv_rig(const YamlNode& root,
                                          const std::string& file,
                                          std::optional<ImageSize> size);
-/// Mounts the IMU of a chain that has its pose in the left camera: base_link becomes the left
-/// camera turned to body axes. `rate_hz` 0 = not in the file; then assumes 200 Hz and adds a note.
+/// Mounts an IMU whose pose in the left camera is known. base_link lies at the left camera, with
+/// body axes. `rate_hz` 0 means unknown: assumes 200 Hz and adds a note.
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out);
 
 /// Returns the rig, the error of the reader, or the problem of the rig with the file name.
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const YamlReader& yaml);
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& file);
-/// Final step for every file of another program: marks the rig as rectified if it is, checks it,
-/// and adds a note if its baseline is unusual.
+/// Final step for every file of another program. Checks the rig, marks rectified rigs, and adds a
+/// note if the baseline is unusual.
 [[nodiscard]] Result<RigFile> checked_file(RigFile out, const std::string& file);
 
 }  // namespace surefoot::io

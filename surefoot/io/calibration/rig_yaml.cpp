@@ -11,7 +11,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Hint for missing keys of the second camera: the file may describe an RGB-D camera.
+/// Hint for a missing key of the second camera, because the file may describe an RGB-D camera.
 constexpr const char* kRgbdHint =
     "; a camera that measures depth itself (RGB-D) needs 'layout: rgbd' and no second camera";
 
@@ -42,7 +42,7 @@ const std::vector<std::string>& common_keys() {
     return keys;
 }
 
-/// One camera block of the full form.
+/// Reads one camera block of the full form.
 camera::Camera read_camera(YamlReader& yaml,
                            const YamlNode& node,
                            const std::string& name,
@@ -51,7 +51,8 @@ camera::Camera read_camera(YamlReader& yaml,
     camera.width = size.width;
     camera.height = size.height;
     if (!node.is_mapping()) {
-        yaml.fail(node, name, "expected model, focal_px, principal_px and coefficients");
+        yaml.fail(
+            node, name, "expected a group with model, focal_px, principal_px and coefficients");
         return camera;
     }
     yaml.only_keys(node, name + ".", {"model", "focal_px", "principal_px", "coefficients"});
@@ -89,7 +90,7 @@ camera::Camera read_camera(YamlReader& yaml,
     return camera;
 }
 
-/// baseline_m, focal_px, principal_px: two equal ideal cameras.
+/// Reads the short form (baseline_m, focal_px, principal_px): two equal cameras without distortion.
 void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoRig& rig) {
     const YamlNode& root = yaml.root();
     for (const char* key : {"left", "right", "T_left_right"}) {
@@ -114,7 +115,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     rig.right = rig.left;
     const YamlNode* baseline = required_of_pair(yaml, "baseline_m");
     if (baseline == nullptr) return;
-    constexpr double kLargest = 1e12;  // valid for any unit; the next line applies the real limit
+    constexpr double kLargest = 1e12;  // for any unit; baseline_problem has the limit
     const double baseline_m = yaml.number(*baseline, "baseline_m", -kLargest, kLargest);
     if (const auto problem = camera::baseline_problem(baseline_m))
         yaml.fail(*baseline, "baseline_m", *problem);
@@ -142,7 +143,8 @@ void read_full_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoR
 }
 
 void read_imu(YamlReader& yaml, const YamlNode& node, camera::StereoRig& rig) {
-    if (!node.is_mapping()) return yaml.fail(node, "imu", "expected T_body_imu and rate_hz");
+    if (!node.is_mapping())
+        return yaml.fail(node, "imu", "expected a group with T_body_imu and rate_hz");
     yaml.only_keys(node, "imu.", {"T_body_imu", "rate_hz"});
     camera::ImuMount imu;
     if (const YamlNode* pose = yaml.required(node, "T_body_imu"); pose != nullptr) {
@@ -183,7 +185,7 @@ std::string format_camera(const char* name, const camera::Camera& camera) {
                        format_list(coefficients_of(camera.model)));
 }
 
-/// A name as a YAML scalar in double quotes.
+/// Formats a name as a YAML scalar in double quotes.
 std::string quoted_scalar(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {

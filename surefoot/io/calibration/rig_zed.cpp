@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stereolabs' SN<serial>.conf, after their camera calibration page and what their open tools read
-// (zed-open-capture) and write (zed stereo calibration tool, which takes R and T from OpenCV).
+// Reads and writes Stereolabs' SN<serial>.conf, after their camera calibration page and their open
+// tools. zed-open-capture reads such files; the ZED stereo calibration tool writes them with R and
+// T of OpenCV.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -59,7 +60,7 @@ class ZedReader {
         }
         fail(fmt::format(
             "[{0}] has no '{1}'. Download the file of this serial number again, or add the line "
-            "'{1} = 0', which Stereolabs' programs assume for older files",
+            "'{1} = 0'. Stereolabs' programs also use 0 if an older file has no such key",
             section,
             *keys.begin()));
         return 0.0;
@@ -82,7 +83,8 @@ bool has_all(const IniFile& ini, const std::string& section, std::span<const cha
     return true;
 }
 
-/// Selects the section: that of `size`, or the only one.
+/// Selects the section of the resolution `size`. Without `size` the file must have only one
+/// resolution.
 Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     std::vector<std::string> found;
     const Mode* chosen = nullptr;
@@ -97,16 +99,16 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
     }
     if (chosen != nullptr && (size || found.size() == 1)) return *chosen;
     if (size) {
-        return input_error(
-            fmt::format("{}: the file has no section for {} px, only {}. A ZED crops its sensor "
-                        "differently for each resolution, so no section can be scaled",
-                        ini.name,
-                        size_text(*size),
-                        fmt::join(found, ", ")));
+        return input_error(fmt::format(
+            "{}: the file has no section for {} px, only {}. A ZED crops its sensor differently "
+            "for each resolution, so no section can be scaled. Use images of one of these sizes",
+            ini.name,
+            size_text(*size),
+            fmt::join(found, ", ")));
     }
     return input_error(
-        fmt::format("{}: the file has several resolutions: {}; use it with its images, or select "
-                    "one with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
+        fmt::format("{}: the file has several resolutions: {}. Use the file with its images, or "
+                    "select a resolution with 'surefoot rig FILE --resolution WxH --out rig.yaml'",
                     ini.name,
                     fmt::join(found, ", ")));
 }
@@ -157,23 +159,22 @@ camera::CameraModel read_lens(ZedReader& zed,
                          zed.number_or(section, "k3", 0.0)});
 }
 
-/// T_left_right from the mode's own values, or from those of all modes.
+/// Reads T_left_right from the values of this mode, or from the values for all modes.
 Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
     const auto value = [&](const char* key) {
         return zed.any_number("STEREO", {fmt::format("{}_{}", key, mode), key});
     };
     const double baseline_mm = zed.number("STEREO", "Baseline");
     if (!zed.error() && !(baseline_mm > 0.0)) {
-        zed.fail(fmt::format(
-            "[STEREO] Baseline = {} must be above 0: the distance of the cameras in millimetres",
-            baseline_mm));
+        zed.fail(
+            fmt::format("[STEREO] Baseline = {} must be above 0; it is the distance between the "
+                        "cameras in millimetres",
+                        baseline_mm));
     } else if (const auto problem = camera::baseline_problem(1e-3 * baseline_mm);
                !zed.error() && problem) {
-        zed.fail(fmt::format("[STEREO] Baseline = {}, and this file counts in millimetres: {}",
-                             baseline_mm,
-                             *problem));
+        zed.fail(fmt::format("[STEREO] Baseline = {}, in millimetres: {}", baseline_mm, *problem));
     }
-    const double y_mm = value("TY");  // read in order, so that the first missing key is reported
+    const double y_mm = value("TY");  // in order: reports the first missing key
     const double z_mm = value("TZ");
     const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(
@@ -277,7 +278,7 @@ Result<std::string> format_zed_rig(const camera::StereoRig& rig) {
     const Eigen::Vector3d rotation = log_so3(T_right_left.rotation);
     std::string out = format_camera("LEFT", mode->name, rig.left.model, !rational) +
                       format_camera("RIGHT", mode->name, rig.right->model, !rational);
-    out.erase(0, 1);  // the empty line before the first section
+    out.erase(0, 1);  // remove the empty line before the first section
     if (rational) {
         out += format_disto("LEFT", rig.left.model) + format_disto("RIGHT", rig.right->model);
     }

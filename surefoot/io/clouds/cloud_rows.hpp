@@ -15,7 +15,7 @@ struct CloudRows {
     std::uint64_t first_byte = 0;
     std::uint64_t rows = 0;
     std::uint64_t row_bytes = 0;
-    std::function<std::string(std::uint64_t)> head;  ///< header for a number of rows
+    std::function<std::string(std::uint64_t)> head;  ///< returns the header for this number of rows
 };
 
 /// Detects the rows from the first bytes of a file of `size` bytes. No value if the file is damaged

@@ -16,7 +16,7 @@ template <typename Values>
 using ValueOf = typename std::decay_t<Values>::value_type;
 
 /// Converts the number to another type; no value if that type cannot hold it. A double becomes the
-/// nearest float, or an infinite one beyond the largest float.
+/// nearest float; beyond the largest float it becomes an infinite float.
 template <typename T>
 std::optional<T> held_as(double value) {
     if constexpr (std::is_same_v<T, double>) {
@@ -28,7 +28,7 @@ std::optional<T> held_as(double value) {
                                  value < 0.0 ? -1.0F : 1.0F);
         return static_cast<float>(value);
     } else {
-        // 2^digits is exact as a double, the largest value of a 64-bit type is not.
+        // A double can hold 2^digits exactly, but not the largest value of a 64-bit type.
         const double above = std::ldexp(1.0, std::numeric_limits<T>::digits);
         const double lowest = std::is_signed_v<T> ? -above : 0.0;
         if (!(value >= lowest && value < above) || value != std::floor(value)) return std::nullopt;

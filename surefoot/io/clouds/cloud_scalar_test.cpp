@@ -111,7 +111,7 @@ TEST(CloudScalar, BlocksKeepTypesViewpointAndDoubles) {
     auto ply = CloudWriter::create(folder / "out.ply");
     ASSERT_TRUE(ply->add(*back).ok());
     ASSERT_EQ(ply->notes().size(), 3U) << "viewpoint, i64 and u64";
-    EXPECT_TRUE(contains(ply->notes()[0], "only .pcd has one"));
+    EXPECT_TRUE(contains(ply->notes()[0], "only .pcd files can store a viewpoint"));
     EXPECT_TRUE(contains(ply->notes()[1], "'i64' has 64-bit whole numbers"));
     PointCloud other = *back;
     other.scalars[0].values = std::vector<double>{1.0, 2.0};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kBlockRows = 1U << 16U;
 constexpr std::size_t kBlockBytes = 4U << 20U;
-/// The header of a file must end within these bytes, or its rows are not found.
+/// The header must end within this number of bytes. Otherwise the file is read whole.
 constexpr std::size_t kHeadBytes = 1U << 16U;
 
 }  // namespace
@@ -30,7 +30,7 @@ class CloudStream::Part {
     [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 };
 
-/// Rows of one size.
+/// Reads a file whose points are rows of one size, block by block.
 class CloudStream::Rows final : public Part {
   public:
     Rows(std::string path, files::InputFile file, CloudRows rows)
@@ -62,7 +62,7 @@ class CloudStream::Rows final : public Part {
     std::uint64_t next_ = 0;
 };
 
-/// Text with a point a line.
+/// Reads a text file with one point per line, block by block.
 class CloudStream::Lines final : public Part {
   public:
     Lines(std::string path, files::InputFile file)
@@ -75,8 +75,11 @@ class CloudStream::Lines final : public Part {
                 const std::size_t feed = bytes->rfind('\n');
                 const std::size_t end = feed != bytes->npos ? feed : bytes->rfind('\r');
                 if (end == bytes->npos) {
-                    return input_error(fmt::format(
-                        "{}: a line of more than {} bytes is not a point", path_, kBlockBytes));
+                    return input_error(
+                        fmt::format("{}: a line has more than {} bytes and cannot be a point; "
+                                    "check that this is a text cloud",
+                                    path_,
+                                    kBlockBytes));
                 }
                 bytes->resize(end + 1);
             }
@@ -100,7 +103,7 @@ class CloudStream::Lines final : public Part {
     std::uint64_t at_ = 0;
 };
 
-/// A cloud that must be read whole.
+/// Holds a cloud that must be read whole.
 class CloudStream::Whole final : public Part {
   public:
     explicit Whole(PointCloud cloud) : cloud_(std::move(cloud)) {}
@@ -156,7 +159,7 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
         return CloudStream(
             std::make_unique<Rows>(path, std::move(file).value(), std::move(rows).value()));
     }
-    auto cloud = read_cloud(path);  // or the error
+    auto cloud = read_cloud(path);  // a damaged file gives an error here
     if (!cloud) return cloud.error();
     return CloudStream(std::make_unique<Whole>(std::move(cloud).value()));
 }
@@ -191,17 +194,16 @@ Result<std::optional<Eigen::Vector3f>> ShiftedReader::shifted(const Eigen::Vecto
     if (!shift_m_) shift_m_ = shift_for(p_m);
     const Eigen::Vector3d off_m = p_m - *shift_m_;
     if (off_m.cwiseAbs().maxCoeff() > kFar_m) {
-        return input_error(
-            fmt::format("{}: the point ({:g}, {:g}, {:g}) m is more than 100 km from the others, "
-                        "which begin near ({:g}, {:g}, {:g}): remove stray points, or check the "
-                        "unit",
-                        path_,
-                        p_m.x(),
-                        p_m.y(),
-                        p_m.z(),
-                        shift_m_->x(),
-                        shift_m_->y(),
-                        shift_m_->z()));
+        return input_error(fmt::format(
+            "{}: the point ({:g}, {:g}, {:g}) m is more than 100 km from the other points, which "
+            "begin near ({:g}, {:g}, {:g}) m: remove stray points, or check the unit",
+            path_,
+            p_m.x(),
+            p_m.y(),
+            p_m.z(),
+            shift_m_->x(),
+            shift_m_->y(),
+            shift_m_->z()));
     }
     return std::optional<Eigen::Vector3f>(off_m.cast<float>());
 }
@@ -228,8 +230,10 @@ Result<ShiftedCloud> read_shifted(const std::string& path,
     cloud.shift_m = reader.shift_m();
     cloud.skipped = reader.skipped();
     if (cloud.points_m.empty()) {
-        return input_error(
-            fmt::format("{}: no point with finite coordinates among {}", path, cloud.skipped));
+        return input_error(fmt::format(
+            "{}: no point with finite coordinates ({} points in the file); check the file",
+            path,
+            cloud.skipped));
     }
     return cloud;
 }

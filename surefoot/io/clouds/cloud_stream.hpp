@@ -14,8 +14,8 @@
 namespace surefoot::io {
 
 /// Reads the points of a cloud file block by block, for clouds larger than the memory. Binary PLY
-/// and PCD, LAS and text (a point a line) are read in pieces. Compressed PCD, lists, and text PLY,
-/// PCD and VTK are read whole and returned in pieces. Formats as `read_cloud`.
+/// and PCD, LAS and text (one point per line) are read in pieces. Compressed PCD, lists, and text
+/// PLY, PCD and VTK are read whole and returned in pieces. Reads the formats of `read_cloud`.
 class CloudStream {
   public:
     [[nodiscard]] static Result<CloudStream> open(const std::string& path);
@@ -23,7 +23,7 @@ class CloudStream {
     CloudStream(CloudStream&&) noexcept;
     CloudStream& operator=(CloudStream&&) noexcept;
 
-    /// The next points with all their values; no points at the end.
+    /// Returns the next points with all their values; no points at the end.
     [[nodiscard]] Result<PointCloud> next();
     /// Restarts at the first point.
     void rewind();
@@ -39,10 +39,10 @@ class CloudStream {
             if (Status status = use(*block); !status) return status;
         }
     }
-    /// Number of points, if the file states it.
+    /// Returns the number of points, if the file states the number.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
-    /// Contents of the file that the blocks so far do not hold, one sentence each; the notes of the
-    /// blocks themselves are empty.
+    /// Contents of the file that the blocks so far do not hold, one sentence each; the blocks
+    /// themselves have no notes.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
@@ -55,20 +55,20 @@ class CloudStream {
     class Whole;
 };
 
-/// Origin for float coordinates. A float has 24 bits: 0.06 mm at 1 km, half a metre in a national
-/// grid. From 1 km on, an axis therefore starts at the multiple of 100 m nearest to the first
-/// point. This shift changes no digit of a coordinate that was a float.
+/// Origin for float coordinates. A float has 24 bits and resolves 0.06 mm at 1 km, but only half a
+/// metre in a national grid. From 1 km on, an axis therefore starts at the multiple of 100 m
+/// nearest to the first point. This shift changes no digit of a coordinate that was a float.
 [[nodiscard]] Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m);
 
 /// Points as floats relative to a shift.
 struct ShiftedCloud {
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<Eigen::Vector3f> points_m;  ///< minus the shift
-    std::int64_t skipped = 0;               ///< points that were not finite
+    std::vector<Eigen::Vector3f> points_m;  ///< points minus the shift
+    std::int64_t skipped = 0;               ///< number of left-out points (not finite)
 };
 
 /// Reads points into floats block by block. The shift comes from the first finite point, unless the
-/// caller gives one. Errors: those of the stream; a point more than 100 km from the shift.
+/// caller gives one. Fails on errors of the stream and on a point more than 100 km from the shift.
 class ShiftedReader {
   public:
     ShiftedReader(std::string path, std::optional<Eigen::Vector3d> shift_m)
@@ -82,7 +82,7 @@ class ShiftedReader {
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
 
   private:
-    /// One shifted point; no value if it is not finite.
+    /// Shifts one point; no value if the point is not finite.
     [[nodiscard]] Result<std::optional<Eigen::Vector3f>> shifted(const Eigen::Vector3d& p_m);
 
     std::string path_;
@@ -90,7 +90,7 @@ class ShiftedReader {
     std::int64_t skipped_ = 0;
 };
 
-/// Reads a whole file; memory is 12 bytes a point.
+/// Reads a whole file; needs 12 bytes of memory per point.
 [[nodiscard]] Result<ShiftedCloud> read_shifted(
     const std::string& path, const std::optional<Eigen::Vector3d>& shift_m = std::nullopt);
 

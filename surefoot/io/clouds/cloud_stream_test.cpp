@@ -198,7 +198,7 @@ TEST(ShiftedReader, RefusesWhatIsFarAwayOrNotThere) {
     cloud.points_m = {{nan, nan, nan}, {nan, 0, 0}};
     ASSERT_TRUE(write_ply(folder / "nan.ply", cloud).ok());
     EXPECT_TRUE(contains(read_shifted(folder / "nan.ply").error().message,
-                         "no point with finite coordinates among 2"));
+                         "no point with finite coordinates (2 points in the file)"));
     ASSERT_TRUE(write_ply(folder / "empty.ply", PointCloud{}).ok());
     EXPECT_TRUE(contains(read_shifted(folder / "empty.ply").error().message, "among 0"));
 }

@@ -16,7 +16,7 @@
 namespace surefoot::io {
 namespace {
 
-/// A comment that fills the space left by a point count with fewer digits.
+/// Returns a comment that fills the space of missing digits of a point count.
 std::string filler(const char* comment, std::int64_t points, int times) {
     constexpr int kDigits = 20;
     const int digits = static_cast<int>(std::to_string(points).size());
@@ -45,7 +45,7 @@ bool holds_the_same(const PointCloud& a, const PointCloud& b) {
 Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
     const std::string extension = extension_of(path);
     const bool text =
-        is_text_cloud(extension) && extension != ".pts";  // .pts has a different header
+        is_text_cloud(extension) && extension != ".pts";  // .pts files need a different header
     if (!text && extension != ".ply" && extension != ".pcd") {
         return usage_error(fmt::format(
             "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));
@@ -78,7 +78,8 @@ CloudWriter::CloudWriter(CloudWriter&& other) noexcept
 void CloudWriter::note_losses(const PointCloud& block) {
     if (kind_ != Kind::pcd && block.T_cloud_sensor &&
         !block.T_cloud_sensor->matrix().isIdentity(0.0)) {
-        notes_.emplace_back("the viewpoint of the cloud is not kept: only .pcd has one");
+        notes_.emplace_back(
+            "the viewpoint of the cloud is not kept: only .pcd files can store a viewpoint");
     }
     if (kind_ != Kind::ply) return;
     for (const CloudScalar& scalar : block.scalars) {
@@ -86,13 +87,13 @@ void CloudWriter::note_losses(const PointCloud& block) {
             !std::holds_alternative<std::vector<std::uint64_t>>(scalar.values))
             continue;
         notes_.push_back(fmt::format(
-            "{} has 64-bit whole numbers, which PLY does not have: they are written as doubles, "
-            "exact up to 2^53; write .pcd or text to keep them",
+            "{} has 64-bit whole numbers, which PLY cannot store. They are written as doubles, "
+            "which are exact up to 2^53; write .pcd or text to keep larger numbers",
             quoted(scalar.name)));
     }
 }
 
-/// The header; its length does not depend on the number of points.
+/// Returns the header. The length of the header does not depend on the number of points.
 std::string CloudWriter::head(std::int64_t points) const {
     std::string head = head_;
     if (kind_ == Kind::ply) {
@@ -109,7 +110,8 @@ std::string CloudWriter::head(std::int64_t points) const {
 }
 
 Status CloudWriter::add(const PointCloud& block) {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (descriptor_ < 0)
+        return output_error(fmt::format("{}: this cloud is finished already", path_));
     if (const auto problem = block.problem()) return output_error(path_ + ": " + *problem);
     if (size_ == 0) {
         format_.double_precision = format_.double_precision || block.double_precision;
@@ -144,7 +146,8 @@ Status CloudWriter::add(const PointCloud& block) {
 }
 
 Status CloudWriter::finish() {
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (descriptor_ < 0)
+        return output_error(fmt::format("{}: this cloud is finished already", path_));
     if (size_ == 0) {
         if (Status status = add(PointCloud{}); !status) return status;
     }

@@ -14,7 +14,7 @@ namespace surefoot::io {
 /// unfinished file is removed.
 class CloudWriter {
   public:
-    /// Errors: an unknown extension; errors of the operating system.
+    /// Fails on an unknown extension and on errors of the operating system.
     [[nodiscard]] static Result<CloudWriter> create(const std::string& path,
                                                     const CloudFormat& format = {});
     ~CloudWriter();
@@ -22,11 +22,11 @@ class CloudWriter {
     CloudWriter& operator=(CloudWriter&&) = delete;
 
     /// Appends points. All blocks must have the colours and scalars of the first block, with equal
-    /// types, else error. Coordinates are doubles if the format or the first block needs them.
+    /// types, or `add` fails. Coordinates are doubles if the format or the first block needs them.
     [[nodiscard]] Status add(const PointCloud& block);
     [[nodiscard]] Status finish();
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
-    /// Contents of the blocks that the file format cannot hold, one sentence each.
+    /// Describes contents of the blocks that the format cannot store, one sentence each.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   private:
@@ -42,7 +42,7 @@ class CloudWriter {
     CloudFormat format_;
     int descriptor_ = -1;
     std::string head_;  ///< header of the first block
-    PointCloud first_;  ///< the first block without points: the layout of all blocks
+    PointCloud first_;  ///< first block without its points; gives the layout of all blocks
     std::vector<std::string> notes_;
     std::int64_t points_ = 0;
     std::int64_t size_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LAS 1.0 to 1.4 (ASPRS, "LAS Specification 1.4 - R15"): a header with scales and offsets, then
-// records that begin with x, y and z as whole numbers. Everything is little-endian.
+// Reads LAS 1.0 to 1.4 (ASPRS, "LAS Specification 1.4 - R15"). A file has a header with scales and
+// offsets, then records that begin with x, y and z as whole numbers. All numbers are little-endian.
 #include <fmt/format.h>
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace surefoot::io {
 namespace {
 
-// Table 3, public header block.
+// Byte offsets and sizes from table 3 of the specification, public header block.
 constexpr std::size_t kVersionMinor = 25;
 constexpr std::size_t kHeaderSize = 94;
 constexpr std::size_t kPointsAt = 96;
@@ -28,13 +28,13 @@ constexpr std::size_t kSmallestHeader = 227;
 constexpr std::size_t kHeader14 = 375;
 
 struct RecordFormat {
-    std::size_t bytes;     ///< size of all fields
-    std::size_t time;      ///< offset of the GPS time; 0 = no GPS time
-    std::size_t colour;    ///< offset of red
-    std::size_t infrared;  ///< offset of the near infrared channel
-    std::size_t waves;     ///< offset of the wave packet
+    std::size_t bytes;     ///< size of all fields [bytes]
+    std::size_t time;      ///< byte offset of the GPS time; 0 = no GPS time
+    std::size_t colour;    ///< byte offset of red
+    std::size_t infrared;  ///< byte offset of the near-infrared channel
+    std::size_t waves;     ///< byte offset of the wave packet
 };
-// Tables 7 to 17.
+// Point formats 0 to 10, from tables 7 to 17 of the specification.
 constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
                                                     {28, 20, 0, 0, 0},
                                                     {26, 0, 20, 0, 0},
@@ -48,8 +48,8 @@ constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
                                                     {67, 22, 30, 36, 38}}};
 constexpr std::size_t kIntensity = 12;
 constexpr std::size_t kReturns = 14;
-constexpr std::size_t kFirstWideFormat = 6;  ///< records of these formats have a different layout
-constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format
+constexpr std::size_t kFirstWideFormat = 6;  ///< from here on, records have another layout
+constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format number
 
 struct Header {
     std::size_t header_bytes = 0;
@@ -65,7 +65,7 @@ Error damaged(const std::string& file, const std::string& what) {
     return input_error(fmt::format("{}: {}", file, what));
 }
 
-/// `size`: size of the whole file; `bytes` is its beginning.
+/// Reads the header. `bytes` is the beginning of a file of `size` bytes.
 Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const std::string& file) {
     if (!bytes.starts_with("LASF")) return damaged(file, "not a LAS file ('LASF' is missing)");
     if (bytes.size() < kSmallestHeader) return damaged(file, "truncated LAS header");
@@ -85,7 +85,9 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if (format >= kFormats.size())
         return damaged(
-            file, fmt::format("LAS point format {} is not supported; formats 0 to 10 are", format));
+            file,
+            fmt::format("LAS point format {} is not supported; the supported formats are 0 to 10",
+                        format));
     Header header;
     header.header_bytes = header_bytes;
     header.format = format;
@@ -104,14 +106,13 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     }
     if (header.points_at < header_bytes || header.points_at > size ||
         header.points > (size - header.points_at) / header.record_bytes) {
-        return damaged(
-            file,
-            fmt::format("truncated or damaged LAS: {} points of {} bytes from byte {} on do not "
-                        "fit into {} bytes",
-                        header.points,
-                        header.record_bytes,
-                        header.points_at,
-                        size));
+        return damaged(file,
+                       fmt::format("truncated or damaged LAS: {} points of {} bytes from byte {} "
+                                   "on do not fit into {} bytes; copy the file again",
+                                   header.points,
+                                   header.record_bytes,
+                                   header.points_at,
+                                   size));
     }
     for (int axis = 0; axis < 3; ++axis) {
         header.scale[axis] = load_le<double>(data + kScales + 8 * axis);
@@ -137,7 +138,7 @@ void add_scalar(const Header& header,
     cloud.scalars.push_back({name, std::move(values)});
 }
 
-/// The fields of a point with their types; flags are left out.
+/// Adds the fields of a point with their types; flags are left out.
 void add_scalars(const Header& header, std::string_view records, PointCloud& cloud) {
     const RecordFormat& format = kFormats[header.format];
     const bool wide = header.format >= kFirstWideFormat;
@@ -186,7 +187,7 @@ void add_scalars(const Header& header, std::string_view records, PointCloud& clo
     }
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header,
                                   std::string_view records,
                                   bool wide_colours) {
@@ -200,11 +201,11 @@ std::vector<std::string> notes_of(const Header& header,
                     : (load_le<std::uint8_t>(record + kReturns) & 0xC0) != 0 ||
                           (load_le<std::uint8_t>(record + 15) & 0xE0) != 0;
     }
-    if (flags) notes.emplace_back("the flags of points (LAS) are not kept");
-    if (format.waves != 0) notes.emplace_back("the wave packets of points (LAS) are not kept");
+    if (flags) notes.emplace_back("the flags of the LAS points are not kept");
+    if (format.waves != 0) notes.emplace_back("the wave packets of the LAS points are not kept");
     if (header.record_bytes > format.bytes)
-        notes.emplace_back("the extra bytes of points (LAS) are not kept");
-    if (wide_colours) notes.emplace_back("colours are kept with 8 of their 16 bits (LAS)");
+        notes.emplace_back("the extra bytes of the LAS points are not kept");
+    if (wide_colours) notes.emplace_back("only 8 of the 16 bits of the LAS colours are kept");
     return notes;
 }
 

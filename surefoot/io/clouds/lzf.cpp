@@ -56,7 +56,7 @@ std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size)
         const std::size_t offset = ((control & 0x1f) << 8) + byte_at(packed, at++) + 1;
         length += 2;
         if (offset > out.size() || size - out.size() < length) return std::nullopt;
-        // Byte by byte: source and target may overlap, that is how runs are packed.
+        // Copy byte by byte: source and target may overlap, because LZF packs runs in this way.
         for (std::size_t i = 0; i < length; ++i) out += out[out.size() - offset];
     }
     if (out.size() != size) return std::nullopt;
@@ -73,7 +73,7 @@ std::string pack_lzf(std::string_view data) {
         const std::uint32_t triple = static_cast<std::uint32_t>(byte_at(data, at)) << 16 |
                                      static_cast<std::uint32_t>(byte_at(data, at + 1)) << 8 |
                                      byte_at(data, at + 2);
-        // Multiplicative hash: the upper bits of the product depend on all three bytes.
+        // Computes a multiplicative hash: the upper bits of the product depend on all three bytes.
         std::size_t& slot = last[(triple * 2654435761U) >> (32 - kHashBits)];
         const std::size_t candidate = slot;
         slot = at;

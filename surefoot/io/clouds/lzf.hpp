@@ -10,12 +10,12 @@ namespace surefoot::io {
 
 /// Unpacks LZF data (the compression inside PCD files) of a known size. Format: a control byte
 /// below 32 starts a run of control + 1 literal bytes. Otherwise its upper three bits are a length
-/// (7: add one more byte). The lower five bits and the next byte are an offset backwards. Then
+/// (if 7, add the next byte). The lower five bits and the next byte are an offset backwards. Then
 /// length + 2 bytes are copied from offset + 1 bytes before. No value if the data are damaged or do
 /// not give exactly `size` bytes.
 [[nodiscard]] std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size);
 
-/// Largest size that `packed_size` bytes can unpack to: 3 bytes copy at most 264 bytes.
+/// Returns the largest unpacked size of `packed_size` bytes: 3 bytes copy at most 264 bytes.
 [[nodiscard]] constexpr std::size_t lzf_limit(std::size_t packed_size) noexcept {
     return packed_size * 88;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PCD 0.7 of the Point Cloud Library: a text header (FIELDS SIZE TYPE COUNT WIDTH HEIGHT VIEWPOINT
-// POINTS DATA), then rows as text, packed records, or LZF over the fields one after another.
+// Reads and writes PCD 0.7 of the Point Cloud Library. A text header (FIELDS SIZE TYPE COUNT WIDTH
+// HEIGHT VIEWPOINT POINTS DATA) comes first. The points follow as text rows, as packed records, or
+// field after field in LZF compression.
 #include <fmt/format.h>
 
 #include <bit>
@@ -65,13 +66,15 @@ bool names_fields(std::string_view key) {
     return key == "FIELDS" || key == "COLUMNS";
 }
 
-/// FIELDS, SIZE, TYPE or COUNT: one word per field.
+/// Parses a FIELDS, SIZE, TYPE or COUNT line with one word per field.
 Status parse_field_line(const std::vector<std::string_view>& words, Header& header) {
     if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
         words.size() != header.fields.size() + 1) {
-        return input_error(fmt::format(
-            "{} names {} values for {} fields", words[0], words.size() - 1, header.fields.size()));
+        return input_error(fmt::format("{} has {} values for {} fields; each field needs one value",
+                                       words[0],
+                                       words.size() - 1,
+                                       header.fields.size()));
     }
     for (std::size_t i = 0; i < header.fields.size(); ++i) {
         Field& field = header.fields[i];
@@ -86,13 +89,13 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
         } else if (const auto count = parse_count(word, 65536); words[0] == "COUNT" && count) {
             field.count = *count;
         } else {
-            return input_error(fmt::format("{} {} is not valid", words[0], quoted(word)));
+            return input_error(fmt::format("{} {} is not a valid value", words[0], quoted(word)));
         }
     }
     return {};
 }
 
-/// VIEWPOINT tx ty tz qw qx qy qz: where the sensor was.
+/// Parses VIEWPOINT tx ty tz qw qx qy qz, the pose of the sensor.
 Status parse_viewpoint(const std::vector<std::string_view>& words, Header& header) {
     double v[7] = {};
     for (std::size_t i = 0; i < 7; ++i) {
@@ -153,13 +156,13 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         if (words[0] != "DATA") continue;
         header.body = lines.rest();
         header.last_line = lines.number();
-        // Version 0.5 has no WIDTH: all points are one row, as PCL reads it.
+        // Version 0.5 has no WIDTH: all points are one row, as in PCL.
         if (!header.width) header.width = header.points.value_or(0);
-        const std::uint64_t cells = *header.width * header.height;  // both at most 2^30
+        const std::uint64_t cells = *header.width * header.height;  // both factors are at most 2^30
         if (cells > kMaxPoints || header.points.value_or(cells) != cells) {
             return at_line(file,
                            lines.number(),
-                           fmt::format("WIDTH {} x HEIGHT {} is not POINTS {}",
+                           fmt::format("WIDTH {} x HEIGHT {} must equal POINTS {}",
                                        *header.width,
                                        header.height,
                                        header.points.value_or(0)));
@@ -179,7 +182,7 @@ void with_type_of(const Field& field, const Use& use) {
                values);
 }
 
-/// Colour packed as 0x00RRGGBB, as PCL stores it in the bits of a float or an integer.
+/// Unpacks the colour 0x00RRGGBB, which PCL stores in the bits of a float or an integer.
 Rgb unpacked_colour(std::uint32_t bits) {
     return {static_cast<std::uint8_t>(bits >> 16),
             static_cast<std::uint8_t>(bits >> 8),
@@ -193,14 +196,14 @@ bool is_padding(const Field& field) {
     return field.name == "_" || field.count != 1;
 }
 
-/// 0 to 2 for x, y and z, also in capitals.
+/// Returns 0 to 2 for x, y and z, also in capitals.
 std::optional<int> axis_of(const Field& field) {
     const std::string name = lowercase(field.name);
     if (name.size() != 1 || name[0] < 'x' || name[0] > 'z' || field.count != 1) return std::nullopt;
     return name[0] - 'x';
 }
 
-/// Target of the values of a field.
+/// Where the cloud stores the values of a field.
 struct Role {
     enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
     std::size_t index = 0;  ///< index of the axis or of the scalar
@@ -234,7 +237,7 @@ struct Collector {
     }
 };
 
-/// All values of one field, `step` bytes apart.
+/// Stores all values of one field; the values are `step` bytes apart.
 void collect_field(
     const Field& field, const Role& role, const char* data, std::size_t step, PointCloud& cloud) {
     const std::size_t count = cloud.points_m.size();
@@ -262,7 +265,7 @@ void collect_binary(const Header& header, std::string_view data, bool by_field, 
     for (std::size_t f = 0; f < header.fields.size(); ++f) {
         const Field& field = header.fields[f];
         const std::size_t size = field.bytes * field.count;
-        // Records lie point by point; compressed data hold each field of all points in turn.
+        // Uncompressed data are stored point by point, compressed data field by field.
         const std::size_t first = by_field ? offset * *header.points : offset;
         collect_field(
             field, out.roles[f], data.data() + first, by_field ? size : stride, out.cloud);
@@ -270,7 +273,7 @@ void collect_binary(const Header& header, std::string_view data, bool by_field, 
     }
 }
 
-/// Colour as text: the bits of a float, or a whole number.
+/// Parses a colour in text: a float whose bits are the colour, or a whole number.
 std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
     const auto value = parse_value(word);
     if (!value) return std::nullopt;
@@ -284,7 +287,7 @@ std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
     return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));  // in range
 }
 
-/// Stores a word of point `i`; returns false if it is not a number of the field's type.
+/// Stores a word of point `i`; returns false if the word is not a number of the field's type.
 bool collect_word(
     std::string_view word, const Field& field, const Role& role, std::size_t i, PointCloud& cloud) {
     switch (role.kind) {
@@ -344,7 +347,7 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
     return {};
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Field& field : header.fields) {
@@ -368,13 +371,14 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
     const auto unpacked = load_le<std::uint32_t>(header.body.data() + 4);
     if (unpacked != needed) {
         return input_error(
-            fmt::format("{}: {} points of {} bytes are not the {} bytes that the file announces",
+            fmt::format("{}: {} points of {} bytes each do not give the {} bytes that the file "
+                        "announces; copy the file again",
                         file,
                         *header.points,
                         header.stride(),
                         unpacked));
     }
-    if (packed > header.body.size() - 8) {  // more than that is padding
+    if (packed > header.body.size() - 8) {  // bytes after `packed` are padding
         return input_error(fmt::format(
             "{}: truncated PCD: {} of {} compressed bytes", file, header.body.size() - 8, packed));
     }
@@ -389,7 +393,7 @@ Status check_fields(const Header& header, const std::string& file) {
         if (const auto axis = axis_of(field)) ++axes[*axis];
         if (field.type == 'F' && field.bytes < 4) {
             return input_error(
-                fmt::format("{}: field {}: F needs SIZE 4 or 8", file, quoted(field.name)));
+                fmt::format("{}: field {}: TYPE F needs SIZE 4 or 8", file, quoted(field.name)));
         }
     }
     if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1) return {};
@@ -453,7 +457,7 @@ std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
         while (const auto line = lines.next()) {
             const auto words = split(*line);
             const std::string_view key = words.empty() ? std::string_view() : words[0];
-            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, POINTS alone counts
+            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, use POINTS
                 with_count += fmt::format("{} {}", key, count);
             } else {
                 with_count += key == "HEIGHT" ? "HEIGHT 1" : std::string(*line);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY after Turk 1994, "The PLY Polygon File Format": a text header of elements with typed
-// properties, then their rows, as text or packed in either byte order.
+// Reads and writes PLY, after Turk 1994, "The PLY Polygon File Format". A text header describes
+// elements with typed properties. Their rows follow as text, or packed in either byte order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ std::optional<Type> type_named(std::string_view name) {
 struct Property {
     std::string name;
     Type type = Type::f32;
-    std::optional<Type> count_type;  ///< a list: this many values of `type` follow
+    std::optional<Type> count_type;  ///< set for a list: type of the count before the values
 };
 
 struct Element {
@@ -63,7 +63,7 @@ struct Element {
     std::uint64_t count = 0;
     std::vector<Property> properties;
 
-    /// Fewest bytes of one row: binary, or as text with one blank after each value.
+    /// Smallest size of one row [bytes], binary or as text with one blank after each value.
     [[nodiscard]] std::uint64_t smallest_row(bool binary) const {
         std::uint64_t size = 0;
         for (const Property& p : properties)
@@ -82,7 +82,7 @@ Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// One "property ..." line.
+/// Parses one "property ..." line.
 Result<Property> parse_property(const std::vector<std::string_view>& words) {
     const bool list = words.size() == 5 && words[1] == "list";
     if (!list && words.size() != 3) return input_error("expected 'property type name'");
@@ -145,7 +145,7 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
     return at_line(file, lines.number(), "truncated PLY header: 'end_header' is missing");
 }
 
-/// Reads value after value from the body, whatever its encoding.
+/// Reads values from the body in any of the three encodings.
 class ValueReader {
   public:
     ValueReader(const Header& header)
@@ -188,7 +188,7 @@ class ValueReader {
     WordReader words_;
 };
 
-/// Target of the values of one vertex property.
+/// Where the cloud stores the values of one vertex property.
 struct Target {
     enum class Kind { x, y, z, red, green, blue, scalar, none } kind = Kind::none;
     std::size_t scalar = 0;
@@ -208,8 +208,8 @@ ScalarValues no_values(Type type) {
     return std::vector<float>();
 }
 
-/// Finds three numeric properties with these names, each once; else no value. `type`: required
-/// type.
+/// Finds three numeric properties with these names. No value unless each occurs once. `type`:
+/// required type.
 std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
                                                       const std::array<std::string_view, 3>& names,
                                                       std::optional<Type> type) {
@@ -228,7 +228,8 @@ std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
     return at;
 }
 
-/// Targets of all properties; nothing without x, y and z (or X, Y and Z), each once.
+/// Returns the targets of all properties. No value unless x, y and z (or X, Y and Z) each occur
+/// once.
 std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud& cloud) {
     auto axes = three_named(vertex, {"x", "y", "z"}, std::nullopt);
     if (!axes) axes = three_named(vertex, {"X", "Y", "Z"}, std::nullopt);
@@ -254,8 +255,8 @@ std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud&
     return targets;
 }
 
-/// Reads one vertex; returns false if the data end, or a word is not a number or does not fit its
-/// type.
+/// Reads one vertex. Returns false if the data end, or if a word is not a number or does not fit
+/// the type of its property.
 bool read_vertex(ValueReader& values,
                  const Element& vertex,
                  const std::vector<Target>& targets,
@@ -272,7 +273,7 @@ bool read_vertex(ValueReader& values,
         const auto value = values.next(property.type);
         if (!value) return false;
         const auto channel = [&] {
-            // in range: 0 to 255, or 0 where it is not (NaN)
+            // in range: 0 to 255, or 0 for other values (NaN)
             return static_cast<std::uint8_t>(*value >= 0.0 && *value <= 255.0 ? *value : 0.0);
         };
         switch (targets[i].kind) {
@@ -344,7 +345,7 @@ Result<PointCloud> read_vertices(const Element& vertex,
     return cloud;
 }
 
-/// Names the contents of the file that the cloud does not hold.
+/// Names the contents of the file that the cloud cannot store.
 std::vector<std::string> notes_of(const Header& header) {
     std::vector<std::string> notes;
     for (const Element& element : header.elements) {

@@ -42,7 +42,8 @@ PlyStream& PlyStream::operator=(PlyStream&& other) noexcept {
     return *this;
 }
 
-/// The header; a comment keeps its length constant for every number of points.
+/// Returns the header. A comment keeps the length of the header the same for every number of
+/// points.
 std::string PlyStream::header() const {
     constexpr int kDigits = 19;
     const std::string count = std::to_string(points_);
@@ -59,14 +60,14 @@ std::string PlyStream::header() const {
 Status PlyStream::add(std::span<const float> values) {
     const std::size_t properties = 3 + scalars_.size();
     SUREFOOT_ASSERT(values.size() % properties == 0);
-    if (descriptor_ < 0) return output_error(fmt::format("{}: is closed already", path_));
+    if (descriptor_ < 0) return output_error(fmt::format("{}: this file is closed already", path_));
     std::string bytes;
     bytes.reserve(values.size() * sizeof(float));
     for (const float value : values) store_le(bytes, value);
     const auto row = static_cast<std::int64_t>(properties * sizeof(float));
     const std::int64_t end = static_cast<std::int64_t>(header().size()) + row * points_;
     if (Status status = write_at(descriptor_, end, bytes, path_); !status) {
-        // Truncation fails on devices; the more important error is reported below in any case.
+        // Truncation fails on devices. Ignore this failure: the write error below matters more.
         [[maybe_unused]] const int cut = ::ftruncate(descriptor_, static_cast<off_t>(end));
         return status;
     }

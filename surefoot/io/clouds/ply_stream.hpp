@@ -15,8 +15,8 @@ namespace surefoot::io {
 /// stays readable if its writer is stopped.
 class PlyStream {
   public:
-    /// Creates an empty file; an existing file is replaced. `scalars`: their names, one word each.
-    /// Errors: those of the operating system.
+    /// Creates an empty file; an existing file is replaced. `scalars`: names of the scalars, one
+    /// word each. Fails on errors of the operating system.
     [[nodiscard]] static Result<PlyStream> create(const std::string& path,
                                                   const std::vector<std::string>& scalars);
     ~PlyStream();

@@ -18,15 +18,19 @@ std::optional<std::string> PointCloud::problem() const {
     const std::size_t count = points_m.size();
     if (width < 0 || height < 1 ||
         static_cast<std::size_t>(width) * static_cast<std::size_t>(height) != count) {
-        return fmt::format("cloud of {} points cannot be {} x {}", count, width, height);
+        return fmt::format(
+            "a cloud of {} points cannot have the size {} x {}", count, width, height);
     }
     if (!colours.empty() && colours.size() != count) {
-        return fmt::format("{} colours for {} points", colours.size(), count);
+        return fmt::format(
+            "{} colours for {} points; the numbers must be equal", colours.size(), count);
     }
     for (const CloudScalar& scalar : scalars) {
         if (scalar.size() != count) {
-            return fmt::format(
-                "{} values of '{}' for {} points", scalar.size(), scalar.name, count);
+            return fmt::format("{} values of '{}' for {} points; the numbers must be equal",
+                               scalar.size(),
+                               scalar.name,
+                               count);
         }
     }
     return std::nullopt;
@@ -48,8 +52,8 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 
 namespace {
 
-/// Refuses a file that is not a cloud by its first bytes, before gigabytes are read. Every cloud
-/// format begins with text; LAS begins with four letters.
+/// Checks the first bytes and refuses a file that is not a cloud, before the program reads
+/// gigabytes. Every cloud format begins with text; LAS begins with four letters.
 Status check_beginning(const std::string& path) {
     auto file = files::InputFile::open(path, limits::kCloudBytes);
     if (!file) return file.error();

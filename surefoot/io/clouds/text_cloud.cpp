@@ -24,7 +24,8 @@ bool is_long_number(std::string_view word) {
     return value && std::abs(*value) >= kExact;
 }
 
-/// Names of the columns after x, y and z in a Leica or potree .pts file, which has no header.
+/// Returns the names of the columns after x, y and z in a Leica or potree .pts file, which has no
+/// header.
 std::vector<std::string> pts_names(std::size_t further) {
     if (further == 1) return {"intensity"};
     if (further == 3) return {"r", "g", "b"};
@@ -100,16 +101,16 @@ Status TextCloudParser::take_line(std::string_view content, PointCloud& cloud) {
     return take_point(cloud);
 }
 
-/// Handles a line that may name the columns. After points it must name the same columns, because
-/// files can be concatenated. A comment without x, y and z is only a comment.
+/// Handles a line that may name the columns. After the first point the line must name the same
+/// columns, because files can be concatenated. A comment without x, y and z is only a comment.
 Status TextCloudParser::take_head(std::string_view content, bool comment) {
     const std::vector<Column> columns = columns_of(content, separator_of(content));
     const auto axes = axes_of(columns);
     if (!axes && comment) return {};
     if (!axes) {
         return input_error(
-            fmt::format("the head line begins with {} but does not name x, y and z once each: name "
-                        "them, or remove the line",
+            fmt::format("the header line begins with {} but does not name x, y and z once each: "
+                        "name them, or remove the line",
                         quoted(columns.empty() ? content : columns.front().name)));
     }
     if (columns_ != 0) {
@@ -120,15 +121,16 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
     }
     for (const std::size_t axis : *axes) {
         if (is_metre(columns[axis].unit)) continue;
-        return input_error(fmt::format("{} is in {}; clouds are read in metres: scale the numbers",
-                                       quoted(columns[axis].name),
-                                       quoted(columns[axis].unit)));
+        return input_error(fmt::format(
+            "the column {} is in {}, but clouds are read in metres: convert the column to metres",
+            quoted(columns[axis].name),
+            quoted(columns[axis].unit)));
     }
     head_ = Head{columns, std::string(content), line_, comment};
     return {};
 }
 
-/// A number alone in a line: how many points follow it.
+/// Handles a line with a single number: the count of the points that follow.
 Status TextCloudParser::take_count() {
     const auto count = parse_int64(fields_[0]);
     if (*count < 0 || announced_.value_or(0) > points_ || (columns_ != 0 && !announced_)) {
@@ -181,12 +183,12 @@ Status TextCloudParser::name_columns() {
         // A name of two words counts as two columns. This does no harm if x y z come first or are
         // the only columns.
         if (!fits && !first && !(in_order && columns_ == 3)) {
-            return input_error(
-                fmt::format("{} numbers, but line {} names {} columns: name each column with one "
-                            "word, or remove that line if x y z come first",
-                            columns_,
-                            head_->number,
-                            head_->columns.size()));
+            return input_error(fmt::format(
+                "the line has {} numbers, but line {} names {} columns. Name each column with one "
+                "word, or remove the line with the names if x y z come first",
+                columns_,
+                head_->number,
+                head_->columns.size()));
         }
         if (fits) axes_ = axes;
         if (fits || first)
@@ -241,8 +243,8 @@ Status TextCloudParser::take_scalar(std::string_view word, CloudScalar& scalar) 
     }
     if (parse_value(word)) {
         return input_error(
-            fmt::format("{} in the column {}, whose first value is a whole number of "
-                        "64 bits",
+            fmt::format("{} in the column {} is not a whole number of 64 bits, but the first value "
+                        "of the column is one",
                         quoted(word),
                         quoted(scalar.name)));
     }

@@ -23,11 +23,11 @@ class TextCloudParser {
   public:
     explicit TextCloudParser(std::string file) : file_(std::move(file)) {}
 
-    /// The points of further lines, possibly empty. Errors name file and line.
+    /// Returns the points of further lines; may be empty. Errors name file and line.
     [[nodiscard]] Result<PointCloud> parse(std::string_view lines);
-    /// Error if there were no points, or fewer than the file announces.
+    /// Returns an error if there were no points, or fewer points than the file announces.
     [[nodiscard]] Status finish() const;
-    /// Values that were not read exactly as written, a sentence each.
+    /// Describes values that were not read exactly as written, one sentence each.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
@@ -51,9 +51,9 @@ class TextCloudParser {
     std::optional<Head> head_;
     std::optional<std::int64_t> announced_;
     std::int64_t points_ = 0;
-    std::int64_t rounded_ = 0;  ///< whole numbers beyond 2^53 in columns of doubles
+    std::int64_t rounded_ = 0;  ///< count of rounded whole numbers beyond 2^53
 
-    // Known after the first point.
+    // These members are set at the first point.
     char separator_ = ' ';
     std::size_t columns_ = 0;
     std::array<std::size_t, 3> axes_ = {0, 1, 2};

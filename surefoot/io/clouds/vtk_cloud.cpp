@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legacy VTK (Kitware, "VTK File Formats"): a line with the version, a title, ASCII, DATASET, then
-// sections; points are the numbers behind "POINTS n type".
+// Reads legacy VTK (Kitware, "VTK File Formats"). The first lines are the version, a title, ASCII
+// and DATASET; sections follow. The points are the numbers after "POINTS n type".
 #include <fmt/format.h>
 
 #include "surefoot/io/clouds/point_cloud.hpp"
@@ -9,7 +9,7 @@
 namespace surefoot::io {
 namespace {
 
-/// The count and the text behind the line "POINTS n type".
+/// Count n and text after the line "POINTS n type".
 struct Points {
     std::int64_t count = 0;
     bool doubles = false;
@@ -21,7 +21,7 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
     const auto first = lines.next();
     if (!first || !first->starts_with("# vtk DataFile Version"))
         return input_error(fmt::format("{}:1: not a VTK file ('# vtk DataFile Version')", file));
-    (void)lines.next();  // the title may be anything
+    (void)lines.next();  // the title can be any text
     const auto encoding = lines.next();
     if (!encoding || trimmed(*encoding) != "ASCII") {
         return input_error(
@@ -48,7 +48,7 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
 Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file) {
     const auto points = find_points(bytes, file);
     if (!points) return points.error();
-    // Each number takes two bytes at least: no allocation for a damaged count.
+    // Each number takes at least two bytes. This check prevents an allocation for a damaged count.
     const auto room = static_cast<std::int64_t>((points->text.size() + 1) / 6);
     if (points->count > room) {
         return input_error(
@@ -81,7 +81,7 @@ Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file) {
     cloud.width = static_cast<int>(points->count);
     cloud.double_precision = points->doubles;
     if (points->text.find("\nPOINT_DATA") != std::string_view::npos)
-        cloud.notes.emplace_back("the values of points (POINT_DATA) are not kept");
+        cloud.notes.emplace_back("the values of the points (POINT_DATA) are not kept");
     return cloud;
 }
 

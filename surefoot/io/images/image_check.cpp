@@ -19,7 +19,7 @@ Error damaged(const std::string& file, std::string_view what) {
     return input_error(fmt::format("{}: {}; copy or record this image again", file, what));
 }
 
-/// CRC-32 of PNG (ISO 3309) with a byte table, which is fast enough for images.
+/// Computes the CRC-32 of PNG (ISO 3309) with a byte table, which is fast enough for images.
 std::uint32_t crc32(std::string_view bytes) noexcept {
     static const std::array<std::uint32_t, 256> table = [] {
         std::array<std::uint32_t, 256> values{};
@@ -68,7 +68,7 @@ Result<ImageHeader> parse_ihdr(std::string_view data, const std::string& file) {
     return checked_size(header, file);
 }
 
-/// Walks over the chunks: length (big-endian), type, data, CRC of type and data.
+/// Checks all chunks. A chunk has length (big-endian), type, data, and CRC of type and data.
 Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
     std::size_t at = kPngSignature.size();
     Result<ImageHeader> header = damaged(file, "PNG without a header");
@@ -100,11 +100,11 @@ Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
                    fmt::format("truncated PNG: {} bytes, and its end is missing", bytes.size()));
 }
 
-constexpr bool is_frame_header(int marker) noexcept {  // SOF0..SOF15 without DHT, JPG and DAC
+constexpr bool is_frame_header(int marker) noexcept {  // SOF0 to SOF15, except DHT, JPG and DAC
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/// Walks over the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
+/// Checks the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
 Result<ImageHeader> check_jpeg(std::string_view bytes, const std::string& file) {
     std::size_t at = 2;
     Result<ImageHeader> header = damaged(file, "JPEG without a size");
@@ -136,7 +136,7 @@ Result<ImageHeader> check_jpeg(std::string_view bytes, const std::string& file) 
                    fmt::format("truncated JPEG: {} bytes, and its end is missing", bytes.size()));
 }
 
-/// Binary PGM (P5) and PPM (P6): "P5 width height maxval" with comments, one space, then the
+/// Checks binary PGM (P5) and PPM (P6): "P5 width height maxval" with comments, one space, then the
 /// pixels.
 Result<ImageHeader> check_pnm(std::string_view bytes, const std::string& file) {
     std::size_t at = 2;

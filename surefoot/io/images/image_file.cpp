@@ -12,8 +12,8 @@
 namespace surefoot::io {
 namespace {
 
-/// Decodes a checked image; grey or BGR, 8 or 16 bits as stored. Stored rotation hints are ignored:
-/// a calibration belongs to the pixels as they are.
+/// Decodes a checked image as grey or BGR, with 8 or 16 bits as stored. Ignores stored rotation
+/// hints, because a calibration belongs to the stored pixels.
 Result<cv::Mat> decode(std::string_view bytes, const std::string& file) {
     // imdecode only reads, but its interface needs a mutable Mat.
     const cv::Mat encoded(
@@ -67,7 +67,7 @@ Result<std::string> encode(const cv::Mat& image, const Image<Pixel>& original) {
     if (original.empty()) return output_error("an image without pixels cannot be written");
     std::vector<uchar> bytes;
     try {
-        // Level 1 costs little space on camera images and saves most of the time.
+        // Compression level 1 needs little more space for camera images and saves most of the time.
         if (cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
             return std::string(bytes.begin(), bytes.end());
         }
@@ -150,8 +150,8 @@ Result<DepthCodes> read_depth_codes(const std::string& path) {
 }
 
 Result<std::string> format_png(const GreyImage& image) {
-    // imencode only reads, but a Mat needs a mutable pointer; the same holds for the two functions
-    // below.
+    // imencode only reads, but a Mat needs a mutable pointer. The two functions below cast for the
+    // same reason.
     return encode(
         cv::Mat(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data())),
         image);

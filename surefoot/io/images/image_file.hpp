@@ -8,8 +8,8 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/core/views.hpp"
 
-/// Image files: reads PNG, JPEG and PGM/PPM, writes PNG. A file is checked for completeness before
-/// it is decoded, because decoders silently fill the missing part of a truncated image with grey.
+/// Reads PNG, JPEG and PGM/PPM, writes PNG. Checks that a file is complete before decoding, because
+/// decoders silently fill the missing part of a truncated image with grey.
 namespace surefoot::io {
 
 struct Rgb {
@@ -36,11 +36,11 @@ struct ImageHeader {
     int channels = 1;  ///< number of stored channels, alpha included; a palette counts as 3
 };
 
-/// Largest image that is decoded; a damaged header cannot exhaust the memory.
+/// Largest decoded image [pixels]; so a damaged header cannot exhaust the memory.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 /// Reads the header and checks the rest: PNG chunks with their checksums up to IEND, JPEG up to its
-/// end marker, PGM/PPM by its size. `file` is only the name in errors.
+/// end marker, PGM/PPM by its size. `file` is used only in error texts.
 [[nodiscard]] Result<ImageHeader> check_image(std::string_view bytes, const std::string& file);
 
 /// Decodes an 8-bit image as grey. Colour is weighted 0.299 R + 0.587 G + 0.114 B (BT.601); alpha

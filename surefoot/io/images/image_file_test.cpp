@@ -329,7 +329,7 @@ TEST(DemFile, RefusesDamageInWords) {
     const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
     EXPECT_TRUE(
         contains(message(parse_esri_grid(head + "1 2 3    \n", "a.asc")), "value 2 of row 2"));
-    EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 x\n", "a.asc")), "is 'x'"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 x\n", "a.asc")), "cells): 'x'"));
     EXPECT_TRUE(
         contains(message(parse_esri_grid(head + "1 2 3 4 5\n", "a.asc")), "found '5' after"));
     EXPECT_TRUE(

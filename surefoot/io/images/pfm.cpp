@@ -22,7 +22,7 @@ struct Header {
     std::string_view pixels;
 };
 
-/// "Pf", width, height and scale as words, then one white space, then the pixels.
+/// The header has "Pf", width, height and scale as words; one white space and the pixels follow.
 Result<Header> parse_header(std::string_view bytes, const std::string& file) {
     if (bytes.starts_with("PF")) {
         return input_error(

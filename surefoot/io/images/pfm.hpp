@@ -8,7 +8,7 @@
 #include "surefoot/core/views.hpp"
 
 /// PFM images with one float channel ("Pf"), Middlebury's format of disparities: rows from bottom
-/// to top. Unknown is +inf in the file and NaN in memory.
+/// to top. An unknown disparity is +inf in the file and NaN in memory.
 namespace surefoot::io {
 
 /// Reads either byte order. Values that are not finite become NaN.

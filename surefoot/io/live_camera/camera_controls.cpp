@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests to a live camera: settings, address, mode and controls.
+// Handles the settings, address, mode and controls of a live camera.
 #include <fmt/format.h>
 #include <linux/videodev2.h>
 
@@ -35,7 +35,8 @@ std::string list_of(const std::vector<VideoMode>& modes) {
 
 Status set_automatic(V4l2Device& device, bool on) {
     if (device.control(V4L2_CID_EXPOSURE_AUTO)) {
-        // A menu; UVC cameras offer two of its entries: manual and one of the two automatic modes.
+        // This control is a menu. UVC cameras offer two entries: manual and one of the two
+        // automatic modes.
         constexpr int kOff = V4L2_EXPOSURE_MANUAL;
         Status status = device.set_control(
             V4L2_CID_EXPOSURE_AUTO, "live.auto", on ? V4L2_EXPOSURE_APERTURE_PRIORITY : kOff);
@@ -74,43 +75,47 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
                    exposure_ms,
                    0.0,
                    1000.0,
-                   "live cameras: exposure time; a value above 0 switches automatic exposure off; "
-                   "0 = unchanged");
-    visitor.integer(
-        "gain",
-        gain,
-        -1,
-        1'000'000,
-        "live cameras: gain in the units of the driver (see surefoot info); -1 = unchanged");
+                   "live cameras: exposure time in milliseconds; a value above 0 switches "
+                   "automatic exposure off, 0 leaves the exposure unchanged");
+    visitor.integer("gain",
+                    gain,
+                    -1,
+                    1'000'000,
+                    "live cameras: gain in the units of the driver ('surefoot info' lists the "
+                    "range); -1 leaves the gain unchanged");
     visitor.integer("white_balance_k",
                     white_balance_k,
                     0,
                     20'000,
-                    "live cameras: colour temperature of the white balance; 0 = unchanged");
-    visitor.enumeration("auto",
-                        automatic,
-                        kAutoNames,
-                        "live cameras: mode of automatic exposure, gain and white balance");
+                    "live cameras: colour temperature of the white balance in kelvin; 0 leaves the "
+                    "white balance unchanged");
+    visitor.enumeration(
+        "auto",
+        automatic,
+        kAutoNames,
+        "live cameras: automatic exposure, gain and white balance; keep leaves them unchanged");
     visitor.enumeration("format",
                         format,
                         kFormatNames,
-                        "live cameras: pixel format of the images; any prefers yuyv");
+                        "live cameras: pixel format of the images; any uses yuyv if the camera has "
+                        "it, otherwise mjpeg");
     visitor.number("readout_ms",
                    readout_ms,
                    0.0,
                    1000.0,
-                   "live cameras: time from the first to the last row of a rolling shutter; 0 = "
-                   "global shutter; time stamps refer to the middle row");
-    visitor.number("timeout_s",
-                   timeout_s,
-                   0.2,
-                   60.0,
-                   "live cameras: time without a frame after which the device is opened again");
+                   "live cameras: time in milliseconds from the first to the last row of a rolling "
+                   "shutter; 0 is a global shutter. Time stamps refer to the middle row");
+    visitor.number(
+        "timeout_s",
+        timeout_s,
+        0.2,
+        60.0,
+        "live cameras: time in seconds without a frame after which the device is opened again");
     visitor.number("reconnect_s",
                    reconnect_s,
                    0.0,
                    3600.0,
-                   "live cameras: time without a frame after which the run ends");
+                   "live cameras: time in seconds without a frame after which the run ends");
     visitor.integer("max_damaged",
                     max_damaged,
                     1,
@@ -121,9 +126,8 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> CameraConfig::problem() const {
     const bool manual = exposure_ms > 0.0 || gain >= 0 || white_balance_k > 0;
     if (!manual || automatic != AutoControl::on) return std::nullopt;
-    return "live.auto = on, but live.exposure_ms, gain or white_balance_k gives a value; "
-           "choose "
-           "one of the two";
+    return "live.auto is on, but live.exposure_ms, live.gain or live.white_balance_k sets a fixed "
+           "value. Set live.auto to off, or remove the fixed values";
 }
 
 Result<LiveAddress> parse_live_address(std::string_view text) {
@@ -218,7 +222,7 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
 
 std::int64_t LiveCamera::known_exposure_ns(V4l2Device& device) const {
     if (config_.exposure_ms > 0.0)
-        // in range: below 1000 ms, as above
+        // in range: describe() keeps it below 1000 ms
         return static_cast<std::int64_t>(std::llround(1e6 * config_.exposure_ms));
     const auto automatic = device.control(V4L2_CID_EXPOSURE_AUTO);
     if (!automatic || automatic->value != V4L2_EXPOSURE_MANUAL) return 0;

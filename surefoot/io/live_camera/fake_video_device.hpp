@@ -44,7 +44,7 @@ class FakeCamera {
     std::vector<std::uint32_t> rates_hz = {30};
     std::map<std::uint32_t, FakeControl> controls;
     std::uint32_t buffer_length = 1 << 16;
-    bool keeps_its_own_size = false;  ///< S_FMT returns half the width, as drivers may do
+    bool keeps_its_own_size = false;  ///< S_FMT changes the width to half, as drivers may do
     int open_error = 0;               ///< error number of every attempt to open; 0 = success
     int absent_for = 0;               ///< number of failing attempts to open after an unplugging
     std::deque<FakeEvent> script;
@@ -52,7 +52,7 @@ class FakeCamera {
     int opened = 0;
     int paused_ms = 0;
     int waited_ms = 0;
-    int mapped = 0;  ///< buffers that are mapped now
+    int mapped = 0;  ///< number of buffers that are mapped now
 };
 
 class FakeVideoDevice final : public VideoDevice {

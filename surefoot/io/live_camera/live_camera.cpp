@@ -18,7 +18,7 @@ constexpr std::uint32_t kMaxDropped = 100'000;
 Result<GreyImage> grey_of_yuyv(const VideoBuffer& buffer, const VideoMode& mode) {
     const auto stride = static_cast<std::size_t>(buffer.bytes_per_line);
     const auto height = static_cast<std::size_t>(mode.height);
-    // The last line may end with its last pixel.
+    // The last line may have no padding after its last pixel.
     const std::size_t needed = stride * (height - 1) + 2 * static_cast<std::size_t>(mode.width);
     if (buffer.bytes.size() < needed)
         return input_error(fmt::format("{} of {} bytes", buffer.bytes.size(), needed));
@@ -153,7 +153,8 @@ Result<std::optional<VideoBuffer>> LiveCamera::newest() {
         ++frame_status_.skipped;
         buffer = std::move(newer);
     }
-    // The driver had no buffer left to write to: even the newest may have waited for long.
+    // All buffers were full, so the driver could not write. Even the newest image can be old: drop
+    // it.
     if (Status status = device_->give_back(**buffer); !status) return status.error();
     ++frame_status_.skipped;
     buffer = device_->dequeue(kSlice_ms);
@@ -194,8 +195,8 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
     frame.time_ns = middle_of_exposure_ns(buffer);
     Status status;
     if (last_time_ns_ && frame.time_ns <= *last_time_ns_)
-        status = input_error("its time stamp does not increase");
-    if (buffer.damaged) status = input_error("the driver reports it as damaged");
+        status = input_error("the time stamp does not increase");
+    if (buffer.damaged) status = input_error("the driver reports a damaged image");
     if (status) {
         const Result<GreyImage> image = decode(buffer);
         status =
@@ -205,8 +206,8 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
         ++frame_status_.damaged;
         if (++damaged_in_a_row_ < config_.max_damaged) return std::optional<StereoFrame>();
         return input_error(
-            fmt::format("{}: {} frames in a row cannot be used, the last because: {}; check the "
-                        "cable, or choose a smaller or slower mode",
+            fmt::format("{}: {} frames in a row cannot be used. Reason for the last frame: {}. "
+                        "Check the cable, or choose a smaller or slower mode",
                         info_.path,
                         damaged_in_a_row_,
                         status.error().message));

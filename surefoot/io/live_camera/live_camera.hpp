@@ -18,32 +18,32 @@ enum class FormatChoice : std::uint8_t { any, yuyv, mjpeg };
 
 /// Settings of a live camera.
 struct CameraConfig {
-    double exposure_ms = 0.0;  ///< 0 = leave as it is
-    int gain = -1;             ///< gain in the driver's units; -1 = no change
-    int white_balance_k = 0;   ///< 0 = leave as it is
+    double exposure_ms = 0.0;  ///< exposure time; 0 = unchanged
+    int gain = -1;             ///< gain in the driver's units; -1 = unchanged
+    int white_balance_k = 0;   ///< colour temperature [K]; 0 = unchanged
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
-    double readout_ms = 0.0;    ///< rolling shutter, first to last row; 0 = global shutter
-    double timeout_s = 1.0;     ///< longest time without a frame until the device counts as gone
+    double readout_ms = 0.0;    ///< time from first to last row; 0 = global shutter
+    double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened
     double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
-    int max_damaged = 30;       ///< the run ends after this many unusable frames in a row
+    int max_damaged = 30;       ///< number of unusable frames in a row that ends the run
 
     void describe(ConfigVisitor& visitor);
-    /// Manual values and `auto = on` contradict each other.
+    /// Returns a problem if a manual value is set together with `auto = on`.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height are those
-/// of the whole image with both cameras side by side, as the driver lists them.
+/// Address "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height
+/// are those of the whole image with both cameras side by side, as the driver lists them.
 struct LiveAddress {
     std::string device;
-    std::optional<int> width;  ///< set together with height
+    std::optional<int> width;  ///< image width; set together with height
     std::optional<int> height;
     std::optional<double> rate_hz;
 };
 [[nodiscard]] Result<LiveAddress> parse_live_address(std::string_view text);
 
-/// Frames of a side-by-side stereo camera on V4L2, YUYV or MJPEG.
+/// Reads frames of a side-by-side stereo camera on V4L2, in YUYV or MJPEG.
 ///
 /// * `next` waits for an image and returns the newest one. `StereoFrame::frame_status` counts the
 ///   images skipped, lost by the device or damaged since the previous frame. If all buffers were
@@ -60,7 +60,7 @@ struct LiveAddress {
 /// All work happens inside `next`, in the caller's thread.
 class LiveCamera final : public camera::FrameSource {
   public:
-    /// `stop` is polled while waiting; true ends the source. May be empty.
+    /// Polls `stop` while waiting; true ends the source. `stop` may be empty.
     [[nodiscard]] static Result<std::unique_ptr<LiveCamera>> open(
         std::unique_ptr<VideoDevice> system,
         const LiveAddress& address,
@@ -89,10 +89,10 @@ class LiveCamera final : public camera::FrameSource {
     [[nodiscard]] Status set_controls(V4l2Device& device) const;
     [[nodiscard]] Result<std::optional<VideoBuffer>> newest();
     void count_silence();
-    /// The exposure in ns; 0 if it is unknown because the camera controls it.
+    /// Returns the exposure in ns; 0 = unknown, because the camera controls it.
     [[nodiscard]] std::int64_t known_exposure_ns(V4l2Device& device) const;
     void count_sequence(const VideoBuffer& buffer);
-    /// Converts the image to a frame; no value if the image is damaged (counts it).
+    /// Converts the image to a frame. Counts damaged images and returns no value for them.
     [[nodiscard]] Result<std::optional<StereoFrame>> frame_of(const VideoBuffer& buffer);
     [[nodiscard]] Result<GreyImage> decode(const VideoBuffer& buffer) const;
     [[nodiscard]] std::int64_t middle_of_exposure_ns(const VideoBuffer& buffer) const;
@@ -103,15 +103,15 @@ class LiveCamera final : public camera::FrameSource {
     camera::SourceInfo info_;
     CameraConfig config_;
     std::function<bool()> stop_;
-    std::optional<V4l2Device> device_;  // after system_: closed before it goes
+    std::optional<V4l2Device> device_;  // declared after system_: is closed first
     VideoMode mode_;
-    std::int64_t exposure_ns_ = 0;  ///< 0 = not known
+    std::int64_t exposure_ns_ = 0;  ///< exposure time in use; 0 = not known
     std::string lost_because_;
-    int silent_ms_ = 0;  ///< wait since the last usable frame
-    int waited_ms_ = 0;  ///< part of it since the device was opened
+    int silent_ms_ = 0;  ///< waiting time since the last usable frame
+    int waited_ms_ = 0;  ///< part of silent_ms_ since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;
-    FrameStatus frame_status_;  ///< since the previous frame
+    FrameStatus frame_status_;  ///< images skipped, lost or damaged since the last frame
     std::optional<std::uint32_t> last_sequence_;
     std::optional<std::int64_t> last_time_ns_;
 };

@@ -430,7 +430,7 @@ TEST(LiveCamera, SaysWhatCannotBeSet) {
     config = {};
     config.gain = 3;
     config.automatic = AutoControl::on;
-    EXPECT_TRUE(contains(open_error(camera, config), "choose one of the two"));
+    EXPECT_TRUE(contains(open_error(camera, config), "sets a fixed value. Set live.auto to off"));
     EXPECT_EQ(camera.mapped, 0);
 }
 

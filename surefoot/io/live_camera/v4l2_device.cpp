@@ -19,7 +19,7 @@ namespace {
 
 /// Limit for lists of the driver: the list of a faulty driver may never end.
 constexpr std::uint32_t kMaxListed = 256;
-/// Drivers round the frame interval to what the sensor can do.
+/// Drivers round the frame interval to a value that the sensor supports.
 constexpr double kRateTolerance = 0.02;
 
 template <std::size_t size>
@@ -68,19 +68,22 @@ Result<V4l2Device> V4l2Device::open(VideoDevice& system, const std::string& path
                 "{}: no permission to open it; add the user to the group 'video' and log in again",
                 path));
         }
-        if (error == ENOTTY) return input_error(path + ": not a device");
+        if (error == ENOTTY)
+            return input_error(path +
+                               ": this is not a device ('surefoot doctor' lists the cameras)");
         return device.failed("cannot be opened (surefoot doctor lists the cameras)", error);
     }
     v4l2_capability capability = {};
     if (const int error = system.request(VIDIOC_QUERYCAP, &capability); error != 0)
-        return device.failed("not a video device", error);
+        return device.failed("this is not a video device (surefoot doctor lists the cameras)",
+                             error);
     const std::uint32_t can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
                                   ? capability.device_caps
                                   : capability.capabilities;
     if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
         return input_error(
-            fmt::format("{}: this device delivers no video stream; a camera has several devices: "
-                        "use the first one",
+            fmt::format("{}: this device delivers no video stream; a camera can have several "
+                        "devices: use the first device of this camera",
                         path));
     }
     device.card_ = text_of(capability.card);
@@ -127,7 +130,7 @@ void V4l2Device::add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes) 
         mode.width = static_cast<int>(discrete ? size.discrete.width : size.stepwise.max_width);
         mode.height = static_cast<int>(discrete ? size.discrete.height : size.stepwise.max_height);
         add_rates(fourcc, mode, modes);
-        if (!discrete) break;  // a range gives one mode, with its largest size
+        if (!discrete) break;  // a range of sizes gives one mode with the largest size
     }
 }
 
@@ -204,8 +207,13 @@ Status V4l2Device::set_control(std::uint32_t id, const std::string& name, int va
     v4l2_control now = {id, value};
     if (system_->request(VIDIOC_G_CTRL, &now) == 0 && std::abs(now.value - value) >= known->step &&
         now.value != value) {
-        return input_error(fmt::format(
-            "{}: {} was set to {}, but the camera reports {}", path_, name, value, now.value));
+        return input_error(
+            fmt::format("{}: {} was set to {}, but the camera reports {}; choose a value that the "
+                        "camera accepts",
+                        path_,
+                        name,
+                        value,
+                        now.value));
     }
     return {};
 }
@@ -218,7 +226,7 @@ Status V4l2Device::set_mode(const VideoMode& mode) {
     format.fmt.pix.pixelformat = code_of(mode);
     format.fmt.pix.field = V4L2_FIELD_NONE;
     if (const int error = system_->request(VIDIOC_S_FMT, &format); error != 0)
-        return failed("its image format cannot be set", error);
+        return failed("the image format cannot be set", error);
     const v4l2_pix_format& got = format.fmt.pix;
     if (static_cast<int>(got.width) != mode.width || static_cast<int>(got.height) != mode.height ||
         format_of(got.pixelformat) != mode.format) {

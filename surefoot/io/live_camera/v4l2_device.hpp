@@ -20,7 +20,7 @@ struct VideoMode {
     std::string fourcc;  ///< "YUYV", "MJPG", ...
     int width = 0;       ///< width of the whole image: both cameras side by side
     int height = 0;
-    double rate_hz = 0.0;  ///< 0 = unknown, or the driver's choice
+    double rate_hz = 0.0;  ///< frame rate; 0 = unknown, or the driver's choice
 };
 
 /// An integer control of the camera.
@@ -30,8 +30,8 @@ struct VideoControl {
     int min = 0;
     int max = 0;
     int step = 1;
-    std::optional<int> value;  ///< no value if it cannot be read now
-    bool writable = false;     ///< false also while an automatic mode owns it
+    std::optional<int> value;  ///< current value; none if it cannot be read now
+    bool writable = false;     ///< false also while an automatic mode controls it
 };
 
 /// An image in the driver's memory; valid until it is returned to the driver.
@@ -40,9 +40,9 @@ struct VideoBuffer {
     int bytes_per_line = 0;
     std::int64_t time_ns = 0;  ///< the driver's stamp, in `CLOCK_MONOTONIC` if `monotonic`
     bool monotonic = false;
-    bool at_exposure_start = false;  ///< false: the stamp is at the end of the transfer
+    bool at_exposure_start = false;  ///< if false, the stamp is the end of the transfer
     std::uint32_t sequence = 0;      ///< the driver's frame counter
-    bool damaged = false;            ///< the driver reports a damaged image
+    bool damaged = false;            ///< true if the driver reports a damaged image
     std::uint32_t slot = 0;
 };
 
@@ -67,12 +67,12 @@ class V4l2Device {
     /// Requests the mode and reads back the driver's choice; a different mode is an error.
     [[nodiscard]] Status set_mode(const VideoMode& mode);
     [[nodiscard]] Status start();
-    /// The oldest waiting image; no value after the timeout. An error means that the device is gone
-    /// or has stopped.
+    /// Returns the oldest waiting image; no value after the timeout. An error means that the device
+    /// is gone or has stopped.
     [[nodiscard]] Result<std::optional<VideoBuffer>> dequeue(int timeout_ms);
     [[nodiscard]] Status give_back(const VideoBuffer& buffer);
 
-    /// Number of buffers that the driver granted.
+    /// Returns the number of buffers that the driver granted.
     [[nodiscard]] std::size_t buffers() const noexcept { return mappings_.size(); }
 
     /// Requested number of buffers: enough for a consumer that is two frames late.
@@ -90,7 +90,7 @@ class V4l2Device {
     void add_sizes(std::uint32_t fourcc, std::vector<VideoMode>& modes);
     void add_rates(std::uint32_t fourcc, const VideoMode& mode, std::vector<VideoMode>& modes);
 
-    VideoDevice* system_;  // null after a move
+    VideoDevice* system_;  // nullptr after a move
     std::string path_;
     std::string card_;
     std::string driver_;

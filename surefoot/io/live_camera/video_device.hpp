@@ -8,26 +8,26 @@
 
 namespace surefoot::io {
 
-/// The system calls that a V4L2 camera needs; tests replace them by a scripted device. Failures are
-/// errno values, 0 is success. Not thread-safe.
+/// The system calls that a V4L2 camera needs; tests replace them by a scripted device. Calls return
+/// 0 or an errno value. Not thread-safe.
 class VideoDevice {
   public:
     virtual ~VideoDevice() = default;
     [[nodiscard]] virtual int open(const std::string& path) = 0;
     /// Closes the device; also ends streaming and releases the driver's buffers.
     virtual void close() = 0;
-    /// ioctl: `code` is VIDIOC_*, `argument` its structure.
+    /// Calls ioctl: `code` is VIDIOC_*, `argument` is the structure of this code.
     [[nodiscard]] virtual int request(unsigned long code, void* argument) = 0;
-    /// mmap of a buffer; null when it fails.
+    /// Maps a buffer with mmap; returns null on failure.
     [[nodiscard]] virtual const std::uint8_t* map(std::size_t offset, std::size_t length) = 0;
     virtual void unmap(const std::uint8_t* address, std::size_t length) = 0;
-    /// 0 when a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV when the device is gone.
+    /// Returns 0 if a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV if the device is gone.
     [[nodiscard]] virtual int wait(int timeout_ms) = 0;
     /// Waits before the next attempt to open; a signal ends the wait early.
     virtual void pause(int time_ms) = 0;
 };
 
-/// The kernel's video device, not open yet.
+/// Returns the kernel's video device, not open yet.
 [[nodiscard]] std::unique_ptr<VideoDevice> kernel_video_device();
 
 }  // namespace surefoot::io

@@ -19,18 +19,18 @@ namespace surefoot::io {
 namespace {
 
 constexpr double kNoData = -9999.0;
-constexpr double kFinest_m = 1e-4;  ///< smallest side of a cell, as of `surefoot dem`
+constexpr double kFinest_m = 1e-4;  ///< smallest side of a cell; `surefoot dem` has the same limit
 constexpr double kCoarsest_m = 1000.0;
-constexpr double kFarthest_m = 1e9;  ///< of a corner; a micrometre still differs there
+constexpr double kFarthest_m = 1e9;  ///< largest coordinate; a double resolves 1 um there
 constexpr std::int64_t kMaxSide = 1 << 20;
-/// Larger values mean "no data": the usual mark is the smallest float, -3.4028235e38, and no layer
-/// has such values.
+/// Values of at least this magnitude mean "no data". The usual mark is the smallest float,
+/// -3.4028235e38, and no layer has such values.
 constexpr double kMaxValue = 1e30;
 
 bool is_cell_size(double side_m) {
     return side_m >= kFinest_m && side_m <= kCoarsest_m;  // false for NaN
 }
-/// Relative precision of a float: writers print marks from floats, with 7 to 17 digits.
+/// Relative precision of a float. Writers print "no data" marks from floats, with 7 to 17 digits.
 constexpr double kFloatStep = 1.1920928955078125e-07;
 
 /// Returns true if a value means "no data".
@@ -46,7 +46,7 @@ struct Header {
     bool y_is_center = false;
 };
 
-/// Reads one "key value" pair; returns false if the word is not a key (the data begin).
+/// Reads one "key value" pair; returns false if the word is not a key, because the data begin.
 bool take_pair(const std::string& key, double value, Header& header) {
     if (key == "ncols") {
         header.columns = value;
@@ -76,7 +76,7 @@ Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// Number of the line of `text` in which `word`, a part of it, begins.
+/// Returns the number of the line in which `word` begins. `word` is a part of `text`.
 int line_of(std::string_view text, std::string_view word) {
     LineReader lines(text);
     while (const auto line = lines.next())
@@ -84,7 +84,7 @@ int line_of(std::string_view text, std::string_view word) {
     return lines.number();
 }
 
-/// Reads "key value" lines until one begins with a number; `body` is the text from there.
+/// Reads "key value" lines until a line begins with a number. `body` gets the rest of the text.
 Result<Header> parse_header(std::string_view text,
                             const std::string& file,
                             std::string_view& body) {
@@ -184,11 +184,11 @@ Status check_layer(const std::string& path,
                     geometry.ny));
 }
 
-/// Formats nine digits, or NODATA for unknown.
+/// Formats a value with nine digits, or NODATA for an unknown cell.
 std::string format_cell(float cell) {
     const auto value = static_cast<double>(cell);
     if (!(std::abs(value) < kMaxValue)) return fmt::format("{}", kNoData);
-    // A value that would be read as NODATA moves by two float steps, 2 mm at 10 km.
+    // Move a value that would be read as NODATA by two float steps, which is 2 mm at 10 km.
     return fmt::format(
         "{:.9g}",
         is_no_data(value, kNoData) ? static_cast<float>((1.0 - 2.0 * kFloatStep) * kNoData) : cell);
@@ -222,7 +222,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
     const Result<grid::GridGeometry> geometry = geometry_of(*header, file);
     if (!geometry) return geometry.error();
     const std::int64_t cells = std::int64_t{geometry->nx} * geometry->ny;
-    // Each value needs at least a digit and a blank: a damaged header must not allocate memory.
+    // Each value needs at least a digit and a blank. A damaged header must not allocate memory.
     if (cells > static_cast<std::int64_t>(body.size() + 1) / 2) {
         return input_error(
             fmt::format("{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes",
@@ -240,7 +240,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
             const auto value = parse_value(word);
             if (!value || std::isinf(*value)) {
                 return input_error(fmt::format(
-                    "{}:{}: value {} of row {} (of {} x {} cells) is {}",
+                    "{}:{}: value {} of row {} (of {} x {} cells): {}",
                     file,
                     word.empty() ? line_of(text, text.substr(text.size())) : line_of(text, word),
                     ix + 1,

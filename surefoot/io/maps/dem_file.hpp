@@ -8,35 +8,35 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
-/// Grids with one value per cell: ESRI ASCII, or a grey image whose brightness is the height.
+/// Reads grids with a value per cell: ESRI ASCII, or grey images (brightness is the height).
 namespace surefoot::io {
 
 /// A layer with its position; NaN = unknown.
 struct Dem {
     grid::GridGeometry geometry;
     grid::Layer values;
-    std::vector<std::string> notes;  ///< cells that height readers made unknown, in words
+    std::vector<std::string> notes;  ///< sentences about cells that the height reader made unknown
 };
 
 /// Reads an ESRI ASCII grid: ncols nrows xllcorner|xllcenter yllcorner|yllcenter, cellsize or equal
 /// dx and dy, [NODATA_value], then rows from the largest y down. Unknown: NODATA within float
 /// precision, nan, null, and every value of at least 1e30, because writers print the smallest float
-/// with different digits. For layers that are not heights.
+/// with different digits. Use this function for layers that are not heights.
 [[nodiscard]] Result<Dem> parse_esri_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_esri_grid(const std::string& path);
 /// Reads heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).
 [[nodiscard]] Result<Dem> parse_height_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_height_grid(const std::string& path);
-/// Formats values with 9 significant digits, which read back to the same float.
+/// Formats values with 9 significant digits, enough to read the same float back.
 [[nodiscard]] std::string format_esri_grid(const grid::GridGeometry& geometry,
                                            const grid::Layer& values);
 [[nodiscard]] Status write_esri_grid(const std::string& path,
                                      const grid::GridGeometry& geometry,
                                      const grid::Layer& values);
 
-/// Reads a height image: grey 255 (or 65535) is `full_height_m`, 0 is 0. One cell per pixel of
-/// `scale_m`, lower left corner at (0, 0), top row at the largest y. Impossible heights are unknown
-/// (surefoot/io/maps/height_rules.hpp); a full height beyond kMaxHeight_m is an error.
+/// Reads a height image: grey 255 (or 65535) means `full_height_m`, grey 0 means 0 m. One cell per
+/// pixel of `scale_m`, lower left corner at (0, 0), top row at the largest y. Impossible heights
+/// are unknown (surefoot/io/maps/height_rules.hpp); a full height beyond kMaxHeight_m is an error.
 [[nodiscard]] Result<Dem> parse_dem_image(std::string_view bytes,
                                           const std::string& file,
                                           double scale_m,

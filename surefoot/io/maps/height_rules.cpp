@@ -16,10 +16,11 @@
 namespace surefoot::io {
 namespace {
 
-/// A map for a walking machine has no hole or tower of this height without intermediate heights.
+/// Smallest gap between a "no data" mark and all other heights. A map for a walking machine has no
+/// hole or tower of this height without intermediate heights.
 constexpr double kFar_m = 50.0;
 constexpr double kFarOfRange = 10.0;
-/// Largest number of "no data" marks in a file; files have one, seldom two.
+/// Largest number of "no data" marks in a file; most files have one mark.
 constexpr int kMostMarks = 4;
 
 std::int64_t replace(std::span<float> heights_m, double low_m, double high_m) {
@@ -47,11 +48,11 @@ bool is_usual_mark(double value) {
                                  32767.0,
                                  65535.0};
     return std::any_of(std::begin(kMarks), std::end(kMarks), [&](double mark) {
-        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // within float precision
+        return std::abs(value - mark) <= 1e-6 * std::abs(mark);  // equal within float precision
     });
 }
 
-/// The two lowest and the two highest values that differ.
+/// The two lowest and the two highest different values.
 struct Ends {
     double lowest = std::numeric_limits<double>::infinity();
     double second_lowest = std::numeric_limits<double>::infinity();
@@ -78,7 +79,7 @@ Ends ends_of(std::span<const float> heights_m) {
     return e;
 }
 
-/// A value that marks "no data", or nothing.
+/// Returns a value that marks "no data"; no value if there is none.
 std::optional<double> find_mark(std::span<const float> heights_m) {
     const Ends e = ends_of(heights_m);
     if (!(e.lowest <= e.highest)) return std::nullopt;
@@ -106,18 +107,20 @@ std::vector<std::string> drop_impossible_heights(grid::Layer& heights_m) {
             replace(all_m, beyond_m, kInfinity) + replace(all_m, -kInfinity, -beyond_m);
         cells > 0) {
         notes.push_back(fmt::format(
-            "{} cells hold heights beyond {:g} m; they count as unknown", cells, kMaxHeight_m));
+            "{} cells have heights of more than {:g} m above or below 0; these cells are unknown",
+            cells,
+            kMaxHeight_m));
     }
     for (int i = 0; i < kMostMarks; ++i) {
         const auto mark = find_mark(all_m);
         if (!mark) break;
         const std::int64_t cells = replace(all_m, *mark, *mark);
-        notes.push_back(
-            fmt::format("{} cells hold {:g} m, more than {:g} m from all other heights: this value "
-                        "counts as an undeclared 'no data' mark, and these cells as unknown",
-                        cells,
-                        *mark,
-                        kFar_m));
+        notes.push_back(fmt::format(
+            "{} cells hold {:g} m, which differs by more than {:g} m from all other heights. The "
+            "program takes this value for a 'no data' mark, and these cells are unknown",
+            cells,
+            *mark,
+            kFar_m));
     }
     return notes;
 }

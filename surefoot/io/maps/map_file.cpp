@@ -20,9 +20,9 @@ namespace {
 using grid::MapRegion;
 
 constexpr std::string_view kMagic{"SFREGION", 8};
-/// Before the header: magic, major, minor, bytes of the header.
+/// Bytes of the preamble: magic, major version, minor version, size of the header.
 constexpr std::size_t kPreambleBytes = 16;
-/// A header of version 1.0, preamble included.
+/// Bytes of a header of version 1.0, preamble included.
 constexpr std::size_t kHeaderBytes = 168;
 constexpr std::size_t kFrameBytes = grid::kMaxFrameName + 1;
 constexpr std::size_t kLayerNameBytes = 40;
@@ -83,7 +83,7 @@ void for_each_number(Region& r, const Visit& visit) {
     visit(r.T_frame_body.rotation.w());
 }
 
-/// A line of the layer table.
+/// One entry of the layer table.
 struct LayerEntry {
     std::string name;
     std::string unit;
@@ -92,7 +92,7 @@ struct LayerEntry {
     const char* cells = nullptr;
 };
 
-/// Reads a file front to back; the caller has checked that the bytes are there.
+/// Reads a file from front to back. The caller must check that enough bytes exist.
 struct Cursor {
     const char* at;
     template <typename T>
@@ -108,7 +108,7 @@ struct Cursor {
     }
 };
 
-/// Contents of the preamble and sizes of the parts of the file.
+/// Version and header size from the preamble.
 struct Outline {
     std::uint16_t minor = 0;
     std::size_t header_bytes = 0;
@@ -159,9 +159,10 @@ Status read_header(Cursor& cursor, MapRegion& region, std::uint32_t& layers) {
     const auto frame = load_name(cursor.field(kFrameBytes));
     layers = cursor.number<std::uint32_t>();
     const auto reserved = cursor.number<std::uint32_t>();
-    if (!frame) return input_error("the name of its frame is not filled up with zeros");
+    if (!frame) return input_error("the name of the frame is not filled up with zeros");
     region.frame = *frame;
-    if (reserved != 0) return input_error(fmt::format("reserved bytes hold {}", reserved));
+    if (reserved != 0)
+        return input_error(fmt::format("reserved bytes hold {}, but must be 0", reserved));
     if (auto problem = region.box.problem()) return input_error(*problem);
     if (layers > kMaxLayers) {
         return input_error(
@@ -180,7 +181,7 @@ Result<std::vector<LayerEntry>> read_layer_table(Cursor& cursor, std::uint32_t c
                          .type = cursor.number<std::uint32_t>(),
                          .cell_bytes = cursor.number<std::uint32_t>()};
         if (!name || !unit || entry.name.empty())
-            return input_error(fmt::format("layer {} has no name or unit", i));
+            return input_error(fmt::format("layer {} has no valid name or unit", i));
         if (entry.cell_bytes < 1 || entry.cell_bytes > kMaxCellBytes) {
             return input_error(fmt::format("layer {} has {} bytes per cell; 1 to {} are allowed",
                                            quoted(entry.name),
@@ -195,7 +196,7 @@ Result<std::vector<LayerEntry>> read_layer_table(Cursor& cursor, std::uint32_t c
     return entries;
 }
 
-/// Takes a layer out of `entries`.
+/// Moves a layer from `entries` to `out`.
 template <typename T>
 Status load_layer(const grid::RegionLayer& layer,
                   const grid::LatticeBox& box,
@@ -241,8 +242,7 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
     auto entries = read_layer_table(cursor, layers);
     if (!entries) return entries.error();
     for (LayerEntry& entry : *entries) {
-        // If the file is too short this pointer is not used: the check of the total size fails
-        // later.
+        // If the file is too short, this pointer is not used, because the size check below fails.
         entry.cells = bytes.data() + std::min<std::uint64_t>(needed - kChecksumBytes, bytes.size());
         needed += cells * entry.cell_bytes;
     }
@@ -312,7 +312,7 @@ Result<MapFile> parse_map(std::string_view bytes, const std::string& file) {
     MapFile out;
     out.minor = outline->minor;
     if (Status status = read_region(bytes, *outline, out); !status)
-        return damaged(file, "impossible map region: " + status.error().message);
+        return damaged(file, "invalid map region: " + status.error().message);
     return out;
 }
 

@@ -9,7 +9,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_region.hpp"
 
-/// Regions of an elevation map as files. docs/reference/map_format.md defines every byte.
+/// Reads and writes regions of an elevation map. docs/reference/map_format.md defines every byte.
 namespace surefoot::io {
 
 /// A newer major version is an error. A newer minor version may add header fields and layers, which
@@ -24,17 +24,17 @@ struct MapFile {
     std::vector<std::string> skipped_layers;  ///< layers of a newer minor version, in file order
 };
 
-/// Fails if `region.problem()` is not empty: every written file can be read. Deterministic: the
-/// same region gives the same bytes.
+/// Fails if `region.problem()` has a value, so that every written file can be read. The same region
+/// always gives the same bytes.
 [[nodiscard]] Result<std::string> format_map(const grid::MapRegion& region);
 [[nodiscard]] Status write_map(const std::string& path, const grid::MapRegion& region);
 
-/// The returned region has no problem.
+/// The returned region is valid: region.problem() has no value.
 [[nodiscard]] Result<MapFile> parse_map(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<MapFile> read_map(const std::string& path);
 
 /// FNV-1a, 64 bit. The last 8 bytes of a map file are this checksum of all bytes before them. Every
-/// step is a bijection, so that it detects every change of a single byte.
+/// step is a bijection, so the checksum detects every change of a single byte.
 [[nodiscard]] std::uint64_t map_checksum(std::string_view bytes) noexcept;
 
 }  // namespace surefoot::io

@@ -195,7 +195,7 @@ TEST(MapFile, SaysWhatIsImpossible) {
         {"are too few for 200 layers", with(bytes, kLayersAt, std::uint32_t{200})},
         {"reserved bytes hold 1", with(bytes, kLayersAt + 4, std::uint32_t{1})},
         {"layer elevation is missing", with(bytes, kTableAt, 'E')},
-        {"layer 0 has no name", with(bytes, kTableAt + 39, 'x')},
+        {"layer 0 has no valid name", with(bytes, kTableAt + 39, 'x')},
         {"layer elevation has type 3", with(bytes, kTableAt + 56, std::uint32_t{3})},
         {"0 bytes per cell", with(bytes, kTableAt + 60, std::uint32_t{0})},
         {"unit 'k'", with(bytes, kTableAt + 40, 'k')},

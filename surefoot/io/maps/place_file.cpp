@@ -22,9 +22,9 @@ constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kKeyframeBytes = 176;
 constexpr std::size_t kFeatureBytes = 44;
 constexpr std::size_t kChecksumBytes = 8;
-constexpr std::uint32_t kMostRecordBytes = 4096;  ///< of a keyframe or feature of a newer minor
+constexpr std::uint32_t kMostRecordBytes = 4096;  ///< largest keyframe or feature [bytes]
 
-/// Contents of a header.
+/// Contents of the header of a place file.
 struct Outline {
     std::uint16_t minor = kPlaceFileMinor;
     std::uint32_t header_bytes = kHeaderBytes;
@@ -141,10 +141,11 @@ Result<Outline> read_outline(std::string_view bytes, const std::string& file) {
     return outline;
 }
 
-/// Reads one keyframe with its features; removes the bytes it has read from `left`.
+/// Reads one keyframe with its features; removes the bytes of the keyframe from `left`.
 Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& keyframe) {
     const auto too_short = [&] {
-        return input_error(fmt::format("it ends {} bytes into a keyframe", left.size()));
+        return input_error(
+            fmt::format("the file ends after {} bytes of this keyframe", left.size()));
     };
     if (left.size() < outline.keyframe_bytes) return too_short();
     const char* at = left.data();
@@ -214,7 +215,7 @@ Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file) {
     }
     if (!left.empty())
         return damaged(
-            file, fmt::format("impossible place: {} bytes after its last keyframe", left.size()));
+            file, fmt::format("impossible place: {} bytes follow its last keyframe", left.size()));
     if (const auto problem = out.place.problem())
         return damaged(file, "impossible place: " + *problem);
     return out;

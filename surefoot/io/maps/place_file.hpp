@@ -8,7 +8,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/place_recognition/place.hpp"
 
-/// Places for place recognition as files. docs/reference/place_format.md defines every byte.
+/// Reads and writes recognisable places. docs/reference/place_format.md defines every byte.
 namespace surefoot::io {
 
 /// A newer major version is an error. A newer minor version may add fields to the header, to
@@ -22,12 +22,12 @@ struct PlaceFile {
     std::uint16_t minor = kPlaceFileMinor;
 };
 
-/// Fails if `place.problem()` is not empty: every written file can be read. Deterministic: the same
-/// place gives the same bytes.
+/// Fails if `place.problem()` has a value, so that every written file can be read. The same place
+/// always gives the same bytes.
 [[nodiscard]] Result<std::string> format_place(const place_recognition::Place& place);
 [[nodiscard]] Status write_place(const std::string& path, const place_recognition::Place& place);
 
-/// The returned place has no problem.
+/// The returned place is valid: place.problem() has no value.
 [[nodiscard]] Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file);
 [[nodiscard]] Result<PlaceFile> read_place(const std::string& path);
 

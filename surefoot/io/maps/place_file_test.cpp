@@ -139,12 +139,12 @@ TEST(PlaceFile, SaysWhatIsWrongAndWhatToDo) {
     says(with(bytes, kHeaderBytesAt, std::uint32_t{31}), "header of 31 bytes; 32 to");
     says(with(bytes, kHeaderBytesAt, std::uint32_t{1U << 31U}), "header of 2147483648 bytes");
     says(with(bytes, kKeyframesAt, std::uint32_t{501}), "501 keyframes; at most 500");
-    says(with(bytes, kKeyframesAt, std::uint32_t{3}), "keyframe 2: it ends 0 bytes into");
-    says(with(bytes, kKeyframesAt, std::uint32_t{1}), "308 bytes after its last keyframe");
+    says(with(bytes, kKeyframesAt, std::uint32_t{3}), "keyframe 2: the file ends after 0 bytes");
+    says(with(bytes, kKeyframesAt, std::uint32_t{1}), "308 bytes follow its last keyframe");
     says(with(bytes, kKeyframeBytesAt, std::uint32_t{8}), "keyframes of 8 bytes; 176 to 4096");
     says(with(bytes, kFeatureBytesAt, std::uint32_t{43}), "features of 43 bytes; 44 to 4096");
     says(with(bytes, kFeaturesAt, std::uint32_t{401}), "keyframe 0: 401 features; at most 400");
-    says(with(bytes, kFeaturesAt, std::uint32_t{400}), "bytes into a keyframe");
+    says(with(bytes, kFeaturesAt, std::uint32_t{400}), "bytes of this keyframe");
     says(with(bytes, kFeaturesAt + 4, std::uint32_t{9}), "reserved bytes hold 9");
     says(with(bytes, kWidthAt, std::int32_t{-1}), "keyframe 0 has images of -1 x 376");
     says(with(bytes, kPoseAt, std::numeric_limits<double>::quiet_NaN()),

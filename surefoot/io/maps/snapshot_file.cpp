@@ -27,7 +27,7 @@ void for_each_field(Edge& edge, Visit visit) {
     visit(edge.across_sigma_tenth_mm);
 }
 
-/// Enums are stored as their bytes.
+/// Returns the value to store; an enum is stored as its number.
 template <typename T>
 auto stored(T value) {
     if constexpr (std::is_enum_v<T>) {
@@ -37,7 +37,7 @@ auto stored(T value) {
     }
 }
 
-/// Largest byte that is an enumerator.
+/// Number of the last enumerator.
 constexpr std::uint8_t last_of(grid::EvidenceSource) {
     return 2;
 }
@@ -78,7 +78,7 @@ std::size_t cells_of(const MapSnapshot& s) {
     return static_cast<std::size_t>(s.nx) * static_cast<std::size_t>(s.ny);
 }
 
-/// File bytes of one cell and of one edge.
+/// Bytes of one cell and of one edge in the file.
 constexpr std::size_t kCellBytes = sizeof(std::int32_t) + 4 * sizeof(std::uint16_t) + 2;
 constexpr std::size_t kEdgeBytes = 8 * sizeof(std::int32_t);
 
@@ -98,7 +98,7 @@ struct Sizes {
         return nx >= 1 && ny >= 1 && nx <= MapSnapshot::kMaxSide && ny <= MapSnapshot::kMaxSide &&
                edge_count >= 0 && edge_count <= MapSnapshot::kMaxEdges;
     }
-    /// Bytes of cells, edges and checksum, without the header.
+    /// Returns the bytes of cells, edges and checksum, without the header.
     [[nodiscard]] std::size_t bytes() const {
         return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * kCellBytes +
                static_cast<std::size_t>(edge_count) * kEdgeBytes + sizeof(MapSnapshot::checksum);

@@ -8,12 +8,12 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 
-/// map.snapshot: the step gate's knowledge of the ground as a file. Little-endian: the header
-/// fields of MapSnapshot in their order, each layer with its nx * ny used cells, then the checksum
-/// of the snapshot with all unused cells set to zero.
+/// Reads and writes map.snapshot, the map of the step gate. All numbers are little-endian. Order:
+/// header fields of MapSnapshot, each layer with its nx * ny used cells, and the checksum of the
+/// snapshot with all unused cells set to zero.
 namespace surefoot::io {
 
-/// Fails if the snapshot is not intact: a damaged map must not get a fresh checksum.
+/// Fails if the snapshot is damaged: a damaged map must not get a fresh checksum.
 [[nodiscard]] Result<std::string> format_snapshot(const grid::MapSnapshot& snapshot);
 [[nodiscard]] Status write_snapshot(const std::string& path, const grid::MapSnapshot& snapshot);
 

@@ -29,7 +29,7 @@ std::vector<std::int64_t> times_of(const std::vector<CsvRow>& rows) {
     return times_ns;
 }
 
-/// Pairs the rows of both cameras by their stamps, in the order of the left one.
+/// Pairs the rows of both cameras by their stamps, in the order of the left camera.
 void pair_rows(const std::string& folder,
                const std::vector<CsvRow>& left,
                const std::vector<CsvRow>& right,
@@ -63,8 +63,8 @@ Result<Recording> index_euroc(const std::string& folder, const OpenOptions& opti
     pair_rows(folder, *left, *right, recording);
     if (recording.frames.empty()) {
         return input_error(
-            fmt::format("{}: no frames: {} rows of cam0 and {} of cam1 have no time stamps within "
-                        "{:g} ms of each other; give a larger --pair-tolerance",
+            fmt::format("{}: no frames: the {} rows of cam0 and the {} rows of cam1 have no time "
+                        "stamps within {:g} ms of each other; give a larger --pair-tolerance",
                         folder,
                         left->size(),
                         right->size(),

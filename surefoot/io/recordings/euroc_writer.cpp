@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC ASL after Burri et al. 2016.
+// Writes the EuRoC ASL layout, after Burri et al. 2016.
 #include <fmt/format.h>
 
 #include <optional>
@@ -25,7 +25,7 @@ std::string imu_line(const ImuSample& sample) {
         "{},{},{},{},{},{},{}\n", sample.time_ns, w.x(), w.y(), w.z(), a.x(), a.y(), a.z());
 }
 
-/// A list file with its head line, and the sensor.yaml beside it.
+/// Creates a list file with a header line, and the sensor.yaml beside the list.
 Result<AppendFile> start_sensor(const std::string& folder,
                                 const std::string& yaml,
                                 const char* head) {

@@ -196,7 +196,7 @@ TEST(PairFolders, LeftAndRightByTheirNames) {
         }
     }
     for (const char* name : {"same", "named", "one", "other"}) {
-        EXPECT_TRUE(contains(play(folder / name).errors, "no calibration; put a rig.yaml"));
+        EXPECT_TRUE(contains(play(folder / name).errors, "no calibration. Put a rig.yaml"));
         write_lines(folder / (std::string(name) + "/rig.yaml"), kRig);
         const Played played = play(folder / name);
         ASSERT_EQ(played.frames.size(), 3U) << name << ": " << played.errors;
@@ -204,11 +204,12 @@ TEST(PairFolders, LeftAndRightByTheirNames) {
         EXPECT_EQ(played.frames[2].left, image(10)) << name;
         EXPECT_EQ(played.frames[2].right, image(110)) << name;
         EXPECT_EQ(played.frames[2].time_ns, 2 * kPeriod_ns) << "the rig's 20 Hz";
-        EXPECT_TRUE(contains(played.notes(), "no stamps: 20 frames a second are assumed"));
-        EXPECT_EQ(contains(played.notes(), "paired in their order"), std::string("other") == name);
+        EXPECT_TRUE(contains(played.notes(), "no time stamps: 20 frames per second are assumed"));
+        EXPECT_EQ(contains(played.notes(), "paired in the order of their names"),
+                  std::string("other") == name);
     }
     std::filesystem::remove(folder / "other/right/r8.png");
-    EXPECT_TRUE(contains(play(folder / "other").errors, "neither names nor time stamps show"));
+    EXPECT_TRUE(contains(play(folder / "other").errors, "Neither names nor time stamps show"));
     std::filesystem::remove(folder / "same/right/9.png");
     EXPECT_TRUE(
         contains(play(folder / "same").errors, "9.png: the right image of this frame is missing"));
@@ -227,7 +228,7 @@ TEST(PairFolders, StampsAndPartnersFromTheNames) {
     ASSERT_EQ(played.frames.size(), 3U) << played.errors;
     EXPECT_EQ(played.frames[2].time_ns, kStart_ns + 2 * kPeriod_ns);
     EXPECT_EQ(played.frames[2].right, image(102));
-    EXPECT_TRUE(contains(played.notes(), "stamps are those of the file names, in ns"));
+    EXPECT_TRUE(contains(played.notes(), "time stamps are read from the file names, in ns"));
     EXPECT_TRUE(contains(played.notes(), "differ by up to 0.005 ms"));
     EXPECT_EQ(stamps_of_names({"1311868164.363181.png"})->times_ns[0], 1311868164363181000);
     EXPECT_EQ(stamps_of_names({"1311868164363181.png"})->times_ns[0], 1311868164363181000);

@@ -64,7 +64,7 @@ Result<bool> ImuStream::read_some() {
     const std::size_t whole = end == unread_.npos ? 0 : end + 1;
     if (unread_.size() - whole > kMaxLine)
         return input_error(file_.path() +
-                           ": a line has no end; give IMU rows 'stamp_ns,wx,wy,wz,ax,ay,az'");
+                           ": a line is too long; give IMU rows 'stamp_ns,wx,wy,wz,ax,ay,az'");
     const auto samples =
         parse_euroc_imu_samples(std::string_view(unread_).substr(0, whole), file_.path());
     if (!samples) return samples.error();

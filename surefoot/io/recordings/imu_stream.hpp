@@ -12,22 +12,22 @@
 
 namespace surefoot::io {
 
-/// Span of IMU samples for the first frame, which has no previous frame.
+/// Time span of the IMU samples for the first frame, which has no previous frame.
 inline constexpr std::int64_t kFirstImuSpan_ns = 1'000'000'000;
 
-/// Reads IMU samples as EuRoC csv rows (stamp_ns, angular velocity [rad/s], specific force [m/s^2])
-/// from a file, a growing file, or a FIFO that another program writes. Reading never blocks:
-/// missing rows are read later. A line counts only when it is complete.
+/// Reads IMU samples from EuRoC csv rows (stamp_ns, angular velocity [rad/s], specific force
+/// [m/s^2]). The source is a file, a growing file, or a FIFO. Reading never blocks: missing rows
+/// are read later. A line counts only when it is complete.
 class ImuStream {
   public:
     [[nodiscard]] static Result<ImuStream> open(const std::string& path);
 
-    /// All new samples up to a time, in time order. Stamps must increase.
+    /// Returns all new samples up to a time, in time order. Stamps must increase.
     [[nodiscard]] Result<std::vector<ImuSample>> take_until(std::int64_t time_ns);
 
   private:
     explicit ImuStream(files::InputFile file) : file_(std::move(file)) {}
-    /// Reads available bytes; returns whether there were any.
+    /// Reads available bytes; returns false if there were none.
     [[nodiscard]] Result<bool> read_some();
 
     files::InputFile file_;

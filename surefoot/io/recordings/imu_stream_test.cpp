@@ -105,7 +105,7 @@ TEST(ImuStream, SaysWhatIsWrong) {
     EXPECT_TRUE(contains(error_of(row(5) + row(5)), "does not increase"));
     EXPECT_TRUE(contains(error_of("1,2,3\n"), "expected 'stamp_ns"));
     EXPECT_TRUE(contains(error_of("1,0,0,nan,0,0,0\n"), "not a finite number"));
-    EXPECT_TRUE(contains(error_of(std::string(10'000, '7')), "a line has no end"));
+    EXPECT_TRUE(contains(error_of(std::string(10'000, '7')), "a line is too long"));
     // Stamps that go back from one part of the file to the next, far apart.
     std::string text;
     for (std::int64_t i = 0; i < 1000; ++i) text += row(10 + i);

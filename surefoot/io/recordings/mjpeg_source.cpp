@@ -14,7 +14,7 @@ namespace surefoot::io {
 namespace {
 
 constexpr std::string_view kStart("\xff\xd8\xff", 3);
-/// Larger than the JPEG of any camera; a file with a larger image is not an MJPEG stream.
+/// Limit above the JPEG size of any camera. A file with a larger image is not an MJPEG stream.
 constexpr std::size_t kMaxImageBytes = std::size_t{64} << 20;
 
 class MjpegSource final : public camera::FrameSource {
@@ -77,7 +77,7 @@ class MjpegSource final : public camera::FrameSource {
     camera::StereoRig rig_;
     camera::SourceInfo info_;
     double rate_hz_;
-    std::string rest_;  ///< read, but not decoded yet
+    std::string rest_;  ///< bytes that are read, but not decoded yet
     int index_ = 0;
 };
 
@@ -89,7 +89,7 @@ std::optional<JpegSpan> first_jpeg(std::string_view bytes) {
     std::size_t at = begin + 2;
     while (at + 1 < bytes.size()) {
         const auto marker = static_cast<std::uint8_t>(bytes[at + 1]);
-        if (bytes[at] != '\xff' || marker == 0xd8) {  // damaged, or the next image already
+        if (bytes[at] != '\xff' || marker == 0xd8) {  // damaged image, or start of the next image
             const std::size_t next = bytes.find(kStart, begin + kStart.size());
             if (next == bytes.npos) return std::nullopt;
             return JpegSpan{begin, next};

@@ -9,19 +9,19 @@
 
 namespace surefoot::io {
 
-/// Position of the first JPEG in a stream; `end` is one past its end marker.
+/// Position of the first JPEG in a stream; `end` is the byte after the end marker.
 struct JpegSpan {
     std::size_t begin = 0;
     std::size_t end = 0;
 };
-/// The first image of concatenated JPEGs; no value while its end is missing. Bytes between images
-/// are skipped. Walks from segment to segment, so that the end marker of an embedded thumbnail does
-/// not end the image. A damaged image ends where the next image begins.
+/// Finds the first image of concatenated JPEGs; no value while its end is missing. Bytes between
+/// images are skipped. Walks from segment to segment, so that the end marker of an embedded
+/// thumbnail does not end the image. A damaged image ends where the next image begins.
 [[nodiscard]] std::optional<JpegSpan> first_jpeg(std::string_view bytes);
 
-/// A file of concatenated JPEGs (.mjpeg, .mjpg), as `v4l2-ctl --stream-to` and FFmpeg write it,
-/// with side-by-side frames at a constant rate. A damaged image is an error; the next call
-/// continues after it.
+/// Opens a file of concatenated JPEGs (.mjpeg, .mjpg) from `v4l2-ctl --stream-to` or FFmpeg, with
+/// side-by-side frames at a constant rate. A damaged image is an error; the next call continues
+/// after it.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_mjpeg(const std::string& path,
                                                                       const camera::StereoRig& rig,
                                                                       double rate_hz);

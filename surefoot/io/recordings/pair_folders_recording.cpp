@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Left and right images in two folders: KITTI after Geiger et al. 2012 (odometry and raw), and
-// common folder names of other recordings. Calibration and stamps are read from files beside the
-// images.
+// Indexes left and right images in two folders: KITTI odometry and KITTI raw after Geiger et al.
+// 2012, and common folder names of other recordings. Reads calibration and stamps from files beside
+// the images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Layout {
     const char* left;
     const char* right;
     const char* kind;
-    int left_camera;  ///< numbers of KITTI
+    int left_camera;  ///< camera number in KITTI files
     int right_camera;
 };
 constexpr Layout kLayouts[] = {{"image_0", "image_1", "kitti", 0, 1},
@@ -40,7 +40,7 @@ constexpr Layout kLayouts[] = {{"image_0", "image_1", "kitti", 0, 1},
                                {"left_images", "right_images", "folders", 0, 1},
                                {"infra1", "infra2", "folders", 0, 1}};
 
-/// The images of both cameras, in natural order.
+/// Names of the images of both cameras, in natural order.
 struct PairOfFolders {
     Layout layout = {};
     std::string left_folder;
@@ -53,14 +53,15 @@ Result<std::vector<std::string>> images_in(const std::string& folder) {
     return list_files(folder, {".png", ".jpg", ".jpeg", ".pgm", ".ppm"});
 }
 
-/// Where the images of a camera are: in data/ of its folder, or in the folder.
+/// Returns the folder with the images of a camera: the subfolder data/ if it exists, otherwise the
+/// camera folder.
 std::string image_folder(const std::string& folder, const char* camera) {
     const std::string outer = join_path(folder, camera);
     const std::string inner = join_path(outer, "data");
     return is_folder(inner) ? inner : outer;
 }
 
-/// left* and right* in one folder.
+/// Finds the images left* and right* in one folder.
 std::optional<PairOfFolders> split_by_prefix(const std::string& folder) {
     const Result<std::vector<std::string>> names = images_in(folder);
     if (!names) return std::nullopt;
@@ -96,10 +97,11 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
         return pair;
     }
     if (auto pair = split_by_prefix(folder)) return std::move(*pair);
-    return input_error(folder + ": no folders of left and right images");
+    return input_error(folder + ": this folder has no folders of left and right images");
 }
 
-/// calib_cam_to_cam.txt of KITTI raw belongs to all drives of a day and lies beside them.
+/// Finds calib_cam_to_cam.txt of KITTI raw. The file belongs to all drives of a day and lies beside
+/// their folders.
 std::optional<std::string> raw_calibration(const std::string& folder) {
     for (const char* name : {"calib_cam_to_cam.txt", "../calib_cam_to_cam.txt"}) {
         if (std::string path = join_path(folder, name); is_file(path)) return path;
@@ -107,7 +109,8 @@ std::optional<std::string> raw_calibration(const std::string& folder) {
     return std::nullopt;
 }
 
-/// Words of the line of a KITTI raw key, without the key: "S_rect_00: 1242 375".
+/// Returns the words of the line of a KITTI raw key, without the key, for example from "S_rect_00:
+/// 1242 375".
 std::vector<std::string_view> words_of(std::string_view text, const std::string& key) {
     LineReader lines(text);
     while (const auto line = lines.next()) {
@@ -119,7 +122,8 @@ std::vector<std::string_view> words_of(std::string_view text, const std::string&
     return {};
 }
 
-/// KITTI raw: images of the rectified size belong to P_rect of their two cameras; others are raw.
+/// Reads the rig of KITTI raw. Images of the rectified size belong to P_rect of the two cameras;
+/// images of another size are raw.
 Result<camera::StereoRig> raw_kitti_rig(const std::string& path,
                                         const Layout& layout,
                                         ImageSize size) {
@@ -154,7 +158,7 @@ Result<camera::StereoRig> calib_txt_rig(const std::string& path,
     return kitti_rig(*calibration, layout.left_camera, layout.right_camera, size, path);
 }
 
-/// Chooses the rig. calib.txt has no image size, so it is read from the first image.
+/// Chooses the rig. calib.txt has no image size, so the size comes from the first image.
 Result<camera::StereoRig> choose_rig(const std::string& folder,
                                      const OpenOptions& options,
                                      const PairOfFolders& pair) {
@@ -172,16 +176,17 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
     if (is_file(join_path(folder, "cam0/sensor.yaml"))) return read_euroc_rig(folder);
     if (const auto raw = raw_calibration(folder)) return raw_kitti_rig(*raw, pair.layout, size);
     if (std::string_view(pair.layout.kind) == "kitti")
-        return calib_txt_rig(kitti, pair.layout, size);  // returns its error
+        return calib_txt_rig(kitti, pair.layout, size);  // returns the error of calib.txt
     return input_error(
-        fmt::format("{}: {} left and {} right images but no calibration; put a rig.yaml beside "
-                    "their folders or give one with --rig",
+        fmt::format("{}: the folder has {} left and {} right images but no calibration. Put a "
+                    "rig.yaml beside the two image folders, or give a rig with --rig",
                     folder,
                     pair.left.size(),
                     pair.right.size()));
 }
 
-/// File name of the right image for a left image: the same name, or with "right" instead of "left".
+/// Returns the file name of the right image for a left image: the same name, or with "right"
+/// instead of "left".
 std::string partner_name(const std::string& name) {
     std::string partner = name;
     const std::string lower = lowercase(name);
@@ -211,8 +216,8 @@ void add_frame(const PairOfFolders& pair,
     recording.frames.push_back(std::move(entry));
 }
 
-/// Pairs by names, else by the stamps in the names, else by order. Stamps are 0 where the names
-/// hold none.
+/// Pairs images by names, else by the stamps in the names, else by order. A stamp is 0 if the names
+/// hold no stamps.
 Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Recording& recording) {
     const auto left_stamps = stamps_of_names(pair.left);
     const auto time_of = [&](std::size_t i) { return left_stamps ? left_stamps->times_ns[i] : 0; };
@@ -233,15 +238,16 @@ Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Record
     } else if (pair.left.size() == pair.right.size()) {
         for (std::size_t i = 0; i < pair.left.size(); ++i)
             add_frame(pair, pair.left[i], pair.right[i], time_of(i), recording);
-        recording.info.notes.push_back(fmt::format(
-            "left and right images have different names ({}, {}); they are paired in their order",
-            pair.left.front(),
-            pair.right.front()));
+        recording.info.notes.push_back(
+            fmt::format("left and right images have different names ({}, {}); they are paired in "
+                        "the order of their names",
+                        pair.left.front(),
+                        pair.right.front()));
         return {};
     }
     return input_error(
-        fmt::format("{} has {} images and {} has {}, and neither names nor time stamps show which "
-                    "belong together; give both images of a frame the same name",
+        fmt::format("{} has {} images and {} has {}. Neither names nor time stamps show which "
+                    "images belong together; give both images of a frame the same name",
                     pair.left_folder,
                     pair.left.size(),
                     pair.right_folder,
@@ -254,14 +260,17 @@ void constant_rate(double rate_hz, Recording& recording) {
     recording.rig.rate_hz = rate_hz;
 }
 
-/// Stamps of a list with a row for each left image.
+/// Sets the stamps from a list with a row for each left image.
 Status listed_stamps(const std::string& path,
                      const Result<std::vector<std::int64_t>>& times_ns,
                      Recording& recording) {
     if (!times_ns) return times_ns.error();
     if (times_ns->size() < recording.frames.size()) {
-        return input_error(fmt::format(
-            "{}: {} stamps for {} images", path, times_ns->size(), recording.frames.size()));
+        return input_error(
+            fmt::format("{}: {} time stamps for {} images; each image needs a time stamp",
+                        path,
+                        times_ns->size(),
+                        recording.frames.size()));
     }
     for (std::size_t i = 0; i < recording.frames.size(); ++i) {
         recording.frames[i].time_ns = (*times_ns)[i];
@@ -270,7 +279,8 @@ Status listed_stamps(const std::string& path,
     return {};
 }
 
-/// --rate; else times.txt or timestamps.txt; else the stamps in the names; else the rig's rate.
+/// Sets the stamps from the first available source: --rate, times.txt or timestamps.txt, the stamps
+/// in the names, the rate of the rig.
 Status set_stamps(const std::string& folder,
                   const OpenOptions& options,
                   const PairOfFolders& pair,
@@ -297,14 +307,15 @@ Status set_stamps(const std::string& folder,
     }
     if (const auto named = stamps_of_names(pair.left)) {
         recording.info.notes.push_back(
-            fmt::format("the stamps are those of the file names, in {}", named->unit));
+            fmt::format("the time stamps are read from the file names, in {}", named->unit));
         return {};
     }
     constant_rate(*rate_hz, recording);
     if (!of_kitti) {
-        recording.info.notes.push_back(fmt::format(
-            "the images have no stamps: {:g} frames a second are assumed; --rate sets another rate",
-            *rate_hz));
+        recording.info.notes.push_back(
+            fmt::format("the images have no time stamps: {:g} frames per second are assumed; "
+                        "--rate sets another rate",
+                        *rate_hz));
     }
     return {};
 }
@@ -313,7 +324,7 @@ Status set_stamps(const std::string& folder,
 
 bool has_pair_folders(const std::string& folder) {
     for (const Layout& layout : kLayouts) {
-        const bool by_cameras = std::string_view(layout.left) == "cam0";  // may also be EuRoC
+        const bool by_cameras = std::string_view(layout.left) == "cam0";  // may be EuRoC
         if (!is_folder(join_path(folder, layout.left))) continue;
         if (!by_cameras) return true;
         const auto images = images_in(image_folder(folder, layout.left));

@@ -17,7 +17,7 @@ struct Match {
     std::size_t right;
 };
 
-/// Every pair within the tolerance, the closest first.
+/// Returns every pair within the tolerance, the closest pair first.
 std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
                               const std::vector<std::int64_t>& right_ns,
                               std::int64_t tolerance_ns) {
@@ -34,7 +34,8 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
             order.end(),
             time_ns - tolerance_ns,
             [&](std::size_t i, std::int64_t earliest_ns) { return right_ns[i] < earliest_ns; });
-        // Few frames lie within the tolerance; the limit bounds the work for damaged lists.
+        // Normally few frames lie within the tolerance. The limit bounds the work for damaged
+        // lists.
         for (int n = 0; n < 16 && r != order.end() && right_ns[*r] <= time_ns + tolerance_ns; ++n) {
             matches.push_back({std::abs(right_ns[*r] - time_ns), l, *r});
             ++r;
@@ -46,7 +47,8 @@ std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
     return matches;
 }
 
-/// Nanoseconds per unit of a stamp since 1970 with this number of digits; 0 = not such a stamp.
+/// Returns the nanoseconds per unit of a stamp since 1970 with this number of digits. 0 = no stamp
+/// has this number of digits.
 std::int64_t tick_ns(std::size_t digits) {
     switch (digits) {
         case 13: return 1'000'000;

@@ -17,10 +17,10 @@ using Partners = std::vector<std::optional<std::size_t>>;
                                     const std::vector<std::int64_t>& right_ns,
                                     std::int64_t tolerance_ns);
 
-/// A fifth of the median time between frames; 0 for fewer than two stamps.
+/// Returns a fifth of the median time between frames; 0 for fewer than two stamps.
 [[nodiscard]] std::int64_t fifth_of_frame_time_ns(std::vector<std::int64_t> times_ns);
 
-/// Stamps in file names without extension, if all names hold one: seconds with a point
+/// Reads stamps from file names without extension, if all names hold a stamp: seconds with a point
 /// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970, at most
 /// kMaxStamp_ns.
 struct NameStamps {

@@ -113,7 +113,8 @@ bool Recorder::read_back(StereoFrame& frame) const {
 Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {
     if (impl_->last_truth_ns && time_ns <= *impl_->last_truth_ns) {
         return input_error(
-            fmt::format("{}: the time stamp {} s of the ground truth does not increase",
+            fmt::format("{}: the time stamp {} s of the ground truth does not increase; write "
+                        "poses in order of time",
                         impl_->folder,
                         format_seconds(time_ns)));
     }
@@ -123,7 +124,7 @@ Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {
         if (!file) return file.error();
         impl_->truth = std::move(file).value();
     } else {
-        text.erase(0, text.find('\n') + 1);  // the header already exists
+        text.erase(0, text.find('\n') + 1);  // the file already has its header line
     }
     impl_->last_truth_ns = time_ns;
     return impl_->truth->append(text);

@@ -14,25 +14,25 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/recordings/pairing.hpp"
 
-/// Recordings on disk, indexed before any image is opened. One indexer per layout; all of them
-/// return the same list, from which RecordingSource makes frames.
+/// Indexes recordings on disk before any image is opened. Each layout has an indexer. All indexers
+/// return the same kind of list, from which RecordingSource makes frames.
 namespace surefoot::io {
 
 struct OpenOptions {
-    std::optional<std::string> rig_file;  ///< replaces the recording's own calibration
-    std::optional<double> rate_hz;        ///< frame rate of recordings without stamps
-    int first_frame = 0;                  ///< earlier frames are skipped
+    std::optional<std::string> rig_file;  ///< path; replaces the calibration of the recording
+    std::optional<double> rate_hz;        ///< frame rate for recordings without stamps
+    int first_frame = 0;                  ///< index of the first frame to read
     /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
     std::optional<double> pair_tolerance_s = {};
-    std::optional<double> depth_codes_per_m = {};  ///< RGB-D only; default kDepthCodesPerMetre
+    std::optional<double> depth_codes_per_m = {};  ///< RGB-D; default kDepthCodesPerMetre
     /// Bits of the largest value in 16-bit images (9..16); the upper 8 of them are used. Default:
     /// as many bits as the first, the middle and the last image need.
     std::optional<int> image_bits = {};
-    bool skip_broken = false;  ///< continue after unusable frames, see skip_broken_frames
+    bool skip_broken = false;  ///< continue after unusable frames (skip_broken_frames)
 };
 
-/// TUM RGB-D: depth code 5000 is one metre, 0 is no measurement.
+/// Depth codes per metre of TUM RGB-D; code 0 means no measurement.
 inline constexpr float kDepthCodesPerMetre = 5000.0F;
 /// Depth codes per metre for depth cameras that store millimetres.
 inline constexpr float kMillimetresPerMetre = 1000.0F;
@@ -42,7 +42,7 @@ struct FrameEntry {
     std::int64_t time_ns = 0;
     std::string left;   ///< left image, side-by-side image, or colour image of RGB-D
     std::string right;  ///< right image or depth image; empty for side by side
-    std::string where;  ///< "mav0/cam0/data.csv:17", for errors about the stamp
+    std::string where;  ///< file and line of the stamp, "mav0/cam0/data.csv:17"
 };
 
 struct Recording {
@@ -50,32 +50,32 @@ struct Recording {
     camera::SourceInfo info;
     camera::StereoRig rig;
     std::vector<FrameEntry> frames;
-    std::vector<ImuSample> imu;     ///< strictly increasing stamps
-    int unpaired = 0;               ///< frames of one camera without a partner in the other's list
+    std::vector<ImuSample> imu;     ///< IMU samples with strictly increasing stamps
+    int unpaired = 0;               ///< images without a partner of the other camera
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
-    double largest_pair_difference_s = 0.0;  ///< between the stamps of both images of a frame
-    float depth_codes_per_m = kDepthCodesPerMetre;  ///< RGB-D only
-    int image_bits = 8;                             ///< more than 8: 16-bit images, see OpenOptions
+    double largest_pair_difference_s = 0.0;         ///< between the two images of a frame
+    float depth_codes_per_m = kDepthCodesPerMetre;  ///< of the depth images; RGB-D only
+    int image_bits = 8;                             ///< used bits; more than 8 = 16-bit images
 };
 
 /// Indexes EuRoC ASL: `folder` contains cam0 and cam1 ("mav0").
 [[nodiscard]] Result<Recording> index_euroc(const std::string& folder, const OpenOptions& options);
 /// Reads imu0/data.csv, if the rig has an IMU and the file exists.
 [[nodiscard]] Status read_euroc_imu(const std::string& folder, Recording& recording);
-/// Indexes left and right images in a folder each: KITTI odometry (image_0 and image_1, image_l and
-/// image_r, image_2 and image_3; calib.txt, times.txt), KITTI raw (image_00 and image_01, image_02
-/// and image_03, with data/ and timestamps.txt), cam0 and cam1 without lists, left and right; or
-/// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
+/// Indexes left and right images in two folders: image_0 + image_1, image_l + image_r, image_2 +
+/// image_3 (KITTI odometry; calib.txt, times.txt), image_00 + image_01, image_02 + image_03 (KITTI
+/// raw; data/, timestamps.txt), cam0 + cam1 without lists, left + right. Or: left* and right* in
+/// one folder. docs/get_started/own_camera.md explains pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
-/// Whether a folder contains such a pair.
+/// Whether a folder contains left and right images in one of these layouts.
 [[nodiscard]] bool has_pair_folders(const std::string& folder);
-/// Indexes images with the left camera in the left half and the right camera in the right half, in
-/// natural order, at the rig's rate or 15 Hz; rig.yaml in the folder.
+/// Indexes images that show the left camera in the left half and the right camera in the right
+/// half, in natural order. The folder has a rig.yaml; the rate is that of the rig, or 15 Hz.
 [[nodiscard]] Result<Recording> index_side_by_side(const std::string& folder,
                                                    const OpenOptions& options);
 /// Indexes TUM RGB-D: associations.txt, or rgb.txt and depth.txt associated within 20 ms; depth
-/// codes are 1/5000 m. Kinect intrinsics (525, 525, 319.5, 239.5) unless a rig replaces them.
+/// codes are 1/5000 m. Uses Kinect intrinsics (525, 525, 319.5, 239.5) unless a rig replaces them.
 [[nodiscard]] Result<Recording> index_tum_rgbd(const std::string& folder,
                                                const OpenOptions& options);
 
@@ -110,17 +110,17 @@ struct AssociatedRow {
 [[nodiscard]] Result<std::vector<std::int64_t>> parse_timestamps(std::string_view text,
                                                                  const std::string& file);
 
-/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else no value. `size`: image size
-/// of one camera, if known (see read_rig).
+/// Returns the rig of `options.rig_file`, else of rig.yaml in `folder`, else no value. `size`:
+/// image size of one camera, if known (see read_rig).
 [[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(
     const std::string& folder, const OpenOptions& options, std::optional<ImageSize> size = {});
-/// Size in the header of an image file; no value if it cannot be read.
+/// Returns the size in the header of an image file; no value if the file cannot be read.
 [[nodiscard]] std::optional<ImageSize> image_size_of(const std::string& path);
 /// Image size of one camera in a side-by-side image (half the width); no value for odd widths.
 [[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
 /// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
-/// adds a note. For any other size the rig stays, and the frames are refused. A ratio like 2/3 may
-/// also be a different crop of the sensor, with other angles.
+/// adds a note. For other sizes the rig stays unchanged, and the frames are refused. A ratio like
+/// 2/3 may also be a different crop of the sensor, with other angles.
 void fit_rig(camera::StereoRig& rig,
              std::optional<ImageSize> images,
              std::vector<std::string>& notes);
@@ -133,11 +133,11 @@ void set_pair_tolerance(const OpenOptions& options,
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
-/// Frame rate for frames without stamps: the rate of the options, or `otherwise_hz` without one.
+/// Returns the rate for frames without stamps: that of the options, otherwise `otherwise_hz`.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
-/// Error if the options give a rate although the recording has stamps.
+/// Returns an error if the options give a rate although the recording has stamps.
 [[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
-/// Stamp of frame `index` at a constant rate, starting at 0.
+/// Returns the stamp of frame `index` at a constant rate; frame 0 has the stamp 0.
 [[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
 
 /// Opens the frames of an index one after another. An unusable frame is an error that names the

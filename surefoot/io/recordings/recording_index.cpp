@@ -51,7 +51,7 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
     unsigned largest = 0;
     for (const std::size_t i : {std::size_t{0}, frames.size() / 2, frames.size() - 1}) {
         const Result<std::string> bytes = read_file(frames[i].left, limits::kImageBytes);
-        if (!bytes) return {};  // reported when the frame is read
+        if (!bytes) return {};  // reading the frame reports the error
         const Result<ImageHeader> header = check_image(*bytes, frames[i].left);
         if (!header || header->bits != 16) return {};
         const Result<DepthCodes> codes = parse_depth_codes(*bytes, frames[i].left);
@@ -59,7 +59,7 @@ Status choose_image_bits(const OpenOptions& options, Recording& recording) {
         for (std::size_t k = 0; k < codes->size(); ++k)
             largest = std::max<unsigned>(largest, codes->data()[k]);
     }
-    // Sensors have 10, 12, 14 or 16 bits; cameras often shift shorter values up to 16 bits.
+    // Sensors have 10, 12, 14 or 16 bits. Cameras often shift values of fewer bits up to 16 bits.
     int guess = 16;
     for (const int bits : {14, 12, 10})
         if (largest > 0 && static_cast<int>(std::bit_width(largest)) <= bits) guess = bits;
@@ -244,11 +244,11 @@ Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
     const std::string within =
         fmt::format("within {:g} ms (--pair-tolerance)", 1e3 * recording.pair_tolerance_s);
     if (largest_ns > 0) {
-        recording.info.notes.push_back(
-            fmt::format("the stamps of both images of a frame differ by up to {:.3f} ms; they are "
-                        "paired {}, and the frame has the stamp of the first one",
-                        1e3 * recording.largest_pair_difference_s,
-                        within));
+        recording.info.notes.push_back(fmt::format(
+            "the time stamps of the two images of a frame differ by up to {:.3f} ms. Images are "
+            "paired {}, and the frame gets the time stamp of its first image",
+            1e3 * recording.largest_pair_difference_s,
+            within));
     }
     if (recording.unpaired > 0 && recording.unpaired < static_cast<int>(partners.size())) {
         recording.info.notes.push_back(

@@ -33,7 +33,7 @@ Status check_size(const GreyImage& image, const camera::StereoRig& rig, const st
                     rig.left.height));
 }
 
-/// Reads a camera image; from 16-bit images it takes the upper 8 of `bits`.
+/// Reads a camera image. From 16-bit images the function uses the upper 8 of `bits` bits.
 Result<GreyImage> read_camera_image(const std::string& path, int bits) {
     if (bits == 8) return read_grey_image(path);
     const Result<DepthCodes> codes = read_depth_codes(path);

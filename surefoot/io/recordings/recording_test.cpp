@@ -468,7 +468,7 @@ TEST(KittiSource, BadInputIsNamed) {
                 contains(repeated.errors, "repeats"))
         << repeated.errors;
     ASSERT_TRUE(write_file(folder / "a/times.txt", "0.0\n0.2\n").ok());
-    EXPECT_TRUE(contains(play(folder / "a").errors, "times.txt: 2 stamps for 3 images"));
+    EXPECT_TRUE(contains(play(folder / "a").errors, "times.txt: 2 time stamps for 3 images"));
     ASSERT_TRUE(write_file(folder / "a/times.txt", "0.0\nx\n").ok());
     EXPECT_TRUE(contains(play(folder / "a").errors, "times.txt:2: stamp 'x'"));
     std::filesystem::remove(folder / "a/times.txt");
@@ -493,7 +493,7 @@ TEST(SideBySideSource, CutsInNaturalOrderAtFifteenHertz) {
                               noise_image(2 * kWidth, kHeight, static_cast<std::uint64_t>(i)))
                         .ok());
     }
-    EXPECT_TRUE(contains(play(folder.path()).errors, "4 images but no rig"));
+    EXPECT_TRUE(contains(play(folder.path()).errors, "the folder has 4 images but no rig"));
     ASSERT_TRUE(write_file(folder / "rig.yaml", kSideBySideRig).ok());
     const Played played = play(folder.path());
     ASSERT_EQ(played.frames.size(), 4U) << played.errors;
@@ -546,7 +546,7 @@ TEST(SideBySideSource, PlaysAVideo) {
             writer.write(image);
         }
     }
-    EXPECT_TRUE(contains(play(path).errors, "a video but no rig"));
+    EXPECT_TRUE(contains(play(path).errors, "this video has no rig"));
     ASSERT_TRUE(write_file(folder / "rig.yaml", kSideBySideRig).ok());
     const Played played = play(path);
     ASSERT_EQ(played.frames.size(), 4U) << played.errors;

@@ -22,11 +22,11 @@ class RecordingWriter {
     [[nodiscard]] virtual Status close() = 0;
     /// Reads the images written for the stamp of `frame`; false unless all are complete.
     [[nodiscard]] virtual bool read_back(StereoFrame& frame) const = 0;
-    /// Size of all written images.
+    /// Returns the size of all written images [bytes].
     [[nodiscard]] virtual std::int64_t bytes() const noexcept = 0;
 };
 
-/// Size of a written file; 0 if it does not exist.
+/// Returns the size of a written file [bytes]; 0 if the file does not exist.
 [[nodiscard]] std::int64_t written_bytes(const std::string& path) noexcept;
 
 [[nodiscard]] std::unique_ptr<RecordingWriter> make_euroc_writer(const std::string& folder,

@@ -29,10 +29,11 @@ Result<Recording> index_side_by_side(const std::string& folder, const OpenOption
         folder, options, one_camera(image_size_of(join_path(folder, names->front()))));
     if (!rig) return rig.error();
     if (!rig->has_value()) {
-        return input_error(fmt::format(
-            "{}: {} images but no rig; put a rig.yaml beside them or give one with --rig",
-            folder,
-            names->size()));
+        return input_error(
+            fmt::format("{}: the folder has {} images but no rig; put a rig.yaml beside the images "
+                        "or give a rig with --rig",
+                        folder,
+                        names->size()));
     }
     Recording recording;
     recording.storage = Recording::Storage::side_by_side;

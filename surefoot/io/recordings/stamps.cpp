@@ -26,7 +26,7 @@ std::optional<StampUnit> stamp_unit_named(std::string_view name) noexcept {
 }
 
 StampUnit stamp_unit_of(std::span<const std::string_view> words) {
-    // The year 1973 or later, in each unit; 1e11 s would be the year 5138.
+    // These limits mean the year 1973 or later in each unit. 1e11 s would be the year 5138.
     constexpr double kSince1970_ns = 1e17;
     constexpr double kSince1970_us = 1e14;
     constexpr double kSince1970_ms = 1e11;

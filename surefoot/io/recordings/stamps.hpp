@@ -14,10 +14,10 @@ inline constexpr std::int64_t kMaxStamp_ns = 9'200'000'000'000'000'000;
 /// Unit of stamps in files.
 struct StampUnit {
     std::string_view name;  ///< "s", "ms", "us" or "ns"
-    int decimals = 9;       ///< a stamp times 10^decimals is in nanoseconds
+    int decimals = 9;       ///< stamp * 10^decimals is the time in ns
 };
 
-/// The unit with this name ("s", "sec", "ns", ...); no value for other names.
+/// Returns the unit with this name ("s", "sec", "ns", ...); no value for other names.
 [[nodiscard]] std::optional<StampUnit> stamp_unit_named(std::string_view name) noexcept;
 
 /// Guesses the unit of stamps from their text. Stamps since 1970 are recognised by size: ns from

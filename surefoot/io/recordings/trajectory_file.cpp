@@ -14,18 +14,19 @@
 namespace surefoot::io {
 namespace {
 
-/// Six printed decimals keep a unit quaternion to 1e-6; more than this is not a rounding error.
+/// Limit of the length error of a quaternion. Six printed decimals keep the length to 1e-6; an
+/// error above this limit is not a rounding error.
 constexpr double kNormTolerance = 0.01;
-/// KITTI prints seven digits.
+/// Limit of R^T R - I; KITTI prints seven digits.
 constexpr double kRotationTolerance = 1e-3;
-constexpr double kFarthest_m = 1e9;  ///< a micrometre still differs there
+constexpr double kFarthest_m = 1e9;  ///< largest coordinate; a double still resolves 1 um there
 constexpr std::int64_t kKittiPeriod_ns = 100'000'000;
 
 Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// x y z qx qy qz qw.
+/// Builds a pose from x y z qx qy qz qw.
 Result<Pose> pose_of_seven(const std::array<double, 12>& v) {
     const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
     if (std::abs(rotation.norm() - 1.0) > kNormTolerance) {
@@ -35,15 +36,16 @@ Result<Pose> pose_of_seven(const std::array<double, 12>& v) {
     return Pose{rotation.normalized(), {v[0], v[1], v[2]}};
 }
 
-/// The upper 3x4 of a matrix, row by row.
+/// Builds a pose from the upper 3x4 part of a matrix, row by row.
 Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
     Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
     for (Eigen::Index i = 0; i < 12; ++i) T(i / 4, i % 4) = v[static_cast<std::size_t>(i)];
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
     const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
-        return input_error(
-            fmt::format("its left 3x3 is not a rotation (R^T R differs from 1 by {:.3g})", error));
+        return input_error(fmt::format(
+            "the left 3x3 part of the matrix is not a rotation (R^T R differs from 1 by {:.3g})",
+            error));
     }
     return Pose::from_matrix(T);
 }
@@ -55,7 +57,7 @@ StampUnit unit_of(const TrajectoryTable& table) {
     return stamp_unit_of(stamps);
 }
 
-/// Sorts by time; of poses with one stamp the first of the file is kept.
+/// Sorts poses by time. Keeps the first pose of the file if several poses have the same stamp.
 void sort_and_thin(TrajectoryFile& out) {
     const auto earlier = [](const StampedPose& a, const StampedPose& b) {
         return a.time_ns < b.time_ns;
@@ -89,7 +91,7 @@ std::vector<std::string> TrajectoryFile::notes() const {
     }
     if (not_finite > 0)
         notes.push_back(fmt::format("{} rows with NaN or infinity are left out", not_finite));
-    if (sorted) notes.emplace_back("the rows were not in the order of time and are now sorted");
+    if (sorted) notes.emplace_back("the rows were not in order of time; the program sorted them");
     return notes;
 }
 
@@ -140,8 +142,10 @@ Status give_stamps(std::span<const std::int64_t> times_ns,
                    const std::string& from,
                    TrajectoryFile& trajectory) {
     if (times_ns.size() < trajectory.rows) {
-        return input_error(
-            fmt::format("{}: {} stamps for {} poses", from, times_ns.size(), trajectory.rows));
+        return input_error(fmt::format("{}: {} time stamps for {} poses; the numbers must be equal",
+                                       from,
+                                       times_ns.size(),
+                                       trajectory.rows));
     }
     for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
         trajectory.poses[i].time_ns = times_ns[trajectory.row_of_pose[i]];
@@ -208,7 +212,8 @@ Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::
             return at_line(
                 file,
                 line_of[i],
-                fmt::format("stamp {} is not a time in {} from 0 on", quoted(words[i]), unit.name));
+                fmt::format(
+                    "time stamp {} is not a time in {} of 0 or more", quoted(words[i]), unit.name));
         }
         times_ns.push_back(*time_ns);
     }

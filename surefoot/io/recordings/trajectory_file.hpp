@@ -15,21 +15,21 @@ namespace surefoot::io {
 
 /// A trajectory with the format of its file and the corrections that were made.
 struct TrajectoryFile {
-    Trajectory poses;    ///< stamps strictly increasing
+    Trajectory poses;    ///< poses with strictly increasing stamps
     std::string format;  ///< "TUM", "EuRoC csv", "KITTI poses" or "columns by name"
-    std::string stamps;  ///< unit in the file ("s", "ms", "us", "ns"); with KITTI poses "none", or
-                         ///< where they are from
-    std::int64_t repeated = 0;      ///< rows left out: their stamp already existed
-    double repeated_apart_m = 0.0;  ///< largest distance of such a row from the kept row
-    std::int64_t not_finite = 0;    ///< rows left out: a number is NaN or infinite
-    bool sorted = false;            ///< the rows of the file were not in time order
-    /// KITTI poses have no stamps: they count as 10 Hz from 0 until `give_stamps`, which needs the
-    /// row number of each pose and the number of rows. Empty if the file has stamps.
+    std::string stamps;  ///< unit in the file ("s", "ms", "us", "ns"); for KITTI poses "none" or
+                         ///< the source of the stamps
+    std::int64_t repeated = 0;      ///< number of left-out rows with a repeated stamp
+    double repeated_apart_m = 0.0;  ///< largest distance of a left-out row from its kept row
+    std::int64_t not_finite = 0;    ///< number of left-out rows with NaN or infinity
+    bool sorted = false;            ///< true if the rows of the file were not in time order
+    /// Row number of each pose, for `give_stamps`; empty if the file has stamps. KITTI poses have
+    /// no stamps: until `give_stamps` they have a rate of 10 Hz and start at 0 s.
     std::vector<std::size_t> row_of_pose;
     std::size_t rows = 0;
 
     [[nodiscard]] bool has_stamps() const noexcept { return stamps != "none"; }
-    /// One sentence for each correction of the rows.
+    /// Returns one sentence for each correction of the rows.
     [[nodiscard]] std::vector<std::string> notes() const;
 };
 
@@ -45,8 +45,8 @@ struct TrajectoryFile {
 /// columns.
 [[nodiscard]] Result<TrajectoryFile> parse_trajectory(std::string_view text,
                                                       const std::string& file);
-/// Reads a trajectory file. KITTI poses get their stamps from times.txt in the same folder, if it
-/// exists and the caller does not disable it.
+/// Reads a trajectory file. KITTI poses get their stamps from times.txt in the same folder, if the
+/// file exists and the caller does not disable this.
 [[nodiscard]] Result<TrajectoryFile> read_trajectory(const std::string& path,
                                                      bool ignore_times_beside = false);
 /// Assigns stamps to KITTI poses; `times_ns` has one stamp per row. Sorts and thins the poses like
@@ -55,7 +55,7 @@ struct TrajectoryFile {
                                  const std::string& from,
                                  TrajectoryFile& trajectory);
 
-/// Formats TUM: stamps with 9 decimals are exact; lengths to 1e-9 m.
+/// Formats poses as TUM. Stamps have 9 decimals and are exact; lengths are exact to 1e-9 m.
 [[nodiscard]] std::string format_tum_trajectory(const Trajectory& trajectory);
 [[nodiscard]] Status write_tum_trajectory(const std::string& path, const Trajectory& trajectory);
 

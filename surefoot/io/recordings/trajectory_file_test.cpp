@@ -47,7 +47,7 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
     };
     const std::string good = "1 0 0 0 0 0 0 1\n";
     EXPECT_TRUE(contains(why("1 0 0 0 0 0 0\n"),
-                         "a.tum:1: the line has 7 numbers; a line of a trajectory has 8"));
+                         "a.tum:1: the line has 7 numbers. A line of a trajectory has 8"));
     EXPECT_TRUE(
         contains(why(good + "2 0 0 0 0 0 0\n"), "a.tum:2: the line has 7 numbers, but needs 8"));
     EXPECT_TRUE(contains(why(good + "2 1 2 3 0 0 0 0\n"), "a.tum:2: quaternion has length 0.0000"));
@@ -60,12 +60,12 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
     EXPECT_TRUE(contains(why("1,5;0,1;0;0;0;0;0;1\n"), "'1,5' has a decimal comma"));
     EXPECT_TRUE(contains(why("# only a comment\n"), "no poses"));
     EXPECT_TRUE(contains(why("1 nan 0 0 0 0 0 1\n"), "no poses in this trajectory (1 rows"));
-    EXPECT_TRUE(contains(why("a b c d e f g h\n" + good), "the head line begins with 'a'"));
+    EXPECT_TRUE(contains(why("a b c d e f g h\n" + good), "the header line begins with 'a'"));
     EXPECT_TRUE(contains(why(std::string("\xff\xfe") + "1"), "a.tum:1: is text in UTF-16"));
     EXPECT_TRUE(
         contains(why("1403636579000000000,0,0,0,1,0,0,0\n"), "is the quaternion qw,qx,qy,qz"));
-    EXPECT_TRUE(
-        contains(why("1 0 0 0 0 1 0 0 0 0 2 0\n"), "a.tum:1: its left 3x3 is not a rotation"));
+    EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 2 0\n"),
+                         "a.tum:1: the left 3x3 part of the matrix is not a rotation"));
     EXPECT_TRUE(contains(why("1 0 0 0 0 1 0 0 0 0 -1 0\n"), "not a rotation"));
     EXPECT_TRUE(
         contains(write_tum_trajectory("/dev/full", {{1, Pose{}}}).error().message, "No space"));
@@ -236,7 +236,7 @@ TEST(RawFloats, RoundTripAndRefuseWrongSizes) {
     EXPECT_TRUE(
         contains(message(read_floats(folder / "a.f32", 4)), "3 float32 values; 4 are expected"));
     EXPECT_TRUE(
-        contains(message(parse_floats("abc", "a.f32")), "a.f32: 3 bytes are no whole number"));
+        contains(message(parse_floats("abc", "a.f32")), "a.f32: 3 bytes are not a multiple of 4"));
     const std::string path = data_path("conformance/traversability/elevation.f32");
     if (!path.empty()) {
         EXPECT_EQ(read_floats(path)->size(), 230400U / 4U);

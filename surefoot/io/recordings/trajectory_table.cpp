@@ -16,15 +16,15 @@ constexpr std::size_t kTumColumns = 8;
 constexpr std::size_t kKittiColumns = 12;
 constexpr std::size_t kEurocColumns = 17;
 constexpr PosePlaces kTumPlaces = {0, 1, 2, 3, 4, 5, 6, 7};
-constexpr PosePlaces kEurocPlaces = {0, 1, 2, 3, 5, 6, 7, 4};  // the quaternion begins with w
+constexpr PosePlaces kEurocPlaces = {0, 1, 2, 3, 5, 6, 7, 4};  // here the quaternion begins with w
 
 template <std::size_t N>
 bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Role of a column among the eight numbers of a stamped pose. The axis is the end of the column
-/// name, after the prefixes of TUM, EuRoC, ROS and evo.
+/// Returns the role of a column among the eight numbers of a stamped pose. The axis is the end of
+/// the column name, after the prefixes of TUM, EuRoC, ROS and evo.
 std::optional<std::size_t> role_of(std::string_view key) {
     constexpr std::array<std::string_view, 9> kStamps = {"t",
                                                          "time",
@@ -48,7 +48,8 @@ std::optional<std::size_t> role_of(std::string_view key) {
     return is_one_of(key, kRotations) ? std::optional(4 + axis) : std::nullopt;
 }
 
-/// Column numbers from a header line; no value unless each of the eight roles occurs exactly once.
+/// Returns column numbers from a header line; no value unless each of the eight roles occurs
+/// exactly once.
 std::optional<PosePlaces> places_of(const std::vector<Column>& columns) {
     PosePlaces places{};
     std::array<int, 8> count{};
@@ -62,7 +63,7 @@ std::optional<PosePlaces> places_of(const std::vector<Column>& columns) {
     return all ? std::optional(places) : std::nullopt;
 }
 
-/// Layout of a table without a header line.
+/// Returns the layout of a table without a header line.
 Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, char separator) {
     TrajectoryLayout layout{"TUM", true, words.size(), separator, kTumPlaces, {}};
     if (words.size() == kKittiColumns) {
@@ -78,9 +79,9 @@ Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, c
     }
     if (words.size() != kTumColumns) {
         return input_error(
-            fmt::format("the line has {} numbers; a line of a trajectory has {} (TUM: stamp_s tx "
+            fmt::format("the line has {} numbers. A line of a trajectory has {} (TUM: stamp_s tx "
                         "ty tz qx qy qz qw), {} (KITTI: 3x4 matrices) or {} (ground truth of "
-                        "EuRoC); for other files add a head line with the names of the columns",
+                        "EuRoC). For other files add a header line with the names of the columns",
                         words.size(),
                         kTumColumns,
                         kKittiColumns,
@@ -88,7 +89,7 @@ Result<TrajectoryLayout> layout_of(const std::vector<std::string_view>& words, c
     }
     if (separator == ',' && in_ns) {
         return input_error(
-            "8 numbers with commas and a stamp in ns, but no head line: is the quaternion "
+            "8 numbers with commas and a stamp in ns, but no header line: is the quaternion "
             "qw,qx,qy,qz (EuRoC) or qx,qy,qz,qw (TUM)? Add a first line with the names, for "
             "example '#timestamp [ns],px,py,pz,qw,qx,qy,qz'");
     }
@@ -115,7 +116,7 @@ Result<TrajectoryTable> TrajectoryTable::read(std::string_view text, const std::
 
 Status TrajectoryTable::take_line(std::string_view content, int number) {
     if (is_comment(content)) {
-        if (rows_.empty()) (void)take_head(content);  // otherwise it is an ordinary comment
+        if (rows_.empty()) (void)take_head(content);  // or a plain comment without names
         return {};
     }
     const char separator = rows_.empty() ? separator_of(content) : layout_.separator;
@@ -124,12 +125,12 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
     const bool no_number = std::none_of(words_.begin(), words_.end(), [](std::string_view word) {
         return parse_value(word) || has_decimal_comma(word);
     });
-    if (no_number && content == head_line_) return {};  // a header of a concatenated file
+    if (no_number && content == head_line_) return {};  // repeated header in concatenated files
     if (no_number && rows_.empty()) {
         if (take_head(content)) return {};
         return input_error(
-            fmt::format("the head line begins with {} but does not name a stamp, x, y, z, qx, qy, "
-                        "qz and qw once each: rename the columns, or remove the line",
+            fmt::format("the header line begins with {} but does not name a stamp, x, y, z, qx, "
+                        "qy, qz and qw once each: rename the columns, or remove the line",
                         quoted(words_.front())));
     }
     if (const auto problem = separator_problem(content)) return input_error(*problem);
@@ -167,7 +168,7 @@ Status TrajectoryTable::choose_layout(char separator) {
     }
     if (head_ && !is_comment(head_line_)) {
         return input_error(fmt::format(
-            "{} numbers, but the head line names {} columns", words_.size(), head_->columns));
+            "{} numbers, but the header line names {} columns", words_.size(), head_->columns));
     }
     auto layout = layout_of(words_, separator);
     if (!layout) return layout.error();

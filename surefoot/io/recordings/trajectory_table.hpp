@@ -19,7 +19,7 @@ using PosePlaces = std::array<std::size_t, 8>;
 
 /// Layout of the lines of a trajectory file.
 struct TrajectoryLayout {
-    std::string format;  ///< format name, see TrajectoryFile
+    std::string format;  ///< name of the format (TrajectoryFile::format)
     bool stamped = true;
     std::size_t columns = 0;
     char separator = ' ';
@@ -27,10 +27,10 @@ struct TrajectoryLayout {
     std::optional<StampUnit> unit;  ///< unit of the stamps, if the header names the unit
 };
 
-/// A line of numbers: the seven of a stamped pose, or the twelve of a 3x4 matrix.
+/// A line of numbers: seven numbers of a stamped pose, or twelve of a 3x4 matrix.
 struct TrajectoryRow {
     int line = 0;
-    std::string_view stamp;  ///< view into the text; empty without stamps
+    std::string_view stamp;  ///< stamp as a view into the text; empty without stamps
     std::array<double, 12> numbers{};
     bool finite = true;
 };

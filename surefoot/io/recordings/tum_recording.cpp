@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TUM RGB-D benchmark after Sturm et al. 2012: colour and depth have stamps of their own and are
-// associated by time.
+// Indexes the TUM RGB-D benchmark, after Sturm et al. 2012: colour and depth have stamps of their
+// own and are associated by time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,9 +34,9 @@ Result<std::vector<CsvRow>> read_list(const std::string& path) {
     return parse_tum_list(*text, path);
 }
 
-/// Pairs of images: from associations.txt, or by time without this file.
+/// Pairs of images from associations.txt; without this file, pairs by time.
 struct Association {
-    std::string list;  ///< list of the colour images
+    std::string list;  ///< path of the list of the colour images
     std::vector<CsvRow> colour;
     std::vector<CsvRow> depth;
     Partners partners;
@@ -89,7 +89,7 @@ Result<Association> associate(const std::string& folder,
 }
 
 /// Guesses the depth unit from the first image. The nearest depth decides between millimetres and
-/// the codes of the benchmark, because no depth camera measures nearer than a quarter of a metre.
+/// the codes of the benchmark, because no depth camera measures nearer than 0.25 m.
 Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (options.depth_codes_per_m) {
         const double codes = *options.depth_codes_per_m;
@@ -102,7 +102,7 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     }
     const Result<DepthCodes> codes = read_depth_codes(recording.frames.front().right);
-    if (!codes) return {};  // reported when the frame is read
+    if (!codes) return {};  // reading the frame reports the error
     std::vector<std::uint16_t> known;
     for (std::size_t i = 0; i < codes->size(); ++i)
         if (codes->data()[i] != 0) known.push_back(codes->data()[i]);
@@ -115,9 +115,9 @@ Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
         return {};
     recording.depth_codes_per_m = kMillimetresPerMetre;
     recording.info.notes.push_back(
-        fmt::format("depth is read as millimetres: with 5000 per metre (TUM RGB-D) the first image "
-                    "would begin {:.2f} m from the camera, nearer than depth cameras measure. If "
-                    "this is wrong, give --depth-factor",
+        fmt::format("depth is read as millimetres. With 5000 units per metre (TUM RGB-D) the "
+                    "nearest depth of the first image would be {:.2f} m, nearer than depth cameras "
+                    "measure. If this is wrong, give --depth-factor",
                     near_m));
     return {};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TUM RGB-D benchmark after Sturm et al. 2012, with our rig.yaml for the lens and its place.
+// Writes the layout of the TUM RGB-D benchmark, after Sturm et al. 2012. Adds a rig.yaml of
+// Surefoot for the lens and its pose.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,20 +17,20 @@
 namespace surefoot::io {
 namespace {
 
-/// Nearest code of each depth; 0 for what is unknown or has no code.
+/// Returns the nearest code of each depth; 0 for a depth that is unknown or has no code.
 DepthCodes codes_of(const Image<float>& depth_m) {
     constexpr auto kLast = static_cast<float>(std::numeric_limits<std::uint16_t>::max());
     DepthCodes codes(depth_m.width(), depth_m.height());
     for (std::size_t i = 0; i < codes.size(); ++i) {
         const float code = std::round(depth_m.data()[i] * kDepthCodesPerMetre);
         codes.data()[i] =
-            // in range: 1 to 65535, as asked
+            // in range: 1 to 65535, as checked
             code > 0.0F && code <= kLast ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
     }
     return codes;
 }
 
-/// Inverse of `codes_of`.
+/// Returns the depth of each code; inverse of `codes_of`.
 Image<float> depths_of(const DepthCodes& codes) {
     Image<float> depth_m(codes.width(), codes.height());
     for (std::size_t i = 0; i < codes.size(); ++i)

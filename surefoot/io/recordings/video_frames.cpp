@@ -16,8 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// Frame times from the positions that the decoder reports [ms]. OpenCV reports 0 for frames that
-/// the decoder returns only at the end of the file, and for containers without times.
+/// Computes frame times from the positions that the decoder reports [ms]. OpenCV reports 0 for
+/// frames that the decoder returns only at the end of the file, and for containers without times.
 class FrameTimes {
   public:
     [[nodiscard]] std::optional<std::int64_t> next(double position_ms, double rate_hz) {
@@ -37,7 +37,7 @@ class FrameTimes {
         }
         return saturated_integer<std::int64_t>(std::round(1e6 * last_ms_));
     }
-    /// From the first frame to the end of the last one [s].
+    /// Returns the time from the start of the first frame to the end of the last frame [s].
     [[nodiscard]] double duration_s(double rate_hz) {
         const double last_s = intervals_ms_.empty() ? 1.0 / rate_hz : 1e-3 * typical_ms();
         return 1e-3 * (last_ms_ - first_ms_) + last_s;
@@ -65,8 +65,9 @@ GreyImage grey_of(const cv::Mat& image) {
     return grey;
 }
 
-/// Tolerated missing part of the announced duration [s]. AVI counts its frames; MP4 also counts
-/// frames outside its edit list; other containers give a duration that includes the sound.
+/// Returns the tolerated missing part of the announced duration [s]. AVI counts its frames; MP4
+/// also counts frames outside its edit list; other containers give a duration that includes the
+/// sound.
 double allowed_shortage_s(const std::string& path, double rate_hz) {
     const std::string extension = extension_of(path);
     if (extension == ".avi") return 0.5 / rate_hz;
@@ -105,7 +106,7 @@ Result<std::optional<VideoFrame>> VideoFrames::Impl::decode() {
     try {
         if (!capture.read(image)) image.release();
     } catch (const cv::Exception&) {
-        ended = true;  // a second call might repeat the same failure for ever
+        ended = true;  // a second call could repeat the same failure forever
         return input_error(what + ": cannot be decoded");
     }
     if (image.empty()) return std::optional<VideoFrame>();
@@ -136,7 +137,7 @@ Result<VideoFrames> VideoFrames::open(const std::string& path) {
     impl->path = path;
     bool opened = false;
     try {
-        // Only backends for files: with any backend OpenCV would also search for USB cameras.
+        // Allow only backends for files: with any backend OpenCV would also search for USB cameras.
         opened = impl->capture.open(path, cv::CAP_FFMPEG) ||
                  impl->capture.open(path, cv::CAP_OPENCV_MJPEG);
     } catch (const cv::Exception&) {  // reported below
@@ -173,14 +174,14 @@ Result<std::optional<VideoFrame>> VideoFrames::next() {
         if (video.decoded == 0) return input_error(video.path + ": the video has no frame");
         if (video.breaks_off()) {
             video.held.reset();
-            return input_error(fmt::format(
-                "frame {}: {}: the video breaks off here: {} of the {} frames that its container "
-                "announces can be decoded, and the last of them may be cut off; copy or record the "
-                "file again",
-                video.decoded - 1,
-                video.path,
-                video.decoded,
-                video.count()));
+            return input_error(
+                fmt::format("frame {}: {}: the video breaks off here: {} of the {} frames that its "
+                            "container announces can be decoded, and the last decoded frame may be "
+                            "incomplete. Copy or record the file again",
+                            video.decoded - 1,
+                            video.path,
+                            video.decoded,
+                            video.count()));
         }
     }
     return std::exchange(video.held, std::nullopt);

@@ -12,11 +12,11 @@ namespace surefoot::io {
 
 struct VideoFrame {
     GreyImage image;
-    /// Time from the container. Without times: index / rate; no value without a rate either.
+    /// Time from the container; without times, index / rate. No value without times and rate.
     std::optional<std::int64_t> time_ns;
 };
 
-/// Grey frames of a video file with the times of its container; needs no rig.
+/// Reads grey frames of a video file with the times of its container; needs no rig.
 class VideoFrames {
   public:
     /// Opens regular files only.
@@ -25,14 +25,14 @@ class VideoFrames {
     VideoFrames(VideoFrames&&) noexcept;
     VideoFrames& operator=(VideoFrames&&) noexcept;
 
-    /// Number of frames that the container announces, which may be wrong; 0 = not announced.
+    /// Returns the frame count that the container announces; may be wrong; 0 = not announced.
     [[nodiscard]] int count() const;
-    /// Mean rate that the container announces [Hz]; 0 = no rate between 0.1 and 1000.
+    /// Returns the mean rate that the container announces [Hz]; 0 = no rate between 0.1 and 1000.
     [[nodiscard]] double rate_hz() const;
     [[nodiscard]] int width() const;
     [[nodiscard]] int height() const;
-    /// The next frame; no value at the end. If the video stops before the end that its container
-    /// announces, one error is returned and its possibly truncated last frame is dropped.
+    /// Returns the next frame; no value at the end. If the video stops before the end that its
+    /// container announces, returns one error and drops the last frame, which may be truncated.
     [[nodiscard]] Result<std::optional<VideoFrame>> next();
 
   private:

@@ -18,7 +18,7 @@ double rate_of(const camera::StereoRig& rig) {
     return rig.rate_hz > 0.0 ? rig.rate_hz : kDefaultRate_hz;
 }
 
-/// Side-by-side frames of a video file. `rate_hz` replaces the times of the container.
+/// Reads side-by-side frames of a video file. `rate_hz` replaces the times of the container.
 class VideoSource final : public camera::FrameSource {
   public:
     VideoSource(std::string path,
@@ -51,7 +51,8 @@ class VideoSource final : public camera::FrameSource {
     }
 
   private:
-    /// Adds a note about the rate: --rate, else the container's, else the rig's, else 15 Hz.
+    /// Adds a note about the rate. The rate comes from --rate, else the container, else the rig,
+    /// else 15 Hz.
     void note_rate() {
         const double of_rig_hz = rig_.rate_hz;
         const double of_video_hz = frames_.rate_hz();
@@ -63,7 +64,7 @@ class VideoSource final : public camera::FrameSource {
         }
         info_.notes.push_back(
             fmt::format("the rig says {:g} Hz, but the video has {:g} frames per second (mean). "
-                        "The times of the video are used; --rate {:g} replaces them",
+                        "The program uses the times of the video; --rate {:g} replaces them",
                         of_rig_hz,
                         of_video_hz,
                         of_rig_hz));
@@ -76,7 +77,7 @@ class VideoSource final : public camera::FrameSource {
     int index_ = 0;
 };
 
-/// The rig of a video; `size` is the image size of one camera, if known.
+/// Returns the rig of a video; `size` is the image size of one camera, if known.
 Result<camera::StereoRig> rig_of(const std::string& path,
                                  const OpenOptions& options,
                                  std::optional<ImageSize> size) {
@@ -84,7 +85,8 @@ Result<camera::StereoRig> rig_of(const std::string& path,
     if (!rig) return rig.error();
     if (!rig->has_value()) {
         return input_error(fmt::format(
-            "{}: a video but no rig; put a rig.yaml beside it or give one with --rig", path));
+            "{}: this video has no rig; put a rig.yaml beside the video or give a rig with --rig",
+            path));
     }
     return **rig;
 }

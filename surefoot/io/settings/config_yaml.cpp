@@ -71,7 +71,7 @@ class ListVisitor final : public PathVisitor {
 /// A value found in a file or on the command line.
 struct Given {
     std::string text;
-    std::string where;  ///< "file.yaml:12", "--set"; empty = no known source
+    std::string where;  ///< source: "file.yaml:12" or "--set"; empty = unknown
 };
 
 std::string begin_of_sentence(const std::string& where) {
@@ -80,7 +80,7 @@ std::string begin_of_sentence(const std::string& where) {
 
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
-/// Checks all given values, and assigns them when asked to.
+/// Checks all given values; assigns the values in a second pass.
 class AssignVisitor final : public PathVisitor {
   public:
     AssignVisitor(const GivenValues& given, bool assign) : given_(given), assign_(assign) {}
@@ -177,7 +177,7 @@ bool is_group(const std::string& name, const std::vector<std::string>& keys) {
     });
 }
 
-/// Today's name of a key or group that has an older one; `name` itself if it is known, or if its
+/// Returns today's name of a key or group. Returns `name` itself if it is a known name, or if its
 /// newer name is not a setting of this object.
 std::string name_today(const std::string& name,
                        const std::string& where,
@@ -206,7 +206,7 @@ Status assign_one(const std::string& name,
     return assign({{key, given}}, describe);
 }
 
-/// Flattens the tree into "group.key" -> text, and finds what does not belong.
+/// Flattens the tree into "group.key" -> text, and reports unknown keys.
 Status collect(const YamlNode& node,
                const std::string& prefix,
                const std::string& file,
@@ -218,7 +218,7 @@ Status collect(const YamlNode& node,
         const std::string key = name_today(prefix + child.key, where, keys, notes);
         const bool known = is_key(key, keys);
         if (!known && !is_group(key, keys)) {
-            // Report a complete key: any key inside a misspelled group serves, so take the first.
+            // Report a complete key. If a group is misspelled, report its first key.
             const bool inner = child.is_mapping() && !child.items.empty();
             return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);
         }
@@ -282,7 +282,7 @@ Status parse_config(std::string_view yaml,
                     Notes* notes) {
     const Result<YamlNode> root = parse_yaml(yaml, file);
     if (!root) return usage_error(root.error().message);
-    if (root->kind == YamlNode::Kind::null) return {};  // empty file: nothing to change
+    if (root->kind == YamlNode::Kind::null) return {};  // an empty file changes nothing
     if (!root->is_mapping()) {
         return usage_error(
             fmt::format("{}: expected 'key: value' lines, found {}", file, root->kind_name()));

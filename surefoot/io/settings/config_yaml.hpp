@@ -24,13 +24,13 @@ using Notes = std::vector<std::string>;
 /// One key with its current value, without nesting.
 struct ConfigEntry {
     std::string key;    ///< key with its groups: "elevation.length_m"
-    std::string value;  ///< reads back to the same bits
-    std::string range;  ///< "0.1 .. 100", "true | false", "mean_nan | zero_dominates"
+    std::string value;  ///< text that reads back to the same bits
+    std::string range;  ///< allowed values: "0.1 .. 100" or "true | false"
     std::string comment;
 };
 
 [[nodiscard]] std::vector<ConfigEntry> list_config(const DescribeConfig& describe);
-/// Formats every key with value, range and comment; reads back bit-exactly.
+/// Formats every key with value, range and comment. Reading the text gives the same bits.
 [[nodiscard]] std::string format_config(const DescribeConfig& describe);
 /// Sets the values of a YAML text; keys that the text does not contain keep their values. Groups
 /// may be nested or written with dots ("elevation.length_m: 6").
@@ -42,7 +42,7 @@ struct ConfigEntry {
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe,
                                      Notes* notes = nullptr);
-/// Sets a key to a value that are given separately; an error begins with the key.
+/// Sets a key, given as a separate argument, to a value. An error begins with the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);

@@ -46,8 +46,8 @@ Result<double> IniFile::number(std::string_view section, std::string_view key) c
 
 Result<IniFile> parse_ini(std::string_view text, const std::string& file) {
     if (text.size() > kMaxBytes) {
-        return input_error(
-            fmt::format("{}: {} bytes; such a file has at most {}", file, text.size(), kMaxBytes));
+        return input_error(fmt::format(
+            "{}: the file has {} bytes; at most {} are allowed", file, text.size(), kMaxBytes));
     }
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     IniFile ini;
@@ -74,7 +74,7 @@ Result<IniFile> parse_ini(std::string_view text, const std::string& file) {
         const std::string key = lowercase(trimmed(content.substr(0, equals)));
         const std::string value(trimmed(content.substr(equals + 1)));
         if (!section->try_emplace(key, IniFile::Value{value, lines.number()}).second) {
-            return fail("sets a key of this section again");
+            return fail("sets a key that this section already has; remove one of the two lines");
         }
     }
     return ini;

@@ -10,8 +10,8 @@
 
 namespace surefoot::io {
 
-/// An INI file: [section] lines and key = value lines, names in any case (stored in lower case),
-/// comments from ';' or '#' to the end of the line.
+/// Contents of an INI file: [section] lines and key = value lines. Names are stored in lower case.
+/// Comments begin with ';' or '#'.
 struct IniFile {
     struct Value {
         std::string text;
@@ -22,16 +22,16 @@ struct IniFile {
     std::string name;  ///< file name for messages
     std::map<std::string, Section> sections;
 
-    /// The section, or nullptr.
+    /// Returns the section; nullptr if the file has no such section.
     [[nodiscard]] const Section* find(std::string_view section) const;
-    /// The value, or nullptr.
+    /// Returns the value; nullptr if the section has no such key.
     [[nodiscard]] const Value* find(std::string_view section, std::string_view key) const;
-    /// A required finite number. A comma in it is an explicit error: otherwise "0,5" of a file that
-    /// was written in another locale would be read as 0.
+    /// Returns a required finite number. A comma is an error: otherwise "0,5" from a file that was
+    /// written in another locale would be read as 0.
     [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
 };
 
-/// Errors: a repeated key or section, an unreadable line, more than 1 MB of text.
+/// Fails on a repeated key or section, an unreadable line, or more than 1 MB of text.
 [[nodiscard]] Result<IniFile> parse_ini(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::io

@@ -36,7 +36,8 @@ GroundBox read_box(Group& group) {
     return box;
 }
 
-/// Yaw, then pitch, then roll about the body's axes (REP-103); pitch is positive downward.
+/// Reads the mount. The rotation is yaw, then pitch, then roll about the body's axes (REP-103);
+/// pitch is positive downward.
 void read_mount(Group& mount, MachineFile& out) {
     const Eigen::Vector3d position_m(mount.number("x_m", -2.0, 2.0),
                                      mount.number("y_m", -2.0, 2.0),
@@ -72,7 +73,10 @@ void read_joint(Group& group, std::vector<JointRange>& joints) {
     joint.min_deg = group.number("min_deg", -180.0, 180.0);
     joint.max_deg = group.number("max_deg", -180.0, 180.0);
     if (joint.min_deg > joint.max_deg)
-        group.fail("max_deg", fmt::format("{} is below min_deg {}", joint.max_deg, joint.min_deg));
+        group.fail("max_deg",
+                   fmt::format("{} is below min_deg {}; max_deg must be the larger angle",
+                               joint.max_deg,
+                               joint.min_deg));
     joints.push_back(std::move(joint));
 }
 
@@ -93,7 +97,7 @@ void read_movement(Group& group, Machine& machine) {
         movement.movement_class = MovementClass::stair;
     else if (name_of_class != "walk")
         group.fail("class", quoted(name_of_class) + " is neither walk nor stair");
-    if (code == 0) return;  // missing or refused; this is reported elsewhere or by finish()
+    if (code == 0) return;  // the code is missing or refused; finish() or another check reports it
     Movement& slot = machine.movements[static_cast<std::size_t>(code)];
     if (slot.configured)
         group.fail("code", fmt::format("{} appears twice; give each movement its own code", code));
@@ -125,7 +129,7 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.drop_band_tenth_mm = group.length("drop_band_m", 0.05, 0.5);
     // in range: number() gives at most 1.0
     limits.drop_evidence = static_cast<std::uint8_t>(
-        // in range: the same
+        // in range: number() gives 0.004 to 1.0
         std::max(1L, std::lround(255.0 * group.number("drop_evidence", 0.004, 1.0))));
     limits.drift_tenth_mm = group.length("drift_m", 0.0001, 0.1);
     limits.tread_share_permille =
@@ -139,15 +143,15 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.attestation_radius_tenth_mm = group.length("attestation_radius_m", 0.0, 2.0);
 }
 
-/// Checks limits that no gait of the class can reach: a foot cannot land higher than
-/// `swing_clearance`, to which it is lifted.
+/// Refuses limits that no gait of the class can reach. A foot cannot land higher than
+/// `swing_clearance`, the height to which the foot is lifted.
 void check_gait(Group& root, const GateLimits& limits) {
     constexpr double kTenthMmPerMetre = 1e4;
     const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];
     if (!walk.enabled || walk.up_tenth_mm <= limits.swing_clearance_tenth_mm) return;
     root.fail("limits",
-              fmt::format("walk.up_m {} is above swing_clearance_m {}: a foot of class walk is not "
-                          "lifted that high; make such movements of class stair",
+              fmt::format("walk.up_m {} is above swing_clearance_m {}: movements of class walk do "
+                          "not lift a foot that high; give such movements the class stair",
                           walk.up_tenth_mm / kTenthMmPerMetre,
                           limits.swing_clearance_tenth_mm / kTenthMmPerMetre));
 }

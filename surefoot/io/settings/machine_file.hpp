@@ -24,8 +24,8 @@ struct JointRange {
 /// docs/reference/machine_file.md explains.
 struct MachineFile {
     std::string name;
-    Machine machine;               ///< the part that the gate needs
-    Pose T_body_left;              ///< the mount: left camera's optical frame in base_link
+    Machine machine;               ///< the part of the file that the gate needs
+    Pose T_body_left;              ///< mount: pose of the left optical frame in base_link
     double mount_pitch_deg = 0.0;  ///< pitch of the mount, downward positive
     double speed_m_s = 0.0;        ///< fastest motion of base_link; 0 = unknown
     double turn_deg_s = 0.0;       ///< fastest turn of base_link; 0 = unknown

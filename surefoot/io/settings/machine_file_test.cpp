@@ -275,7 +275,8 @@ TEST(MachineFile, a_lax_machine_is_refused_with_all_its_limits) {
         text.replace(at, from.size(), to);
     }
     EXPECT_TRUE(contains(message_of(text),
-                         "So are 5 more: limits.patch_residual_m, limits.sigma_factor, "
+                         "5 more values are laxer than their rated limits: "
+                         "limits.patch_residual_m, limits.sigma_factor, "
                          "limits.swing_clearance_m, limits.drop_band_m, limits.verdict_ttl_ms"))
         << message_of(text);
 }

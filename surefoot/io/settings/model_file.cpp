@@ -112,7 +112,7 @@ void read_material(YamlGroup& group, MachineModel& model) {
     if (const auto rgb = parse_color(color))
         material.rgb = *rgb;
     else
-        group.fail("color", quoted(color) + " is no color: write it as \"#0072b2\"");
+        group.fail("color", quoted(color) + " is not a color: write it as \"#0072b2\"");
     model.materials.push_back(std::move(material));
 }
 
@@ -160,10 +160,11 @@ void read_motion(YamlGroup& group, ModelJoint& joint) {
                                max_deg));
     const double stand_deg = group.number("stand_deg", -360.0, 360.0);
     if (stand_deg < min_deg || stand_deg > max_deg)
-        group.fail(
-            "stand_deg",
-            fmt::format(
-                "{} is outside {} .. {}, the joint's own range", stand_deg, min_deg, max_deg));
+        group.fail("stand_deg",
+                   fmt::format("{} is outside {} .. {}, the range from min_deg to max_deg",
+                               stand_deg,
+                               min_deg,
+                               max_deg));
     joint.moves = true;
     joint.min_rad = radians(min_deg);
     joint.max_rad = radians(max_deg);
@@ -193,7 +194,7 @@ bool fits_into_tree(YamlGroup& group, const MachineModel& model, const ModelJoin
     while (const ModelJoint* above = joint_above(model.joints, link)) link = above->parent;
     if (link != joint.child) return true;
     group.fail("child",
-               fmt::format("{} would be its own parent, a loop: give the joint another parent",
+               fmt::format("{} would be its own ancestor: give the joint another parent",
                            quoted(joint.child)));
     return false;
 }
@@ -216,7 +217,7 @@ void read_joint(YamlGroup& group, MachineModel& model) {
 /// a root.
 void check_root(YamlGroup& root, const MachineModel& model) {
     if (find(model.links, kRoot) == nullptr)
-        root.fail("links", fmt::format("there is no {}: give the root this name", kRoot));
+        root.fail("links", fmt::format("there is no link {}: give the root link this name", kRoot));
     if (const ModelJoint* above = joint_above(model.joints, kRoot))
         root.fail(
             "joints",
@@ -230,7 +231,7 @@ void check_root(YamlGroup& root, const MachineModel& model) {
                        i,
                        "name",
                        fmt::format("{} is not the child of a joint, but only {} can be the root: "
-                                   "add a joint whose child it is",
+                                   "add a joint that has this link as its child",
                                    quoted(name),
                                    kRoot));
     }

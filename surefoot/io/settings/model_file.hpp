@@ -13,7 +13,7 @@
 
 namespace surefoot::io {
 
-/// Position in the parent's frame; rotation Rz(yaw) Ry(pitch) Rx(roll).
+/// Pose in the frame of the parent; rotation Rz(yaw) Ry(pitch) Rx(roll).
 struct ModelPlace {
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();
@@ -28,7 +28,7 @@ struct ModelMaterial {
 
 struct ModelBox {
     Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-    ModelPlace in_link;  ///< position of its centre
+    ModelPlace in_link;  ///< pose of the centre of the box in the link
     std::string material;
 };
 
@@ -58,7 +58,7 @@ struct MachineModel {
     std::vector<ModelLink> links;
     std::vector<ModelJoint> joints;
 
-    /// In file order.
+    /// Returns the moving joints in file order.
     [[nodiscard]] std::vector<const ModelJoint*> moving_joints() const;
     /// Pose of a link in base_link for the given angles of the moving joints (in the order of
     /// `moving_joints`). Precondition: the link exists.
@@ -66,7 +66,7 @@ struct MachineModel {
                                    const std::vector<double>& angles_rad) const;
 };
 
-/// Strict, as for machine files (models/rex.yaml shows every key). Otherwise a usage error names
+/// Every key is checked, as in machine files (models/rex.yaml shows every key). A usage error names
 /// file, line, key, value and what to do.
 [[nodiscard]] Result<MachineModel> parse_model(std::string_view yaml, const std::string& file);
 [[nodiscard]] Result<MachineModel> read_model(const std::string& path);

@@ -79,9 +79,9 @@ TEST(ModelFile, every_mistake_is_named_with_file_line_key_and_value) {
          "name: my robot",
          1,
          "name: 'my robot': a name may have only letters, digits and _"},
-        {"color: \"#0072b2\"", "color: blue", 3, "materials[0].color: 'blue' is no color"},
-        {"#0072b2", "#0072bg", 3, "'#0072bg' is no color: write it as"},
-        {"#0072b2", "x0072b2", 3, "'x0072b2' is no color: write it as"},
+        {"color: \"#0072b2\"", "color: blue", 3, "materials[0].color: 'blue' is not a color"},
+        {"#0072b2", "#0072bg", 3, "'#0072bg' is not a color: write it as"},
+        {"#0072b2", "x0072b2", 3, "'x0072b2' is not a color: write it as"},
         {"- {name: shank}", "- {name: thigh}", 7, "links[2].name: 'thigh' is used twice"},
         {"- {name: shank}", "- {name: shank, mass: 1}", 7, "unknown key 'links[2].mass'"},
         {"size_y_m: 0.2", "size_y_m: -0.2", 6, "links[1].boxes[0].size_y_m: -0.2 is outside"},
@@ -93,11 +93,8 @@ TEST(ModelFile, every_mistake_is_named_with_file_line_key_and_value) {
         {"parent: base_link",
          "parent: shank",
          10,
-         "joints[1].child: 'shank' would be its own parent"},
-        {"child: thigh",
-         "child: base_link",
-         9,
-         "'base_link' would be its own parent, a loop: give"},
+         "joints[1].child: 'shank' would be its own ancestor"},
+        {"child: thigh", "child: base_link", 9, "'base_link' would be its own ancestor: give"},
         {"kind: fixed", "kind: screw", 9, "'screw' is neither fixed nor revolute"},
         {"kind: revolute", "kind: fixed", 10, "unknown key 'joints[1].axis'"},
         {"axis: y", "axis: w", 10, "joints[1].axis: 'w' is not x, y or z: turn the joint"},
@@ -129,8 +126,9 @@ TEST(ModelFile, there_is_one_root_and_it_is_base_link) {
     EXPECT_TRUE(
         contains(said(small_with("- {name: shank}", "- {name: shank}\n  - {name: hat}")),
                  "m.yaml:8: links[3].name: 'hat' is not the child of a joint, but only base_link"));
-    EXPECT_TRUE(contains(said("name: a\nmaterials: []\nlinks: [{name: hips}]\njoints: []\n"),
-                         "m.yaml:3: links: there is no base_link: give the root this name"));
+    EXPECT_TRUE(
+        contains(said("name: a\nmaterials: []\nlinks: [{name: hips}]\njoints: []\n"),
+                 "m.yaml:3: links: there is no link base_link: give the root link this name"));
     const std::string other =
         "name: a\nmaterials: []\nlinks: [{name: hips}, {name: base_link}]\njoints:\n"
         "  - {name: j, kind: fixed, parent: hips, child: base_link}\n";

@@ -22,24 +22,61 @@ constexpr std::array kRatedLimits{
     RatedLimit{"limits.stair.up_m", 0.18, true, "higher risers were not tried"},
     RatedLimit{"limits.stair.down_m", 0.18, true, "higher risers were not tried"},
     RatedLimit{"limits.tilt_deg", 6.0, true, "steeper ground was not tried"},
-    RatedLimit{"limits.patch_side_m", 0.05, true, "a larger patch averages smaller things away"},
-    RatedLimit{"limits.patch_residual_m", 0.025, true, "a sole tolerates 25 mm"},
-    RatedLimit{"limits.patch_sigma_m", 0.003, true, "less certain ground counts as ground"},
-    RatedLimit{"limits.sigma_factor", 3.4, false, "more than 3e-4 of the patches err unnoticed"},
-    RatedLimit{"limits.patch_independent_cells", 4, true, "cells are taken as more independent"},
-    RatedLimit{"limits.cell_sigma_m", 0.012, true, "less certain ground counts as free"},
-    RatedLimit{"limits.swing_clearance_m", 0.04, true, "higher things lie in the way of a foot"},
-    RatedLimit{"limits.foot_margin_m", 0.02, false, "the way of a foot is less wide"},
-    RatedLimit{"limits.drop_m", 0.05, true, "the lowest kerb is 75 mm"},
-    RatedLimit{"limits.drop_band_m", 0.10, false, "an edge may lie closer to a foot"},
-    RatedLimit{"limits.drop_evidence", 0.5, true, "a drop needs more evidence to be detected"},
-    RatedLimit{"limits.drift_m", 0.025, true, "ground may have moved farther since it was seen"},
-    RatedLimit{"limits.tread_share", 0.80, false, "a tread carries less of a foot"},
-    RatedLimit{"limits.tread_overhang_m", 0.073, true, "a foot reaches farther over a nosing"},
-    RatedLimit{"limits.frame_age_ms", 200, true, "the gate uses an older map"},
-    RatedLimit{"limits.pose_age_ms", 200, true, "the machine may be elsewhere"},
-    RatedLimit{"limits.future_tolerance_ms", 5, true, "clocks may disagree by more"},
-    RatedLimit{"limits.verdict_ttl_ms", 300, true, "an approval is older when it is used"},
+    RatedLimit{"limits.patch_side_m",
+               0.05,
+               true,
+               "a larger patch hides small obstacles in its mean height"},
+    RatedLimit{"limits.patch_residual_m", 0.025, true, "a foot tolerates only 25 mm of unevenness"},
+    RatedLimit{"limits.patch_sigma_m",
+               0.003,
+               true,
+               "a larger value accepts ground with a less certain height"},
+    RatedLimit{"limits.sigma_factor",
+               3.4,
+               false,
+               "a smaller factor leaves an error unnoticed in more than 3e-4 of the patches"},
+    RatedLimit{"limits.patch_independent_cells",
+               4,
+               true,
+               "a larger value takes more cells of a patch as independent"},
+    RatedLimit{"limits.cell_sigma_m",
+               0.012,
+               true,
+               "a larger value accepts cells with a less certain height in the path"},
+    RatedLimit{"limits.swing_clearance_m",
+               0.04,
+               true,
+               "a larger value allows higher objects in the path of a foot"},
+    RatedLimit{
+        "limits.foot_margin_m", 0.02, false, "a smaller value checks a narrower path of the foot"},
+    RatedLimit{"limits.drop_m", 0.05, true, "the lowest kerb is only 75 mm high"},
+    RatedLimit{
+        "limits.drop_band_m", 0.10, false, "a smaller value allows an edge closer to a foot"},
+    RatedLimit{"limits.drop_evidence",
+               0.5,
+               true,
+               "a larger value requires more evidence to detect a drop"},
+    RatedLimit{"limits.drift_m",
+               0.025,
+               true,
+               "a larger value allows more drift since the last observation of the ground"},
+    RatedLimit{
+        "limits.tread_share", 0.80, false, "a smaller value lets a tread support less of the foot"},
+    RatedLimit{"limits.tread_overhang_m",
+               0.073,
+               true,
+               "a larger value lets a foot extend farther over a nosing"},
+    RatedLimit{"limits.frame_age_ms", 200, true, "a larger value lets the gate use an older map"},
+    RatedLimit{"limits.pose_age_ms",
+               200,
+               true,
+               "a larger value accepts an older pose, and the machine may have moved"},
+    RatedLimit{"limits.future_tolerance_ms",
+               5,
+               true,
+               "a larger value allows a larger difference between clocks"},
+    RatedLimit{
+        "limits.verdict_ttl_ms", 300, true, "a larger value allows the use of an older approval"},
     RatedLimit{
         "limits.attestation_radius_m", 1.0, true, "an operator cannot inspect ground farther away"},
 };
@@ -53,8 +90,8 @@ const YamlNode* node_at(const YamlNode& root, std::string_view key) {
     return node;
 }
 
-/// The number in the file; no value if its reader has already reported it, or if its class is
-/// disabled.
+/// Returns the number in the file. No value if another check has already reported the number, or if
+/// its step class is disabled.
 std::optional<double> value_at(const YamlNode& root, std::string_view key) {
     for (const std::string_view group : {"limits.walk", "limits.stair"}) {
         if (!key.starts_with(group)) continue;
@@ -76,7 +113,7 @@ const RatedLimit* find_limit(std::string_view key) {
     return found == kRatedLimits.end() ? nullptr : &*found;
 }
 
-/// YYYY-MM-DD.
+/// Whether the text is a date YYYY-MM-DD.
 bool is_date(std::string_view text) {
     const auto parts = split(text, "-");
     if (text.size() != 10 || parts.size() != 3 || parts[0].size() != 4 || parts[1].size() != 2)
@@ -163,9 +200,10 @@ void report_unsigned(YamlReader& reader,
             first.rated,
             first.reason,
             first.key,
-            others.empty()
-                ? ""
-                : fmt::format(". So are {} more: {}", others.size(), fmt::join(others, ", "))));
+            others.empty() ? ""
+                           : fmt::format(". {} more values are laxer than their rated limits: {}",
+                                         others.size(),
+                                         fmt::join(others, ", "))));
 }
 
 }  // namespace

@@ -9,14 +9,14 @@
 #include "surefoot/io/settings/yaml_tree.hpp"
 
 /// Limits of the gate that the evidence of docs/evidence/safety.md covers. A machine file that
-/// allows more is outside this evidence, so that a person must sign for each such limit (see
+/// allows more is outside this evidence. A person must then sign for each such limit (see
 /// docs/reference/machine_file.md).
 namespace surefoot::io {
 
 struct RatedLimit {
-    const char* key;  ///< "limits.tilt_deg", in the unit of the file
+    const char* key;  ///< key in the file, for example "limits.tilt_deg"
     double rated;
-    bool larger_allows_more;  ///< false: a smaller value allows more
+    bool larger_allows_more;  ///< if false, a smaller value allows more
     const char* reason;       ///< consequence of a laxer value
 };
 [[nodiscard]] std::span<const RatedLimit> rated_limits() noexcept;
@@ -28,10 +28,10 @@ struct Deviation {
     double rated = 0.0;
     std::string reason;
     std::string signed_by;
-    std::string date;  ///< YYYY-MM-DD, as written: the library reads no clock
+    std::string date;  ///< YYYY-MM-DD as written; the library reads no clock
 };
 
-/// "limits.tilt_deg is 11 (rated 6), signed by NAME on DATE: REASON".
+/// Formats "limits.tilt_deg is 11 (rated 6), signed by NAME on DATE: REASON".
 [[nodiscard]] std::string text_of(const Deviation& deviation);
 
 /// Reads `deviations` (optional) and checks every limit of the document against its rated value;

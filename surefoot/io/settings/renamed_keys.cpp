@@ -7,7 +7,7 @@ namespace surefoot::io {
 namespace {
 
 struct Renamed {
-    std::string_view old_name;  ///< a key or a group; the groups around it have today's names
+    std::string_view old_name;  ///< key or group; its outer groups have today's names
     std::string_view new_name;
 };
 

@@ -6,9 +6,9 @@
 
 namespace surefoot::io {
 
-/// Today's name of a setting. Version 0.2 renamed some keys; files and --set may use the names of
-/// version 0.1 until version 0.3. Returns `key` itself if it has no newer name. docs/migration.md
-/// lists all pairs.
+/// Returns today's name of a setting. Version 0.2 renamed some keys; files and --set may use the
+/// names of version 0.1 until version 0.3. Returns `key` itself if it has no newer name.
+/// docs/migration.md lists all pairs.
 [[nodiscard]] std::string current_key(std::string_view key);
 
 }  // namespace surefoot::io

@@ -6,7 +6,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Formats nine digits, which resolve a micrometre in a kilometre; writes zero without a sign.
+/// Formats a number with nine digits, which resolve 1 um in 1 km. Writes zero without a sign.
 std::string number(double value) {
     return fmt::format("{:.9g}", value + 0.0);
 }

@@ -7,9 +7,9 @@
 
 namespace surefoot::io {
 
-/// The model as a URDF text; deterministic. Materials are named at robot level, because some
-/// readers lose the colours of others. Each box is a visual and a collision element. The URDF has
-/// no masses: it is not for dynamics simulation.
+/// Formats the model as a URDF text. Materials are named at robot level, because some readers lose
+/// the colours of materials in links. Each box is a visual and a collision element. The URDF has no
+/// masses and does not suit dynamics simulation.
 [[nodiscard]] std::string urdf_text(const MachineModel& model);
 
 }  // namespace surefoot::io

@@ -11,8 +11,8 @@
 namespace surefoot::io {
 
 /// A group of keys of a strict file. Every key that the caller reads must exist, unless the caller
-/// checks `has` first; no other key may exist. The reader keeps the first error; after it all calls
-/// return defaults.
+/// checks `has` first; no other key may exist. The reader keeps the first error; after this error
+/// all calls return defaults.
 class YamlGroup {
   public:
     /// `prefix`: path of the keys to this group, for messages. `document`: name of the outermost
@@ -52,8 +52,8 @@ class YamlGroup {
     void fail(const char* key, const std::string& what);
     /// Reports a failure at a key of one group of a list.
     void fail_item(const char* list, std::size_t index, const char* key, const std::string& what);
-    /// Call it last: reports keys that were not read. A misspelled key explains more than the
-    /// missing key that it causes, so it is reported first.
+    /// Reports keys that were not read; call it last. A misspelled key explains more than the
+    /// missing key that it causes, so the misspelled key is reported first.
     void finish();
 
   private:

@@ -57,7 +57,7 @@ struct Converter {
             if (!entry.first.IsScalar())
                 return fail(entry.first.Mark(), "a key must be plain text");
             const std::string& key = entry.first.Scalar();
-            if (out.items.size() >= kMaxKeys) {  // the search for repeated keys below is linear
+            if (out.items.size() >= kMaxKeys) {  // limit: the search for repeated keys is linear
                 return fail(entry.first.Mark(),
                             fmt::format("more than {} keys in a group", kMaxKeys));
             }
@@ -73,9 +73,9 @@ struct Converter {
     }
 };
 
-/// Removes directives. OpenCV starts its files with "%YAML:1.0", which is not a valid YAML
-/// directive, and accepts "data:[1, 2]" without the blank that YAML needs (as in ORB-SLAM2's
-/// examples). Keeps line numbers.
+/// Changes OpenCV's YAML to valid YAML and keeps line numbers. OpenCV starts its files with
+/// "%YAML:1.0", which is not a valid YAML directive. OpenCV also accepts "data:[1, 2]" without the
+/// blank that YAML needs (as in ORB-SLAM2's examples).
 std::string without_directives(std::string_view text) {
     std::string copy(text);
     if (copy.starts_with("\xef\xbb\xbf")) copy.erase(0, 3);
@@ -83,7 +83,7 @@ std::string without_directives(std::string_view text) {
     copy[0] = '#';
     constexpr std::string_view kTight = "data:[";
     for (std::size_t at = copy.find(kTight); at != copy.npos; at = copy.find(kTight, at + 1)) {
-        const char before = copy[at - 1];  // the directive comes first
+        const char before = copy[at - 1];  // at > 0, because the directive comes first
         if (before == ' ' || before == '\t' || before == '\n')
             copy.insert(at + kTight.size() - 1, " ");
     }
@@ -153,7 +153,7 @@ double YamlReader::number(const YamlNode& node, std::string_view key, double min
                          node.is_scalar() ? quoted(node.scalar) : node.kind_name()));
         return min;
     }
-    if (!(*value >= min && *value <= max)) {  // NaN fails too
+    if (!(*value >= min && *value <= max)) {  // NaN also fails here
         fail(node, key, fmt::format("{} is outside {} .. {}", *value, min, max));
         return min;
     }

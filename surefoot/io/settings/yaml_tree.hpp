@@ -11,7 +11,7 @@
 
 namespace surefoot::io {
 
-/// A YAML document as a plain tree. Every value knows its line, so that errors can name
+/// A YAML document as a plain tree. Every value has its line number, so that errors can name
 /// "file.yaml:12". Keys of a mapping are unique. Supports the needed part of YAML 1.2, OpenCV's
 /// "%YAML:1.0" header and its "!!opencv-matrix" tags; scalars stay text.
 struct YamlNode {
@@ -19,11 +19,11 @@ struct YamlNode {
 
     Kind kind = Kind::null;
     int line = 0;     ///< line number, from 1
-    std::string key;  ///< key of an item of a mapping
+    std::string key;  ///< key, if the node is an item of a mapping
     std::string scalar;
     std::vector<YamlNode> items;  ///< items of a sequence or a mapping, in file order
 
-    /// The value of a key of this mapping, or nullptr.
+    /// Returns the value of a key of this mapping, or nullptr.
     [[nodiscard]] const YamlNode* find(std::string_view name) const noexcept;
     [[nodiscard]] bool is_mapping() const noexcept { return kind == Kind::mapping; }
     [[nodiscard]] bool is_scalar() const noexcept { return kind == Kind::scalar; }
@@ -44,9 +44,9 @@ class YamlReader {
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
     [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
 
-    /// Reports `what` about a key, unless there already is an error.
+    /// Reports `what` about a key, unless there is an earlier error.
     void fail(const YamlNode& node, std::string_view key, const std::string& what);
-    /// A required key of `mapping`.
+    /// Returns the value of a required key of `mapping`.
     const YamlNode* required(const YamlNode& mapping, std::string_view key);
 
     /// A finite number within [min, max].
