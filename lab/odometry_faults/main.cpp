@@ -373,7 +373,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
         shown.frame.frame_status.dropped = std::exchange(dropped, 0);
-        if (fault.watched) shown.frame.frame_status = watch.look(shown.frame);
+        if (fault.watched) shown.frame.frame_status = watch.check(shown.frame);
         out.push_back(std::move(shown));
     }
     return out;

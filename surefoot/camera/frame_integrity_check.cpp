@@ -91,7 +91,7 @@ bool FrameIntegrityCheck::torn(const Summary& now, const Summary& before) {
            (left == Likeness::different && right == Likeness::same);
 }
 
-FrameStatus FrameIntegrityCheck::look(const StereoFrame& frame) {
+FrameStatus FrameIntegrityCheck::check(const StereoFrame& frame) {
     FrameStatus frame_status = frame.frame_status;
     if (!frame_status.is_new_and_whole() || (frame.left.empty() && frame.right.empty()))
         return frame_status;

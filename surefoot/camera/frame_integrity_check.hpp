@@ -29,7 +29,7 @@ class FrameIntegrityCheck {
   public:
     /// Returns the status of the frame with `repeated` and `torn` set. If the source already
     /// reports one of them, that status is returned unchanged and the frame is not compared.
-    [[nodiscard]] FrameStatus look(const StereoFrame& frame);
+    [[nodiscard]] FrameStatus check(const StereoFrame& frame);
 
     /// ASSUMPTION: a capture ring has at most kMemory buffers (V4L2 programs ask for 3 to 8).
     static constexpr std::size_t kMemory = 8;

@@ -43,7 +43,7 @@ TEST(FrameIntegrityCheck, NoiseAloneMakesAStillSceneNew) {
     Rng rng(1);
     FrameIntegrityCheck watch;
     for (int i = 0; i < 200; ++i) {
-        const FrameStatus frame_status = watch.look(exposed(rng));
+        const FrameStatus frame_status = watch.check(exposed(rng));
         EXPECT_TRUE(frame_status.is_new_and_whole()) << "frame " << i;
     }
 }
@@ -52,18 +52,18 @@ TEST(FrameIntegrityCheck, CountsRepeatedFramesInARow) {
     Rng rng(2);
     FrameIntegrityCheck watch;
     const StereoFrame frozen = exposed(rng);
-    for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.look(frozen).repeated, i);
-    EXPECT_EQ(watch.look(exposed(rng)).repeated, 0);
-    EXPECT_EQ(watch.look(frozen).repeated, 1) << "an older buffer comes once more";
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.check(frozen).repeated, i);
+    EXPECT_EQ(watch.check(exposed(rng)).repeated, 0);
+    EXPECT_EQ(watch.check(frozen).repeated, 1) << "an older buffer comes once more";
 }
 
 TEST(FrameIntegrityCheck, ForgetsWhatIsLongAgo) {
     Rng rng(3);
     FrameIntegrityCheck watch;
     const StereoFrame first = exposed(rng);
-    (void)watch.look(first);
-    for (std::size_t i = 0; i < FrameIntegrityCheck::kMemory; ++i) (void)watch.look(exposed(rng));
-    EXPECT_EQ(watch.look(first).repeated, 0);
+    (void)watch.check(first);
+    for (std::size_t i = 0; i < FrameIntegrityCheck::kMemory; ++i) (void)watch.check(exposed(rng));
+    EXPECT_EQ(watch.check(first).repeated, 0);
 }
 
 TEST(FrameIntegrityCheck, FindsATearAtAnyRow) {
@@ -78,8 +78,8 @@ TEST(FrameIntegrityCheck, FindsATearAtAnyRow) {
                                     : spliced(before.left, after.left, rows);
             frame.right = new_on_top ? spliced(after.right, before.right, rows)
                                      : spliced(before.right, after.right, rows);
-            (void)watch.look(before);
-            const FrameStatus frame_status = watch.look(frame);
+            (void)watch.check(before);
+            const FrameStatus frame_status = watch.check(frame);
             const int old_rows = new_on_top ? kHeight - rows : rows;
             EXPECT_EQ(frame_status.repeated, old_rows == kHeight ? 1 : 0) << rows;
             EXPECT_EQ(frame_status.torn,
@@ -94,21 +94,21 @@ TEST(FrameIntegrityCheck, FindsTheFrameOfOneRoundOfBuffersAgo) {
     Rng rng(5);
     FrameIntegrityCheck watch;
     const StereoFrame old = exposed(rng);
-    (void)watch.look(old);
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(watch.look(exposed(rng)).torn);
+    (void)watch.check(old);
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(watch.check(exposed(rng)).torn);
     StereoFrame frame = exposed(rng);
     frame.left = spliced(frame.left, old.left, kHeight / 2);
-    EXPECT_TRUE(watch.look(frame).torn);
+    EXPECT_TRUE(watch.check(frame).torn);
 }
 
 TEST(FrameIntegrityCheck, OneOldEyeIsATornPair) {
     Rng rng(6);
     FrameIntegrityCheck watch;
     const StereoFrame before = exposed(rng);
-    (void)watch.look(before);
+    (void)watch.check(before);
     StereoFrame frame = exposed(rng);
     frame.right = before.right;
-    const FrameStatus frame_status = watch.look(frame);
+    const FrameStatus frame_status = watch.check(frame);
     EXPECT_TRUE(frame_status.torn);
     EXPECT_EQ(frame_status.repeated, 0);
 }
@@ -121,7 +121,7 @@ TEST(FrameIntegrityCheck, SaturatedRowsAreNoTear) {
         for (GreyImage* image : {&frame.left, &frame.right}) {
             std::fill(image->row(kHeight / 2), image->data() + image->size(), std::uint8_t{255});
         }
-        EXPECT_TRUE(watch.look(frame).is_new_and_whole());
+        EXPECT_TRUE(watch.check(frame).is_new_and_whole());
     }
 }
 
@@ -129,14 +129,14 @@ TEST(FrameIntegrityCheck, ATearHasOneSeam) {
     Rng rng(11);
     FrameIntegrityCheck watch;
     const StereoFrame before = exposed(rng);
-    (void)watch.look(before);
+    (void)watch.check(before);
     StereoFrame frame = before;  // video that copies still parts, with a moving band
     for (GreyImage* image : {&frame.left, &frame.right}) {
         for (int u = 0; u < kWidth; ++u) {
             for (int v = 16; v < 32; ++v) image->at(u, v) = static_cast<std::uint8_t>(5 * u + v);
         }
     }
-    EXPECT_TRUE(watch.look(frame).is_new_and_whole());
+    EXPECT_TRUE(watch.check(frame).is_new_and_whole());
 }
 
 TEST(FrameIntegrityCheck, ACoveredEyeIsNoTornPair) {
@@ -145,7 +145,7 @@ TEST(FrameIntegrityCheck, ACoveredEyeIsNoTornPair) {
     for (int i = 0; i < 10; ++i) {
         StereoFrame frame = exposed(rng);
         frame.right.fill(0);
-        EXPECT_TRUE(watch.look(frame).is_new_and_whole());
+        EXPECT_TRUE(watch.check(frame).is_new_and_whole());
     }
 }
 
@@ -155,27 +155,27 @@ TEST(FrameIntegrityCheck, NewDepthUnderAnOldImageIsNotRepeated) {
     StereoFrame frame = exposed(rng);
     frame.right = {};
     frame.depth_m = Image<float>(kWidth, kHeight, std::nanf(""));
-    (void)watch.look(frame);
-    EXPECT_EQ(watch.look(frame).repeated, 1) << "NaN is compared by its bits";
+    (void)watch.check(frame);
+    EXPECT_EQ(watch.check(frame).repeated, 1) << "NaN is compared by its bits";
     frame.depth_m.at(3, 4) = 1.25F;
-    EXPECT_EQ(watch.look(frame).repeated, 0);
+    EXPECT_EQ(watch.check(frame).repeated, 0);
 }
 
 TEST(FrameIntegrityCheck, ModelledFramesWithoutImagesAreAlwaysNew) {
     FrameIntegrityCheck watch;
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.look(StereoFrame{}).is_new_and_whole());
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.check(StereoFrame{}).is_new_and_whole());
 }
 
 TEST(FrameIntegrityCheck, AnotherSizeIsNew) {
     Rng rng(10);
     FrameIntegrityCheck watch;
-    (void)watch.look(exposed(rng));
+    (void)watch.check(exposed(rng));
     StereoFrame small;
     small.left = GreyImage(32, 1);
     for (int u = 0; u < 32; ++u) small.left.at(u, 0) = static_cast<std::uint8_t>(u);
     small.right = small.left;
-    EXPECT_TRUE(watch.look(small).is_new_and_whole());
-    EXPECT_EQ(watch.look(small).repeated, 1);
+    EXPECT_TRUE(watch.check(small).is_new_and_whole());
+    EXPECT_EQ(watch.check(small).repeated, 1);
 }
 
 TEST(FrameIntegrityCheck, DarknessIsNotOld) {
@@ -183,7 +183,7 @@ TEST(FrameIntegrityCheck, DarknessIsNotOld) {
     StereoFrame dark;
     dark.left = GreyImage(kWidth, kHeight, 0);
     dark.right = dark.left;
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.look(dark).is_new_and_whole()) << i;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.check(dark).is_new_and_whole()) << i;
 }
 
 TEST(FrameIntegrityCheck, WhatTheSourceSaysIsBelieved) {
@@ -192,10 +192,10 @@ TEST(FrameIntegrityCheck, WhatTheSourceSaysIsBelieved) {
     StereoFrame told = exposed(rng);
     told.frame_status.torn = true;
     told.frame_status.dropped = 2;
-    EXPECT_TRUE(watch.look(told).torn);
-    EXPECT_EQ(watch.look(told).dropped, 2);
+    EXPECT_TRUE(watch.check(told).torn);
+    EXPECT_EQ(watch.check(told).dropped, 2);
     told.frame_status.torn = false;
-    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "no earlier frame was compared";
+    EXPECT_TRUE(watch.check(told).is_new_and_whole()) << "no earlier frame was compared";
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ FeatureFinder::FeatureFinder(const StairsConfig& config)
       line_finder_(config),
       profiler_(config),
       step_fitter_(config),
-      sight_steps_(config),
+      ray_steps_(config),
       evidence_(config),
       flight_finder_(config),
       door_finder_(config.doors),
@@ -165,11 +165,11 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
 }
 
 void FeatureFinder::see_faces(const Terrain& terrain, std::vector<Edge>& edges) {
-    for (std::vector<Edge>& chain : chains_) sight_faces_.place(terrain, chain);
+    for (std::vector<Edge>& chain : chains_) ray_faces_.place(terrain, chain);
     for (Edge& edge : edges) {
         if (edge.height_m() > config_.max_riser_m) continue;
         Edge seen = edge;
-        sight_faces_.place(terrain, {&seen, 1});
+        ray_faces_.place(terrain, {&seen, 1});
         if (seen.across_sigma_m < edge.across_sigma_m) edge = seen;
     }
 }
@@ -180,13 +180,13 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
     for (std::vector<Edge>& chain : chains_) {
         if (chain.size() >= kEnough) continue;
         from_above_.assign(chain.rbegin(), chain.rend());
-        sight_steps_.find(terrain, from_above_, seen_);
+        ray_steps_.find(terrain, from_above_, seen_);
         if (!seen_.empty()) chain.assign(seen_.rbegin(), seen_.rend());
     }
     for (std::size_t i = 0; i < edges.size();) {
         seen_.clear();
         if (edges[i].length_m() >= config_.min_width_m)
-            sight_steps_.find(terrain, std::span(edges).subspan(i, 1), seen_);
+            ray_steps_.find(terrain, std::span(edges).subspan(i, 1), seen_);
         if (seen_.size() == 1) edges[i] = seen_.front();
         if (!add_seen(edges)) ++i;
     }
@@ -196,7 +196,7 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
         const auto has = [&](const Edge& edge) { return is_part_of(guess, edge); };
         if (std::any_of(edges.begin(), edges.end(), has) || shares_a_step({&guess, 1})) continue;
         if (tries++ == kTries) break;
-        sight_steps_.find(terrain, {&guess, 1}, seen_);
+        ray_steps_.find(terrain, {&guess, 1}, seen_);
         if (seen_.size() == 1 &&
             seen_[0].height_m() >=
                 std::max(config_.min_height_m, config_.sigma_factor * seen_[0].height_sigma_m))

@@ -12,8 +12,8 @@
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/flights/flight_sides.hpp"
 #include "surefoot/stairs/flights/flights.hpp"
-#include "surefoot/stairs/flights/sight_faces.hpp"
-#include "surefoot/stairs/flights/sight_steps.hpp"
+#include "surefoot/stairs/flights/ray_faces.hpp"
+#include "surefoot/stairs/flights/ray_steps.hpp"
 #include "surefoot/stairs/flights/step_fit.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/terrain.hpp"
@@ -58,8 +58,8 @@ class FeatureFinder {
     EdgeLineFinder line_finder_;
     EdgeProfiler profiler_;
     StepFitter step_fitter_;
-    SightFaces sight_faces_;
-    SightSteps sight_steps_;
+    RayFaces ray_faces_;
+    RaySteps ray_steps_;
     StepEvidenceFinder evidence_;
     FlightFinder flight_finder_;
     FlightSides flight_sides_;

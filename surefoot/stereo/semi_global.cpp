@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
-#include "surefoot/stereo/semi_global_kernels.hpp"
+#include "surefoot/stereo/semi_global_simd.hpp"
 
 namespace surefoot::stereo {
 namespace {

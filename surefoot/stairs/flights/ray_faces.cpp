@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_faces.hpp"
+#include "surefoot/stairs/flights/ray_faces.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "surefoot/geometry/statistics.hpp"
 #include "surefoot/stairs/edges/edge_border.hpp"
-#include "surefoot/stairs/flights/sight_plane.hpp"
+#include "surefoot/stairs/flights/ray_plane.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -30,11 +30,11 @@ constexpr int kRounds = 3;
 /// Fills runs_m_ with the distances to a face, measured by its pixels, across the edge. The pixels
 /// are those that show the face if it stands `at_m` from the camera. Returns the number of these
 /// pixels, matched or not.
-std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double at_m) {
+std::size_t RayFaces::gather(const Terrain& terrain, const Edge& edge, double at_m) {
     const View& view = *terrain.view;
     const Eigen::Vector3d& camera_m = view.T_map_camera.translation_m;
     const Eigen::Vector2d along = edge.along();
-    const SightPlane plane(view, -edge.down(), along);
+    const RayPlane plane(view, -edge.down(), along);
     const double begin_m = (edge.from_m - camera_m.head<2>()).dot(along) + kMargin_m;
     const double end_m = begin_m + edge.length_m() - 2.0 * kMargin_m;
     const double foot_m = camera_m.z() - edge.lower_m;
@@ -47,8 +47,8 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
     lower_m_.clear();
     upper_m_.clear();
     std::size_t pixels = 0;
-    for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
-        const SightPlane::Rows rows = plane.rows_between(lowest, highest, u, disparity_px.height);
+    for (int u = 0; u < disparity_px.width; u += kRayStride_px) {
+        const RayPlane::Rows rows = plane.rows_between(lowest, highest, u, disparity_px.height);
         if (rows.last - rows.first + 1 >= disparity_px.height)
             continue;  // the face is seen edge-on
         for (int v = rows.first; v <= rows.last; ++v) {
@@ -79,13 +79,13 @@ double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
 
 }  // namespace
 
-bool SightFaces::shows_level_ground(double level_m) {
+bool RayFaces::shows_level_ground(double level_m) {
     if (lower_m_.empty() || upper_m_.empty()) return false;
     return static_cast<double>(upper_median_in_place(upper_m_) - upper_median_in_place(lower_m_)) >
            kOpen * level_m;
 }
 
-std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Edge& edge) {
+std::optional<RayFaces::Face> RayFaces::see(const Terrain& terrain, const Edge& edge) {
     const View& view = *terrain.view;
     const double distance_m = edge.below_m(view.T_map_camera.translation_m.head<2>());
     if (!(distance_m > kNearest_m)) return std::nullopt;
@@ -106,8 +106,7 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
     }
     const double scatter_m = robust_sigma_about(static_cast<float>(at_m), runs_m_);
     const double independent = std::max(
-        1.0,
-        static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));
+        1.0, static_cast<double>(runs_m_.size()) * kRayStride_px / (kRayColumns_px * kRayRows_px));
     Face face;
     face.behind_m = at_m - distance_m;
     face.sigma_m = std::hypot(kSigmaOfMedian * scatter_m / std::sqrt(independent),
@@ -115,7 +114,7 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
     return face;
 }
 
-void SightFaces::place(const Terrain& terrain, std::span<Edge> steps) {
+void RayFaces::place(const Terrain& terrain, std::span<Edge> steps) {
     if (!terrain.view || terrain.disparity_px.empty()) return;
     for (Edge& edge : steps) {
         const std::optional<Face> face = see(terrain, edge);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_faces.hpp"
+#include "surefoot/stairs/flights/ray_faces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
 
-#include "surefoot/stairs/flights/sight_scene_testing.hpp"
+#include "surefoot/stairs/flights/ray_scene_testing.hpp"
 
 namespace surefoot::stairs {
 namespace {
 
 using testing::flight;
-using testing::SightScene;
+using testing::RayScene;
 
 /// Edges of steps up along +x from the lowest, each moved by its value of `off_m`.
 std::vector<Edge> edges_up(const std::vector<double>& off_m, double riser_m, double going_m) {
@@ -30,12 +30,12 @@ std::vector<Edge> edges_up(const std::vector<double>& off_m, double riser_m, dou
     return edges;
 }
 
-TEST(SightFaces, risers_come_to_where_their_faces_are_seen) {
+TEST(RayFaces, risers_come_to_where_their_faces_are_seen) {
     for (const double yaw_deg : {-8.0, 0.0, 11.0}) {
-        SightScene scene(flight(3, -0.18, 0.29), 0.9, yaw_deg * kRadPerDeg, 0.03);
+        RayScene scene(flight(3, -0.18, 0.29), 0.9, yaw_deg * kRadPerDeg, 0.03);
         scene.add_noise(0.3, 21);
         std::vector<Edge> edges = edges_up({0.05, -0.06, 0.04}, 0.18, 0.29);
-        SightFaces{}.place(scene.terrain(), edges);
+        RayFaces{}.place(scene.terrain(), edges);
         for (std::size_t k = 0; k < edges.size(); ++k) {
             EXPECT_NEAR(edges[k].middle_m().x(), static_cast<double>(k) * 0.29, 0.003) << yaw_deg;
             EXPECT_NEAR(edges[k].from_m.x(), edges[k].to_m.x(), 1e-12);
@@ -46,14 +46,14 @@ TEST(SightFaces, risers_come_to_where_their_faces_are_seen) {
 }
 
 // Below a board the floor behind it is visible: that is no face, at any distance.
-TEST(SightFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_floor_behind_it) {
+TEST(RayFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_floor_behind_it) {
     for (const bool open : {false, true}) {
-        SightScene scene(flight(1, -0.2, 0.25), 0.7, 0.05, 0.0, open);
+        RayScene scene(flight(1, -0.2, 0.25), 0.7, 0.05, 0.0, open);
         scene.add_noise(0.2, 23);
         std::vector<Edge> edges = edges_up({0.0}, 0.2, 0.25);
         Terrain terrain = scene.terrain();
         terrain.view->unmapped_px = 3.0;
-        SightFaces{}.place(terrain, edges);
+        RayFaces{}.place(terrain, edges);
         EXPECT_EQ(edges[0].open, open);
         // The map ends before the board, by the pixels that it omits.
         const Eigen::Vector3d board_m(0.0, 0.0, 0.2);
@@ -63,12 +63,12 @@ TEST(SightFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_
     }
 }
 
-TEST(SightFaces, what_is_not_seen_stays_where_the_map_has_it) {
-    SightScene scene(flight(2, -0.18, 0.29), 0.9, 0.0);
+TEST(RayFaces, what_is_not_seen_stays_where_the_map_has_it) {
+    RayScene scene(flight(2, -0.18, 0.29), 0.9, 0.0);
     const std::vector<Edge> given = edges_up({0.03, 0.03}, 0.18, 0.29);
     const auto stays = [&](const Terrain& terrain, std::vector<Edge> edges) {
         const std::vector<Edge> before = edges;
-        SightFaces{}.place(terrain, edges);
+        RayFaces{}.place(terrain, edges);
         for (std::size_t k = 0; k < edges.size(); ++k)
             if (edges[k].from_m != before[k].from_m || edges[k].across_sigma_m != 0.5) return false;
         return true;

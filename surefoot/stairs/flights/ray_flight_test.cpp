@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_flight.hpp"
+#include "surefoot/stairs/flights/ray_flight.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,11 +18,11 @@ constexpr double kFirst_m = 0.8;     ///< run to the first nosing
 constexpr double kBin_rad = 0.0015;  ///< half a pixel of a ZED
 
 /// The bins of a flight down, one per ray.
-std::vector<SightBin> seen_of(int steps, double riser_m, double going_m) {
-    std::vector<SightBin> bins;
+std::vector<RayBin> seen_of(int steps, double riser_m, double going_m) {
+    std::vector<RayBin> bins;
     const double first_rad = std::atan2(kHeight_m, kFirst_m);
     for (int k = -20; k < 200; ++k) {
-        SightBin bin;
+        RayBin bin;
         bin.steepness = std::tan(first_rad - k * kBin_rad);
         int tread = 0;
         while (tread < steps &&
@@ -35,16 +35,16 @@ std::vector<SightBin> seen_of(int steps, double riser_m, double going_m) {
     return bins;
 }
 
-void add_noise(std::vector<SightBin>& bins, double sigma_m, std::uint64_t seed) {
+void add_noise(std::vector<RayBin>& bins, double sigma_m, std::uint64_t seed) {
     Rng rng(seed);
-    for (SightBin& bin : bins) {
+    for (RayBin& bin : bins) {
         bin.depth_m += sigma_m * rng.normal();
         bin.sigma_m = sigma_m;
     }
 }
 
-TEST(SightFlight, AnEvenFlightIsFoundInNoise) {
-    SightFlight finder{StairsConfig{}};
+TEST(RayFlight, AnEvenFlightIsFoundInNoise) {
+    RayFlight finder{StairsConfig{}};
     std::uint64_t seed = 0;
     for (const int steps : {2, 4, 6}) {
         for (const double riser_m : {0.15, 0.18, 0.21}) {
@@ -63,13 +63,13 @@ TEST(SightFlight, AnEvenFlightIsFoundInNoise) {
     }
 }
 
-TEST(SightFlight, ABlurredTreadIsStillOne) {
-    SightFlight finder{StairsConfig{}};
+TEST(RayFlight, ABlurredTreadIsStillOne) {
+    RayFlight finder{StairsConfig{}};
     auto bins = seen_of(5, 0.17, 0.27);
     // The matcher blurs the whole second tread between the first and the third.
     const auto tread = [&](double depth_m) {
         return std::find_if(
-            bins.begin(), bins.end(), [&](const SightBin& bin) { return bin.depth_m > depth_m; });
+            bins.begin(), bins.end(), [&](const RayBin& bin) { return bin.depth_m > depth_m; });
     };
     const auto begin = tread(0.3);
     const auto end = tread(0.4);
@@ -83,11 +83,11 @@ TEST(SightFlight, ABlurredTreadIsStillOne) {
     EXPECT_NEAR(flight->going_m, 0.27, 0.02);
 }
 
-TEST(SightFlight, RampsFallsAndLevelGroundAreNoFlights) {
-    SightFlight finder{StairsConfig{}};
+TEST(RayFlight, RampsFallsAndLevelGroundAreNoFlights) {
+    RayFlight finder{StairsConfig{}};
     const auto is_none = [&](const std::function<double(double steepness)>& depth_m) {
         auto bins = seen_of(0, 0.0, 0.0);
-        for (SightBin& bin : bins)
+        for (RayBin& bin : bins)
             if (kHeight_m / bin.steepness > kFirst_m) bin.depth_m = depth_m(bin.steepness);
         add_noise(bins, 0.02, 9);
         return !finder.fit(bins, kHeight_m, kFirst_m).has_value();

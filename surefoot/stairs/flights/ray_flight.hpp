@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/stairs/flights/sight_profile.hpp"
+#include "surefoot/stairs/flights/ray_profile.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 
 namespace surefoot::stairs {
@@ -29,23 +29,23 @@ struct EvenFlight {
 /// Finds the flight of equal steps that best explains the depths behind an edge. It tries rise,
 /// going and number of steps on a grid, then refines them. A matcher may blur a single tread beyond
 /// recognition; all treads and the floor below them together stay recognisable.
-class SightFlight {
+class RayFlight {
   public:
-    explicit SightFlight(const StairsConfig& config) : config_(config) {}
+    explicit RayFlight(const StairsConfig& config) : config_(config) {}
     /// Camera: `height_m` above the upper ground, `first_run_m` before the first nosing. Returns
     /// nothing if a slope or a single fall explains the bins as well.
-    [[nodiscard]] std::optional<EvenFlight> fit(std::span<const SightBin> bins,
+    [[nodiscard]] std::optional<EvenFlight> fit(std::span<const RayBin> bins,
                                                 double height_m,
                                                 double first_run_m);
 
     /// The lowest cost of smooth ground: an even slope down to a floor over at least `least_run_m`.
     /// The slope begins near the first nosing.
-    [[nodiscard]] double cost_of_slope(std::span<const SightBin> bins,
+    [[nodiscard]] double cost_of_slope(std::span<const RayBin> bins,
                                        double height_m,
                                        double first_run_m,
                                        double least_run_m);
     /// Cost of a bin if its ground lies at `depth_m`.
-    [[nodiscard]] static double cost_of_bin(const SightBin& bin, double depth_m);
+    [[nodiscard]] static double cost_of_bin(const RayBin& bin, double depth_m);
 
   private:
     /// A bin with data, and the direction of its ray.
@@ -56,7 +56,7 @@ class SightFlight {
     };
     [[nodiscard]] double cost(const EvenFlight& flight, double most) const;
     [[nodiscard]] double cost_of_no_flight() const;
-    void take(std::span<const SightBin> bins, double height_m, double first_run_m);
+    void take(std::span<const RayBin> bins, double height_m, double first_run_m);
     [[nodiscard]] double cost_of_slope_to(double floor_m,
                                           double slope,
                                           double first_run_m,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_flight.hpp"
+#include "surefoot/stairs/flights/ray_flight.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ constexpr int kRefinements = 4;         ///< each refinement halves the search s
 
 }  // namespace
 
-double SightFlight::cost(const EvenFlight& flight, double most) const {
+double RayFlight::cost(const EvenFlight& flight, double most) const {
     double sum = 0.0;
     for (const Point& point : points_) {
         const double depth_m =
@@ -38,10 +38,10 @@ double SightFlight::cost(const EvenFlight& flight, double most) const {
 
 /// Returns the cost of ground that falls from `first_run_m` on and then is level. A slope above
 /// kSteepest is a vertical fall.
-double SightFlight::cost_of_slope_to(double floor_m,
-                                     double slope,
-                                     double first_run_m,
-                                     double most) const {
+double RayFlight::cost_of_slope_to(double floor_m,
+                                   double slope,
+                                   double first_run_m,
+                                   double most) const {
     double sum = 0.0;
     for (const Point& point : points_) {
         // The ray meets the slope where depth = slope (run - first run).
@@ -59,7 +59,7 @@ double SightFlight::cost_of_slope_to(double floor_m,
 }
 
 /// Returns the lowest cost of ground that falls evenly or at once, and then is level.
-double SightFlight::cost_of_no_flight() const {
+double RayFlight::cost_of_no_flight() const {
     double least = std::numeric_limits<double>::infinity();
     for (double floor_m = kFloorStep_m; floor_m <= kDeepest_m; floor_m += kFloorStep_m)
         for (double slope = kSlopeStep; slope <= kSteepest + kSlopeStep; slope += kSlopeStep)
@@ -67,10 +67,10 @@ double SightFlight::cost_of_no_flight() const {
     return least;
 }
 
-double SightFlight::cost_of_slope(std::span<const SightBin> bins,
-                                  double height_m,
-                                  double first_run_m,
-                                  double least_run_m) {
+double RayFlight::cost_of_slope(std::span<const RayBin> bins,
+                                double height_m,
+                                double first_run_m,
+                                double least_run_m) {
     constexpr int kPlaces = 3;  // from half a tread before the nosing to half a tread behind
     constexpr double kPlace_m = 0.05;
     take(bins, height_m, first_run_m);
@@ -85,13 +85,13 @@ double SightFlight::cost_of_slope(std::span<const SightBin> bins,
     return least;
 }
 
-double SightFlight::cost_of_bin(const SightBin& bin, double depth_m) {
+double RayFlight::cost_of_bin(const RayBin& bin, double depth_m) {
     if (!(bin.depth_m == bin.depth_m) || !(bin.steepness > 0.0)) return 0.0;
     return std::min(std::abs(bin.depth_m - depth_m) / std::hypot(bin.sigma_m, kLeastSigma_m),
                     kMostCost);
 }
 
-void SightFlight::refine(EvenFlight& best) const {
+void RayFlight::refine(EvenFlight& best) const {
     double riser_step_m = 0.5 * kRiserStep_m;
     double going_step_m = 0.5 * kGoingStep_m;
     for (int round = 0; round < kRefinements; ++round) {
@@ -110,20 +110,20 @@ void SightFlight::refine(EvenFlight& best) const {
     }
 }
 
-void SightFlight::take(std::span<const SightBin> bins, double height_m, double first_run_m) {
+void RayFlight::take(std::span<const RayBin> bins, double height_m, double first_run_m) {
     height_m_ = height_m;
     first_run_m_ = first_run_m;
     points_.clear();
-    for (const SightBin& bin : bins) {
+    for (const RayBin& bin : bins) {
         if (!(bin.depth_m == bin.depth_m) || !(bin.steepness > 0.0)) continue;
         points_.push_back(
             {1.0 / bin.steepness, bin.depth_m, 1.0 / std::hypot(bin.sigma_m, kLeastSigma_m)});
     }
 }
 
-std::optional<EvenFlight> SightFlight::fit(std::span<const SightBin> bins,
-                                           double height_m,
-                                           double first_run_m) {
+std::optional<EvenFlight> RayFlight::fit(std::span<const RayBin> bins,
+                                         double height_m,
+                                         double first_run_m) {
     take(bins, height_m, first_run_m);
     EvenFlight best;
     best.cost = std::numeric_limits<double>::infinity();

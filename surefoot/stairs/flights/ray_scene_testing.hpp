@@ -28,13 +28,13 @@ inline std::vector<Tread> flight(int steps, double riser_m, double going_m) {
 }
 
 /// A camera 1 m above the ground before the edge, pitched 30 deg down, and its disparities.
-class SightScene {
+class RayScene {
   public:
-    SightScene(const std::vector<Tread>& treads,
-               double distance_m,
-               double yaw_rad,
-               double roll_rad = 0.0,
-               bool open = false)
+    RayScene(const std::vector<Tread>& treads,
+             double distance_m,
+             double yaw_rad,
+             double roll_rad = 0.0,
+             bool open = false)
         : open_(open) {
         view_.width_px = 672;
         view_.height_px = 376;

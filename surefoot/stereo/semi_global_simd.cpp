@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stereo/semi_global_kernels.hpp"
+#include "surefoot/stereo/semi_global_simd.hpp"
 
 // Highway builds the target with byte-wise population counts (Ice Lake, Zen 4) only on request.
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "surefoot/stereo/semi_global_kernels.cpp"
+#define HWY_TARGET_INCLUDE "surefoot/stereo/semi_global_simd.cpp"
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

@@ -15,7 +15,7 @@ namespace surefoot::stairs {
 /// map's face points include the top of the face. A matcher places this top too far away, which
 /// makes goings 5 mm too long. Pixels are selected by the expected position of the face in the
 /// image, not by their disparity, so noise does not bias the selection.
-class SightFaces {
+class RayFaces {
   public:
     /// Moves the edges whose faces are visible. Does nothing without `Terrain::view` and
     /// `Terrain::disparity_px`.

@@ -10,10 +10,10 @@
 
 namespace surefoot::stairs {
 
-inline constexpr double kSightBin_px = 0.5;
+inline constexpr double kRayBin_px = 0.5;
 
 /// The ground that rays of similar steepness meet, along a whole edge.
-struct SightBin {
+struct RayBin {
     double steepness = 0.0;  ///< steepness of the rays: fall over run, across the edge
     double depth_m = 0.0;    ///< median depth below the upper ground; NaN = no data
     double sigma_m = 0.0;
@@ -24,12 +24,12 @@ struct SightBin {
 /// nosing is a change of depth, for any camera roll and edge direction. This is the v-disparity
 /// image (Labayrade et al. 2002), turned to the edge. It shows strips of five pixels, which the map
 /// omits because it drops pixels beside depth jumps.
-class SightProfile {
+class RayProfile {
   public:
     /// Computes the bins, half a pixel each. Empty without `Terrain::view` and
     /// `Terrain::disparity_px`, if the camera is not above and before the edge, or if too little of
     /// the edge is visible. Valid until the next call.
-    [[nodiscard]] std::span<const SightBin> observation(const Terrain& terrain, const Edge& edge);
+    [[nodiscard]] std::span<const RayBin> observation(const Terrain& terrain, const Edge& edge);
     /// Angle between the rays of neighbouring bins, at the edge.
     [[nodiscard]] double bin_rad() const noexcept { return bin_rad_; }
 
@@ -42,7 +42,7 @@ class SightProfile {
     void measure_bins();
 
     double bin_rad_ = 0.0;
-    std::vector<SightBin> bins_;
+    std::vector<RayBin> bins_;
     std::vector<Sample> samples_;
     std::vector<std::size_t> first_;  ///< index of each bin's first depth in `depths_m_`
     std::vector<std::size_t> next_;

@@ -10,21 +10,21 @@
 namespace surefoot::stairs {
 
 /// Step between the used columns. Neighbouring columns of a disparity image are redundant.
-inline constexpr int kSightStride_px = 4;
+inline constexpr int kRayStride_px = 4;
 /// Correlation length of semi-global matching errors along a row [columns].
-inline constexpr double kSightColumns_px = 25.0;
+inline constexpr double kRayColumns_px = 25.0;
 /// Correlation length of semi-global matching errors along a column [rows].
-inline constexpr double kSightRows_px = 3.0;
+inline constexpr double kRayRows_px = 3.0;
 
 /// A component of the camera's rays along one axis. Rays are scaled to length 1 along the optical
 /// axis, so the component is linear in the pixel.
-struct SightComponent {
+struct RayComponent {
     double at_0 = 0.0;
     double per_u = 0.0;
     double per_v = 0.0;
 
     /// `axis`: unit vector in the map frame.
-    SightComponent(const View& view, const Eigen::Vector3d& axis) {
+    RayComponent(const View& view, const Eigen::Vector3d& axis) {
         const Eigen::Vector3d k = view.T_map_camera.rotation.conjugate() * axis;
         per_u = k.x() / view.fx_px;
         per_v = k.y() / view.fy_px;
@@ -36,12 +36,12 @@ struct SightComponent {
 };
 
 /// The camera's rays, projected into the plane across an edge. The edge is a point in this plane.
-struct SightPlane {
-    SightComponent run;    ///< component across the edge, away from the camera
-    SightComponent fall;   ///< component downward
-    SightComponent aside;  ///< component along the edge
+struct RayPlane {
+    RayComponent run;    ///< component across the edge, away from the camera
+    RayComponent fall;   ///< component downward
+    RayComponent aside;  ///< component along the edge
 
-    SightPlane(const View& view, const Eigen::Vector2d& way, const Eigen::Vector2d& along)
+    RayPlane(const View& view, const Eigen::Vector2d& way, const Eigen::Vector2d& along)
         : run(view, {way.x(), way.y(), 0.0}),
           fall(view, -Eigen::Vector3d::UnitZ()),
           aside(view, {along.x(), along.y(), 0.0}) {}

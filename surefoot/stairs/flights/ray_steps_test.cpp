@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_steps.hpp"
+#include "surefoot/stairs/flights/ray_steps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stairs/flights/sight_scene_testing.hpp"
+#include "surefoot/stairs/flights/ray_scene_testing.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -18,18 +18,18 @@ using Eigen::Vector3d;
 using testing::flight;
 using testing::Tread;
 
-class Scene : public testing::SightScene {
+class Scene : public testing::RayScene {
   public:
-    using SightScene::SightScene;
+    using RayScene::RayScene;
     [[nodiscard]] std::vector<Edge> find() const { return find(edge_); }
     [[nodiscard]] std::vector<Edge> find(const Edge& known) const {
         std::vector<Edge> found;
-        SightSteps{StairsConfig{}}.find(terrain(), {&known, 1}, found);
+        RaySteps{StairsConfig{}}.find(terrain(), {&known, 1}, found);
         return found;
     }
 };
 
-TEST(SightSteps, treads_in_sight_as_strips_of_a_few_pixels_are_steps) {
+TEST(RaySteps, treads_in_sight_as_strips_of_a_few_pixels_are_steps) {
     struct Case {
         double riser_m, going_m, distance_m, yaw_deg, roll_deg;
     };
@@ -55,7 +55,7 @@ TEST(SightSteps, treads_in_sight_as_strips_of_a_few_pixels_are_steps) {
     }
 }
 
-TEST(SightSteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
+TEST(RaySteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
     const double proven = std::log(StairsConfig{}.step_ratio);
     for (std::uint64_t seed = 21; seed < 25; ++seed) {
         Scene steps(flight(6, 0.17, 0.29), 0.75, 0.1);
@@ -74,7 +74,7 @@ TEST(SightSteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
 }
 
 /// A matcher blurs the change from tread to tread over 0.15 m of the second tread.
-TEST(SightSteps, a_blurred_tread_ends_no_flight) {
+TEST(RaySteps, a_blurred_tread_ends_no_flight) {
     std::vector<Tread> treads = flight(6, 0.17, 0.27);
     treads.insert(treads.begin() + 1, {0.19, 0.26});
     treads[2] = {0.34, 0.34};
@@ -88,7 +88,7 @@ TEST(SightSteps, a_blurred_tread_ends_no_flight) {
     }
 }
 
-TEST(SightSteps, a_kerb_is_as_high_as_the_camera_sees_it) {
+TEST(RaySteps, a_kerb_is_as_high_as_the_camera_sees_it) {
     Scene scene({{0.0, 0.12}}, 1.2, 6.0 * kRadPerDeg);
     scene.add_noise(0.3, 22);
     const std::vector<Edge> found = scene.find();
@@ -100,7 +100,7 @@ TEST(SightSteps, a_kerb_is_as_high_as_the_camera_sees_it) {
     EXPECT_DOUBLE_EQ(scene.find().at(0).height_m(), 0.4);
 }
 
-TEST(SightSteps, a_ramp_down_and_one_deep_fall_are_no_flights) {
+TEST(RaySteps, a_ramp_down_and_one_deep_fall_are_no_flights) {
     std::vector<Tread> ramp;
     for (int k = 0; k < 400; ++k) ramp.push_back({0.008 * k, 0.001 * (k + 1)});  // 1 : 8
     EXPECT_LE(Scene(ramp, 0.9, 0.0).find().size(), 1U);
@@ -111,7 +111,7 @@ TEST(SightSteps, a_ramp_down_and_one_deep_fall_are_no_flights) {
     EXPECT_EQ(Scene({{0.0, 0.16}, {0.3, 0.32}}, 0.8, 0.0).find().size(), 2U);
 }
 
-TEST(SightSteps, what_is_not_seen_from_before_and_above_gives_nothing) {
+TEST(RaySteps, what_is_not_seen_from_before_and_above_gives_nothing) {
     const auto treads = flight(5, 0.17, 0.29);
     Scene scene(treads, 0.8, 0.0);
     EXPECT_FALSE(scene.find().empty());
@@ -133,7 +133,7 @@ TEST(SightSteps, what_is_not_seen_from_before_and_above_gives_nothing) {
     EXPECT_TRUE(scene.find().empty());
     Terrain blind = scene.terrain();
     std::vector<Edge> found;
-    SightSteps steps{StairsConfig{}};
+    RaySteps steps{StairsConfig{}};
     blind.disparity_px = {};
     steps.find(blind, {&scene.edge_, 1}, found);
     EXPECT_TRUE(found.empty());
@@ -144,7 +144,7 @@ TEST(SightSteps, what_is_not_seen_from_before_and_above_gives_nothing) {
 }
 
 // Few, inconsistent matches on level ground and on treads add no step.
-TEST(SightSteps, noise_of_two_pixels_and_gaps_add_no_step) {
+TEST(RaySteps, noise_of_two_pixels_and_gaps_add_no_step) {
     for (std::uint64_t seed = 21; seed < 27; ++seed) {
         for (const int steps : {1, 3}) {
             Scene scene(flight(steps, 0.17, 0.30), 0.8, 0.05);
@@ -161,7 +161,7 @@ TEST(SightSteps, noise_of_two_pixels_and_gaps_add_no_step) {
     }
 }
 
-TEST(SightSteps, disparities_of_noise_make_no_flight) {
+TEST(RaySteps, disparities_of_noise_make_no_flight) {
     for (std::uint64_t seed = 21; seed < 25; ++seed) {
         Scene scene({}, 0.9, 0.0);
         Rng rng(seed);

@@ -6,18 +6,18 @@
 #include <vector>
 
 #include "surefoot/stairs/features.hpp"
-#include "surefoot/stairs/flights/sight_flight.hpp"
-#include "surefoot/stairs/flights/sight_profile.hpp"
+#include "surefoot/stairs/flights/ray_flight.hpp"
+#include "surefoot/stairs/flights/ray_profile.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
 namespace surefoot::stairs {
 
-/// Finds steps down behind an edge in the current frame (SightProfile): the most likely staircase
+/// Finds steps down behind an edge in the current frame (RayProfile): the most likely staircase
 /// through the depths (dynamic programming, Viterbi 1967). Only its regular steps are kept.
-class SightSteps {
+class RaySteps {
   public:
-    explicit SightSteps(const StairsConfig& config) : config_(config), even_(config) {}
+    explicit RaySteps(const StairsConfig& config) : config_(config), even_(config) {}
     /// Writes the edges of a flight down, from the top: the `known` edges (at least one), then
     /// further edges. The last known edge gets the visible ground below it. Writes nothing if fewer
     /// steps are visible than known.
@@ -35,29 +35,29 @@ class SightSteps {
         double run_m = 0.0;  ///< horizontal distance from the camera
         double sigma_m = 0.0;
     };
-    void find_levels(std::span<const SightBin> bins);
-    void measure(std::span<const SightBin> bins, Level& level) const;
-    [[nodiscard]] static double nose_bin(std::span<const SightBin> bins,
+    void find_levels(std::span<const RayBin> bins);
+    void measure(std::span<const RayBin> bins, Level& level) const;
+    [[nodiscard]] static double nose_bin(std::span<const RayBin> bins,
                                          const Level& upper,
                                          const Level& lower);
     /// Position sigma of a nosing at this distance from the camera, from pixel errors alone.
     [[nodiscard]] double nose_sigma_m(double run_m, double below_m) const;
-    void find_noses(std::span<const SightBin> bins, double height_m);
+    void find_noses(std::span<const RayBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
     /// Replaces levels and nosings by the equal-step flight that explains the bins. Returns its
     /// visible steps. Changes nothing if no such flight has more than `steps` steps.
-    [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
+    [[nodiscard]] std::size_t as_even_flight(std::span<const RayBin> bins,
                                              double height_m,
                                              std::size_t steps);
     /// Log likelihood ratio of the first `steps` steps to ground that slopes.
-    [[nodiscard]] double log_ratio(std::span<const SightBin> bins,
+    [[nodiscard]] double log_ratio(std::span<const RayBin> bins,
                                    double height_m,
                                    std::size_t steps);
     [[nodiscard]] Edge with_lower(Edge edge, std::size_t step) const;
 
     StairsConfig config_;
-    SightProfile profile_;
-    SightFlight even_;
+    RayProfile profile_;
+    RayFlight even_;
     double bin_rad_ = 0.0;
     std::vector<float> cost_;
     std::vector<float> cheapest_;  ///< lowest cost over this level and all higher levels

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_steps.hpp"
+#include "surefoot/stairs/flights/ray_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/stairs/flights/sight_plane.hpp"
+#include "surefoot/stairs/flights/ray_plane.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -29,7 +29,7 @@ constexpr double kBlur_m = 0.1;
 }  // namespace
 
 /// Finds the cheapest path of depths that never decrease, from bin to bin.
-void SightSteps::find_levels(std::span<const SightBin> bins) {
+void RaySteps::find_levels(std::span<const RayBin> bins) {
     levels_.clear();
     const std::size_t count = bins.size();
     cost_.assign(kDepths, 0.0F);
@@ -73,11 +73,11 @@ void SightSteps::find_levels(std::span<const SightBin> bins) {
     std::reverse(levels_.begin(), levels_.end());
 }
 
-void SightSteps::measure(std::span<const SightBin> bins, Level& level) const {
+void RaySteps::measure(std::span<const RayBin> bins, Level& level) const {
     constexpr double kNear_m = 0.01;
     double w = 0.0, wd = 0.0;
     for (int k = level.begin; k < level.end; ++k) {
-        const SightBin& bin = bins[static_cast<std::size_t>(k)];
+        const RayBin& bin = bins[static_cast<std::size_t>(k)];
         if (!(std::abs(bin.depth_m - level.depth_m) <= kNear_m + 2.0 * bin.sigma_m)) continue;
         ++level.support;
         const double weight = 1.0 / (bin.sigma_m * bin.sigma_m);
@@ -86,14 +86,11 @@ void SightSteps::measure(std::span<const SightBin> bins, Level& level) const {
     }
     if (level.support == 0) return;
     level.depth_m = wd / w;
-    level.sigma_m =
-        std::hypot(std::sqrt(kSightRows_px / kSightBin_px / w), kBlur_m / level.support);
+    level.sigma_m = std::hypot(std::sqrt(kRayRows_px / kRayBin_px / w), kBlur_m / level.support);
 }
 
 /// Returns the bin at which the depth passes the middle between two levels.
-double SightSteps::nose_bin(std::span<const SightBin> bins,
-                            const Level& upper,
-                            const Level& lower) {
+double RaySteps::nose_bin(std::span<const RayBin> bins, const Level& upper, const Level& lower) {
     constexpr int kAround = 3;
     const double middle_m = 0.5 * (upper.depth_m + lower.depth_m);
     const int last = std::min(lower.begin + kAround, static_cast<int>(bins.size()) - 1);
@@ -107,12 +104,12 @@ double SightSteps::nose_bin(std::span<const SightBin> bins,
 }
 
 /// An angular error of one pixel moves the nosing by range^2 / height.
-double SightSteps::nose_sigma_m(double run_m, double below_m) const {
+double RaySteps::nose_sigma_m(double run_m, double below_m) const {
     return kNose_bins * (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
 }
 
 /// Finds the nosings. `height_m` is the height of the camera above the upper ground.
-void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
+void RaySteps::find_noses(std::span<const RayBin> bins, double height_m) {
     const auto steepness_at = [&](double bin) {
         const auto k = std::min(saturated_integer<std::size_t>(std::floor(bin)), bins.size() - 2);
         const double share = bin - static_cast<double>(k);
@@ -129,7 +126,7 @@ void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
 }
 
 /// Returns the number of steps, from the first on, that form one regular flight.
-std::size_t SightSteps::regular_steps() const {
+std::size_t RaySteps::regular_steps() const {
     std::size_t steps = 1;
     double riser_m = levels_[1].depth_m - levels_[0].depth_m;
     double going_m = 0.0;
@@ -151,9 +148,9 @@ std::size_t SightSteps::regular_steps() const {
     return steps;
 }
 
-std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
-                                       double height_m,
-                                       std::size_t steps) {
+std::size_t RaySteps::as_even_flight(std::span<const RayBin> bins,
+                                     double height_m,
+                                     std::size_t steps) {
     const Nose first = noses_.front();
     const auto flight = even_.fit(bins, height_m, first.run_m);
     if (!flight || static_cast<std::size_t>(flight->steps) <= steps) return steps;
@@ -185,26 +182,26 @@ std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
     return seen - 1;
 }
 
-double SightSteps::log_ratio(std::span<const SightBin> bins, double height_m, std::size_t steps) {
+double RaySteps::log_ratio(std::span<const RayBin> bins, double height_m, std::size_t steps) {
     const auto begin = static_cast<std::size_t>(levels_.front().begin);
     const auto end = static_cast<std::size_t>(levels_[steps].end);
     double cost = 0.0;
     for (std::size_t level = 0; level <= steps; ++level)
         for (int k = levels_[level].begin; k < levels_[level].end; ++k)
             cost +=
-                SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)], levels_[level].depth_m);
+                RayFlight::cost_of_bin(bins[static_cast<std::size_t>(k)], levels_[level].depth_m);
     const double slope = even_.cost_of_slope(
         bins.subspan(begin, end - begin), height_m, noses_.front().run_m, 2.0 * config_.smear_m);
-    // Bins within kSightRows_px share one error. The BIC counts two parameters per step (position,
+    // Bins within kRayRows_px share one error. The BIC counts two parameters per step (position,
     // depth) and three parameters for a slope.
-    const double independent = static_cast<double>(end - begin) * kSightBin_px / kSightRows_px;
+    const double independent = static_cast<double>(end - begin) * kRayBin_px / kRayRows_px;
     const double parameters = 2.0 * static_cast<double>(steps) - 3.0;
-    return (slope - cost) * kSightBin_px / kSightRows_px -
+    return (slope - cost) * kRayBin_px / kRayRows_px -
            0.5 * parameters * std::log(std::max(2.0, independent));
 }
 
 /// Adds the visible lower ground. The map keeps the highest point of a cell and smears low steps.
-Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
+Edge RaySteps::with_lower(Edge edge, std::size_t step) const {
     const Level& upper = levels_[step];
     const Level& lower = levels_[step + 1];
     edge.lower_m = edge.upper_m - (lower.depth_m - upper.depth_m);
@@ -214,10 +211,10 @@ Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
     return edge;
 }
 
-void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out) {
+void RaySteps::find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out) {
     out.clear();
     const Edge& first = known.front();
-    const std::span<const SightBin> bins = profile_.observation(terrain, first);
+    const std::span<const RayBin> bins = profile_.observation(terrain, first);
     if (bins.empty()) return;
     bin_rad_ = profile_.bin_rad();
     find_levels(bins);

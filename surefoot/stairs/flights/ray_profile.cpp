@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/stairs/flights/sight_profile.hpp"
+#include "surefoot/stairs/flights/ray_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "surefoot/geometry/statistics.hpp"
-#include "surefoot/stairs/flights/sight_plane.hpp"
+#include "surefoot/stairs/flights/ray_plane.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -23,18 +23,18 @@ constexpr double kSigmaOfMedian = 1.25;
 
 }  // namespace
 
-void SightProfile::gather(const Terrain& terrain,
-                          const Edge& edge,
-                          double height_m,
-                          double distance_m) {
+void RayProfile::gather(const Terrain& terrain,
+                        const Edge& edge,
+                        double height_m,
+                        double distance_m) {
     const View& view = *terrain.view;
     const Vector2d down = edge.down();
     const Vector2d along = edge.along();
-    const SightPlane plane(view, down, along);
+    const RayPlane plane(view, down, along);
     const double begin_m = (edge.from_m - view.T_map_camera.translation_m.head<2>()).dot(along);
     const double length_m = edge.length_m();
     const double steep = height_m / distance_m;  // steepness of the ray that meets the edge
-    bin_rad_ = kSightBin_px / view.fy_px;
+    bin_rad_ = kRayBin_px / view.fy_px;
     // Returns the steepness of the ray that is flatter by the angle with this tangent.
     const auto steepness_at = [&](double tangent) {
         return (steep - tangent) / (1.0 + steep * tangent);
@@ -49,8 +49,8 @@ void SightProfile::gather(const Terrain& terrain,
     samples_.clear();
     const ImageView<const float> disparity_px = terrain.disparity_px;
     const double depth_px_m = view.fx_px * view.baseline_m;
-    for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
-        const SightPlane::Rows rows = plane.rows_between(
+    for (int u = 0; u < disparity_px.width; u += kRayStride_px) {
+        const RayPlane::Rows rows = plane.rows_between(
             steepness_at(-kBefore_rad), steepness_at(kBehind_rad), u, disparity_px.height);
         for (int v = rows.first; v <= rows.last; ++v) {
             const double z_m = depth_px_m / static_cast<double>(disparity_px.row(v)[u]);
@@ -70,7 +70,7 @@ void SightProfile::gather(const Terrain& terrain,
     }
 }
 
-void SightProfile::measure_bins() {
+void RayProfile::measure_bins() {
     const std::size_t bins = bins_.size();
     first_.assign(bins + 1, 0);
     for (const Sample& sample : samples_) ++first_[static_cast<std::size_t>(sample.bin) + 1];
@@ -80,7 +80,7 @@ void SightProfile::measure_bins() {
     for (const Sample& sample : samples_)
         depths_m_[next_[static_cast<std::size_t>(sample.bin)]++] = sample.depth_m;
     for (std::size_t k = 0; k < bins; ++k) {
-        SightBin& bin = bins_[k];
+        RayBin& bin = bins_[k];
         bin.depth_m = bin.sigma_m = std::numeric_limits<double>::quiet_NaN();
         const std::size_t count = first_[k + 1] - first_[k];
         if (count < kLeastSamples) continue;
@@ -89,13 +89,13 @@ void SightProfile::measure_bins() {
         const float middle_m = upper_median_in_place(values_m_);
         const double scatter_m = robust_sigma_about(middle_m, values_m_);
         const double independent =
-            std::max(1.0, static_cast<double>(count) * kSightStride_px / kSightColumns_px);
+            std::max(1.0, static_cast<double>(count) * kRayStride_px / kRayColumns_px);
         bin.depth_m = static_cast<double>(middle_m);
         bin.sigma_m = std::max(kLeastSigma_m, kSigmaOfMedian * scatter_m / std::sqrt(independent));
     }
 }
 
-std::span<const SightBin> SightProfile::observation(const Terrain& terrain, const Edge& edge) {
+std::span<const RayBin> RayProfile::observation(const Terrain& terrain, const Edge& edge) {
     bins_.clear();
     if (!terrain.view || terrain.disparity_px.empty()) return {};
     const Vector3d& camera_m = terrain.view->T_map_camera.translation_m;
