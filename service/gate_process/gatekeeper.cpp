@@ -240,8 +240,8 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
             "not be used. Restart the gate; if that does not help, reinstall it"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
-                     "nothing to re-arm: the gate has no fault, or a fault that only a "
-                     "restart with a valid configuration ends"};
+                     "the gate was not re-armed: it has no fault, or its configuration is "
+                     "invalid. Correct an invalid configuration and restart the gate"};
     attestation_.revoke();
     if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
     if (reader_) {  // do not use the map from before the fault again

@@ -74,14 +74,16 @@ Result<gate_process::ChecksumKey> channel_key(const Options& options) {
         std::array<char, 16> bytes{};
         if (::recv(options.parent_fd, bytes.data(), bytes.size(), MSG_WAITALL) !=
             static_cast<ssize_t>(bytes.size()))
-            return usage_error("--parent-fd: only `surefoot serve` uses this option");
+            return usage_error(
+                "--parent-fd: only `surefoot serve` uses this option; start without it");
         ::fcntl(options.parent_fd, F_SETFD, FD_CLOEXEC);
         return gate_process::key_of({bytes.data(), bytes.size()});
     }
     if (!options.key_file.empty()) return gate_process::read_checksum_key(options.key_file);
-    fmt::print(stderr,
-               "surefoot-gate: warning: without the key of the channel no map is trusted and every "
-               "answer is ERROR; give the key file of `surefoot serve` with --channel-key\n");
+    fmt::print(
+        stderr,
+        "surefoot-gate: warning: without the key of the channel the gate trusts no map and every "
+        "answer is ERROR; give the key file of `surefoot serve` with --channel-key\n");
     return gate_process::new_checksum_key();
 }
 
@@ -242,7 +244,8 @@ int run(Options options) {
     fmt::print(stderr, "{}", loaded->news);
     options.server.access = std::move(loaded->access);
     if (options.assured && options.audit_dir.empty())
-        return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
+        return fail(
+            usage_error("--assured needs an audit log: give the folder of the log with --audit"));
     // Each start of the gate begins at another connection number, so a verdict from before the
     // start never carries the number of a present client.
     options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
@@ -258,9 +261,9 @@ int run(Options options) {
 int main_with_arguments(int argc, char** argv) {
     Options options;
     CLI::App app(
-        "The step gate: answers over a WebSocket whether a step may be taken. It may only "
-        "inhibit.\n"
-        "Usually started by `surefoot serve`.");
+        "The step gate: answers over a WebSocket whether a step may be taken. The gate can forbid "
+        "a step; it never starts one.\n"
+        "Usually `surefoot serve` starts this program.");
     app.footer("Example:\n  surefoot-gate --snapshots /dev/shm/surefoot.channel --audit out/audit");
     app.add_option("--snapshots", options.snapshots, "file in shared memory that holds the maps")
         ->required()
@@ -294,10 +297,11 @@ int main_with_arguments(int argc, char** argv) {
                    options.server.tls.key_file,
                    "file with the private key for TLS (PEM), permissions 0600")
         ->type_name("FILE");
-    app.add_option("--insecure",
-                   options.server.insecure,
-                   "sentence that confirms an address other than loopback without TLS; the error "
-                   "message without this option gives the sentence")
+    app.add_option(
+           "--insecure",
+           options.server.insecure,
+           "sentence that confirms an address other than loopback without TLS; start without "
+           "this option, and the error message shows the sentence")
         ->type_name("TEXT");
     app.add_option(
            "--origin",
@@ -309,7 +313,8 @@ int main_with_arguments(int argc, char** argv) {
         "--assured", options.assured, "never answer OK while the audit log cannot be written");
     app.add_option("--audit-mb",
                    options.audit_mb,
-                   "largest size of the folder of the audit log; the gate deletes the oldest logs")
+                   "largest size of the folder of the audit log; if the logs need more, the gate "
+                   "deletes the oldest logs")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str()
         ->type_name("MB");

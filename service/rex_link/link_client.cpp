@@ -244,8 +244,9 @@ class Client {
 };
 
 Error bad_url(std::string_view url) {
-    return usage_error("'" + std::string(url) +
-                       "': give an address such as ws://127.0.0.1:9090 (numbers or localhost)");
+    return usage_error(
+        "'" + std::string(url) +
+        "': give an address such as ws://127.0.0.1:9090 (an IP address or localhost)");
 }
 
 }  // namespace

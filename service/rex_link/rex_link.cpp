@@ -22,9 +22,9 @@ std::optional<std::string> RexLinkConfig::problem() const {
     if (!within(max_valid_for_ns, 1, kLongestLife_ns))
         return "max_valid_for_ns: must be above 0 and at most 300 ms";
     if (!within(second_question_delay_ns, 1, max_valid_for_ns))
-        return "second_question_delay_ns: must be above 0 ms and at most max_valid_for_ns, the "
-               "validity of the first OK";
-    if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be 0 to 60 s";
+        return "second_question_delay_ns: must be above 0 and at most max_valid_for_ns, the "
+               "longest validity of the first OK";
+    if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be from 0 to 60 s";
     if (!within(step_duration_ns, 1, kLongest_ns))
         return "step_duration_ns: must be above 0 and at most 60 s";
     return std::nullopt;

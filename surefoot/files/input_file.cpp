@@ -140,7 +140,9 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
         size += piece->bytes;
         if (size > max_bytes) return too_large(path, size, max_bytes);
         if (piece->would_wait)
-            return input_error(path + ": cannot read: it has no data now; give a regular file");
+            return input_error(
+                path +
+                ": cannot read: the file has no data now and may get more; give a regular file");
         if (piece->bytes == 0) break;
     }
     content.resize(size);

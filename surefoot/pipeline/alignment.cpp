@@ -61,7 +61,7 @@ std::string without_plane(ground::CalibrationReason reason, const GroundView& lo
     return fmt::format(
         "ground plane: {}: show more level floor in the first frames, or give a machine file with "
         "the height and pitch of the mount, or set mount.pitch_deg (and "
-        "ground.expected_height_m, of base_link)",
+        "ground.expected_height_m, the height of base_link)",
         to_string(reason));
 }
 
@@ -106,7 +106,7 @@ Direction find_up(const AlignmentConfig& config,
         alignment.reason = fmt::format(
             "tilt and height from the ground plane, {}{}; the plane itself is known within "
             "{:.2f} deg, but its slope is unknown: 1 sigma of the vertical {:.1f} deg, which the "
-            "gate subtracts from its tilt limit (an IMU measures the vertical)",
+            "gate subtracts from its tilt limit (use an IMU to measure the vertical)",
             sightings(ground),
             look.searched
                 ? fmt::format(" (mounting unknown: tilt 0-{:.0f} deg was searched, {:.0f} "
@@ -134,31 +134,36 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         pitch_deg,
         -90.0,
         90.0,
-        "pitch of base_link below the horizon; used if neither a plane nor an IMU measures it");
+        "pitch of base_link below the horizon; used if neither a ground plane nor an IMU measures "
+        "the pitch");
     visitor.number("still_gyro_rad_s",
                    still_gyro_rad_s,
                    0.0,
                    1.0,
-                   "largest turn rate at which the accelerometer measures gravity");
+                   "largest turn rate at which the machine counts as standing still, so that the "
+                   "accelerometer measures gravity");
     visitor.number(
         "still_force_m_s2",
         still_force_m_s2,
         0.0,
         5.0,
-        "largest deviation of the mean specific force from 9.81 when the machine stands still");
+        "largest difference between the mean specific force and 9.81 m/s2 at which the machine "
+        "counts as standing still");
     visitor.group("gravity", gravity);
-    visitor.number("max_lean_deg",
-                   max_lean_deg,
-                   0.1,
-                   45.0,
-                   "lean of base_link against its first attitude above which the mount counts as "
-                   "moved, if the lean lasts");
-    visitor.number("max_sway_deg",
-                   max_sway_deg,
-                   0.1,
-                   90.0,
-                   "lean of base_link, above that of any gait, from which the mount counts as "
-                   "moved almost at once");
+    visitor.number(
+        "max_lean_deg",
+        max_lean_deg,
+        0.1,
+        45.0,
+        "limit of the lean of base_link, measured from its first attitude; the mount counts "
+        "as moved if the lean stays above this limit");
+    visitor.number(
+        "max_sway_deg",
+        max_sway_deg,
+        0.1,
+        90.0,
+        "lean of base_link at which the mount counts as moved almost at once; set it above "
+        "the lean of any gait");
     visitor.number("max_lean_before_step_deg",
                    max_lean_before_step_deg,
                    0.1,
@@ -185,7 +190,7 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    wait_for_ground_s,
                    0.0,
                    600.0,
-                   "longest search for the ground if nothing else gives gravity and "
+                   "longest search for the ground if no other source gives gravity and "
                    "ground.expected_height_m is known");
     visitor.number("wait_for_search_s",
                    wait_for_search_s,

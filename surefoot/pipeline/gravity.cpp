@@ -92,8 +92,8 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    accel_bias_m_s2,
                    1e-4,
                    5.0,
-                   "one sigma of the accelerometer's constant error along each axis; 0.02 for "
-                   "calibrated parts, 0.2 to 0.6 for others");
+                   "one sigma of the accelerometer's constant error along each axis; 0.02 m/s2 for "
+                   "calibrated accelerometers, 0.2 to 0.6 m/s2 for others");
     visitor.number("level_floor_deg",
                    level_floor_deg,
                    0.001,
@@ -109,7 +109,7 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    sloped_share,
                    0.001,
                    0.999,
-                   "share of the starts on floors that are not built level");
+                   "prior probability that a start is on a floor that is not built level");
 }
 
 std::optional<Direction> up_from_imu(const GravityConfig& config,

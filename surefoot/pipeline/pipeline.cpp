@@ -101,7 +101,8 @@ Result<Pipeline> Pipeline::make(const PipelineConfig& config,
         return usage_error(
             "camera.rectified_width_px, camera.rectified_height_px: odometry needs rectified "
             "images "
-            "of the size of the raw ones; only single pairs (depth, depth-accuracy) take another");
+            "of the size of the raw images, so remove both settings. Only `depth` and "
+            "`depth-accuracy` accept another size");
     }
     return Pipeline(config,
                     rig,

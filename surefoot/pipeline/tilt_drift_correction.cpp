@@ -27,8 +27,9 @@ void LevelConfig::describe(ConfigVisitor& visitor) {
                    5.0,
                    "largest tilt of ground that is used for the tilt drift correction; steeper "
                    "ground counts as a slope");
-    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "largest mean tilt that is not corrected");
-    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
+    visitor.number(
+        "ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt up to this value is not corrected");
+    visitor.number("average_s", average_s, 1.0, 600.0, "time over which the tilt is averaged");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.0,

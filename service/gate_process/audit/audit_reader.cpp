@@ -120,7 +120,7 @@ bool AuditReader::unpack(const FrameHeader& header, std::string_view stored, Fra
     const std::size_t bytes =
         ZSTD_decompress(plain_.data(), plain_.size(), stored.data(), stored.size());
     if (ZSTD_isError(bytes) != 0 || bytes != header.plain_bytes)
-        return damaged("its payload cannot be unpacked", header.sequence);
+        return damaged("the payload of the frame cannot be unpacked", header.sequence);
     frame.payload = plain_;
     return true;
 }
@@ -149,7 +149,7 @@ bool AuditReader::follows(const FrameHeader& header, const Link& link) {
                         link.sequence),
             header.sequence);
     if (header.previous_hash != link.previous_hash)
-        return damaged("its stored hash of the previous frame is wrong", header.sequence);
+        return damaged("the frame stores a wrong hash of the previous frame", header.sequence);
     return true;
 }
 
@@ -162,7 +162,7 @@ bool AuditReader::take_file_head(const Frame& frame) {
     const std::string own_name = audit_file_name(head.run_id, head.number);
     std::uint64_t number = 0;
     if (parse_audit_file_name(name, number) && name != own_name)
-        return damaged("the file has a wrong name: it is " + own_name + "; rename it back",
+        return damaged("the file was renamed: its name must be " + own_name + "; rename it back",
                        frame.header.sequence);
     if (head_ && head.number > head_->number + 1)
         return damaged(fmt::format("{} log files are missing before this file",

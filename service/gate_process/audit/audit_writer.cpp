@@ -129,7 +129,7 @@ Status AuditWriter::put(std::string_view bytes) {
         if (written.error == 0 && idle < kMostIdle) continue;
         const Error error =
             output_error(log.name + ": " +
-                         (written.error == 0 ? "the disk accepts no bytes"
+                         (written.error == 0 ? "the disk accepted no bytes in 16 attempts"
                                              : std::generic_category().message(written.error)));
         if (done > 0 && !disk_->truncate(log.bytes)) leave_file();
         return error;

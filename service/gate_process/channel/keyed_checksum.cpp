@@ -16,7 +16,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "words are read as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the checksum reads words in the byte order of the memory and needs little-endian");
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t word_at(const void* bytes) noexcept {
@@ -67,7 +68,7 @@ Result<ChecksumKey> new_checksum_key() {
     while (have < bytes.size()) {
         const ssize_t got = ::getrandom(bytes.data() + have, bytes.size() - have, 0);
         if (got < 0 && errno != EINTR)
-            return input_error("the system gives no random numbers (getrandom)");
+            return input_error("the operating system gives no random numbers: getrandom failed");
         if (got > 0) have += static_cast<std::size_t>(got);
     }
     return key_of({bytes.data(), bytes.size()});

@@ -60,7 +60,7 @@ StepRequest read_step_request(const Json& args) {
         request.sequence = whole_number(*sequence, 1, kMaxExact);
         if (!request.sequence)
             return refuse(
-                request, gate::Reason::bad_number, "sequence: give a whole number from 1 on");
+                request, gate::Reason::bad_number, "sequence: give a whole number of at least 1");
     }
     const Json* direction = argument(args, "direction", 0);
     if (direction == nullptr)
@@ -75,7 +75,8 @@ StepRequest read_step_request(const Json& args) {
 
 Result<double> read_radius(const Json& args) {
     const Json* value = argument(args, "radius_m", 0);
-    if (value == nullptr || !value->is_number()) return input_error("radius_m: give a number in m");
+    if (value == nullptr || !value->is_number())
+        return input_error("radius_m: give the radius as a number, in m");
     return value->get<double>();
 }
 

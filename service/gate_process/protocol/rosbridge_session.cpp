@@ -158,11 +158,14 @@ void RosbridgeSession::subscribe(const Call& call) {
     const auto throttle_ms = limited_member(call.message, "throttle_rate", kMaxThrottleMs);
     const auto queue_length = limited_member(call.message, "queue_length", kMaxQueue);
     if (!throttle_ms || !queue_length)
-        return status(
-            call, Level::error, "throttle_rate and queue_length must be whole numbers from 0 on");
+        return status(call,
+                      Level::error,
+                      "throttle_rate and queue_length must be whole numbers of at least 0");
     const std::string compression = text_member(call.message, "compression");
     if (!compression.empty() && compression != "none")
-        status(call, Level::warning, "no compression '" + compression + "': sent as plain JSON");
+        status(call,
+               Level::warning,
+               "compression '" + compression + "' is unknown: messages are sent as plain JSON");
     const auto added =
         subscriptions_.add(entry->topic,
                            name,
@@ -288,8 +291,10 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
         return refusal(call, question, request.problem, request.text);
     question.sequence = request.sequence.value_or(last_sequence_ + 1);
     if (question.sequence > kMaxExact)
-        return refusal(
-            call, question, gate::Reason::seq, "all sequence numbers are used: reconnect");
+        return refusal(call,
+                       question,
+                       gate::Reason::seq,
+                       "all sequence numbers of this connection are used: reconnect");
     last_sequence_ = std::max(last_sequence_, question.sequence);
     return ask(call, question);
 }
@@ -356,7 +361,7 @@ bool RosbridgeSession::has_right(const Call& call, Role least, ActKind kind) {
 std::string RosbridgeSession::no_right_text(Role least) const {
     return std::string("not done: this needs the role ") + to_string(least) +
            ", and this client is " + to_string(role_) +
-           R"(. Connect with ?token=TOKEN, or send {"op":"auth","token":"TOKEN"}; the token stands )"
+           R"(. Connect with ?token=TOKEN, or send {"op":"auth","token":"TOKEN"}; the token is )"
            "in the service's token file";
 }
 
