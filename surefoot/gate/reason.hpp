@@ -5,8 +5,8 @@
 
 namespace surefoot::gate {
 
-/// The reason why a step is not OK. The order defines the precedence: the first applicable reason
-/// is the primary one. ERROR codes come before terrain codes.
+/// The reason why a step is not OK. The order defines the precedence: the first reason that applies
+/// is the primary reason. ERROR codes come before terrain codes.
 enum class Reason : std::uint8_t {
     // ERROR: the gate cannot judge.
     internal,
@@ -49,7 +49,7 @@ enum class Reason : std::uint8_t {
     memory_uncertain,
     not_resolvable,
     support_area,  ///< too little of a foot is on its tread
-    edge_margin,   ///< enough support only if the edge position has no error
+    edge_margin,   ///< support is enough only if the edge position has no error
     none,          ///< only an OK has no reason
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
