@@ -11,10 +11,10 @@
 
 namespace surefoot::gate_process {
 
-/// Conditions for computing the outlook at this moment.
+/// Conditions under which the outlook may be computed now.
 struct OutlookDemand {
     bool subscribed = false;      ///< at least one client subscribes
-    bool question_waits = false;  ///< a client has unread bytes: answers have priority
+    bool question_waits = false;  ///< a client has unread bytes, and answers have priority
 };
 
 /// Computes the gate's answer to every movement of the machine, for display. One call judges one
@@ -38,7 +38,7 @@ class OutlookRounds {
     std::array<Prospect, kMostMovements> prospects_;
     std::size_t judged_ = 0;  ///< movements judged in this round
     gate::GateState state_ = gate::GateState::init;
-    std::optional<std::int64_t> began_ns_;  ///< start of this round, or of the last one
+    std::optional<std::int64_t> began_ns_;  ///< start of this round, or of the last round
     int gave_way_ = 0;                      ///< consecutive calls that gave priority to questions
 };
 
