@@ -21,7 +21,7 @@ struct StepRequest;
 struct SessionLimits {
     JsonLimits json;
     RateLimit messages{200, 200};  ///< a question beyond this rate gets ERROR / OVERLOAD
-    RateLimit refusals{100, 400};  ///< messages above `messages` before disconnection
+    RateLimit refusals{100, 400};  ///< messages above that rate before disconnection
     RateLimit faults{2, 20};       ///< unreadable messages before disconnection
     std::size_t max_subscriptions = 32;
 };

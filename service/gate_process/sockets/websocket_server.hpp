@@ -48,7 +48,7 @@ class WebsocketServer {
     void poll();
     /// Ends run() and all connections. Thread-safe, but do not call it from a signal handler.
     void stop();
-    /// Call it on the thread of run() (for example in the tick), or after run() has returned.
+    /// Returns the counts. Call it on the thread of run() (in the tick), or after run() has ended.
     [[nodiscard]] ServerCounts counts() const;
 
   private:
