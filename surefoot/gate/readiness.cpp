@@ -4,7 +4,7 @@
 namespace surefoot::gate {
 namespace {
 
-/// Difference of two stamps. Unsigned arithmetic cannot overflow.
+/// Returns the difference of two stamps. Unsigned arithmetic cannot overflow.
 constexpr std::uint64_t gap(std::int64_t later, std::int64_t earlier) noexcept {
     return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
 }
@@ -81,7 +81,7 @@ void Readiness::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexc
         const auto reason = static_cast<Reason>(i);
         if (present_.contains(reason) && is_latched(reason)) latch(reason, now_ns);
     }
-    // The fields of a damaged snapshot have no meaning, including its origin.
+    // No field of a damaged snapshot has a meaning, not even its origin.
     if (!present_.contains(Reason::internal)) check_succession(map, now_ns);
     judge(now_ns);
 }
@@ -121,7 +121,7 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // beyond a quarter turn no angle can be excluded
+    constexpr double kQuarter_rad = 1.5;  // above a quarter turn no angle can be excluded
     if (turn_rad >= kQuarter_rad) return false;
     // sin(x) <= x: an undetected turn is at most a few percent above the limit.
     const double sine = last_.cos_yaw * map.body_sin_yaw - last_.sin_yaw * map.body_cos_yaw;

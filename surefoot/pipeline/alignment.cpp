@@ -10,12 +10,11 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Largest accepted difference, as a share of the known height. No mount and no kerb explains so
-/// much.
+/// Largest accepted difference between measured and known height, as a share of the known height.
+/// No mount and no kerb explains a larger difference.
 constexpr double kMostHeightShare = 0.35;
 
-/// Returns the rotation that turns `up_body` to odom z and keeps the heading of base_link at zero
-/// yaw.
+/// Returns the rotation that turns `up_body` to odom z and sets the heading of base_link to zero.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     const Eigen::Vector3d z = up_body.normalized();
     Eigen::Vector3d x = Eigen::Vector3d::UnitX() - z.x() * z;
@@ -33,7 +32,7 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Returns the text that names the obstacle to the best plane of a search.
+/// Returns the text that names the defect of the best plane of a search.
 const char* obstacle(ground::GroundReason reason) {
     switch (reason) {
         case ground::GroundReason::rough: return ", too uneven for a plane";
@@ -42,7 +41,7 @@ const char* obstacle(ground::GroundReason reason) {
     }
 }
 
-/// Returns the text that says why there is no plane, and what helps.
+/// Returns the text that names the cause of a missing plane and the correction.
 std::string without_plane(ground::CalibrationReason reason, const GroundView& look) {
     if (reason == ground::CalibrationReason::disagreement)
         return fmt::format(
@@ -201,8 +200,9 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
 }
 
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
-    // base_link pitched down by p: x_body = (cos p, 0, -sin p), z_body = (sin p, 0, cos p) in level
-    // axes, so up = (0, 0, 1) has the components -sin p along x_body and cos p along z_body.
+    // base_link is pitched down by p. In level axes x_body = (cos p, 0, -sin p) and z_body = (sin
+    // p, 0, cos p). So up = (0, 0, 1) has the components -sin p along x_body and cos p along
+    // z_body.
     const double pitch_rad = config.pitch_deg / kDegPerRad;
     return {-std::sin(pitch_rad), 0.0, std::cos(pitch_rad)};
 }
@@ -224,7 +224,7 @@ Alignment place_odom(const AlignmentConfig& config,
     const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
     if (alignment.has_ground && expected_height_m > 0.0 &&
         off_m > kMostHeightShare * expected_height_m) {
-        // All lengths would be wrong by the same factor, and nothing else reveals it.
+        // All lengths would be wrong by the same factor, and no other test detects this error.
         alignment.gravity_source = grid::GravitySource::assumed;
         alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(

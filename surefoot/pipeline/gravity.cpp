@@ -28,7 +28,7 @@ double square(double x) {
     return x * x;
 }
 
-/// Posterior of one kind of floor, in the plane across the accelerometer's up direction.
+/// Posterior for one kind of floor, in the plane across the accelerometer's up direction.
 struct Update {
     double log_weight = 0.0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -123,8 +123,8 @@ std::optional<Direction> up_from_imu(const GravityConfig& config,
     const bool still =
         force->mean_gyro_rad_s <= still_gyro_rad_s && std::abs(excess_m_s2) <= still_force_m_s2;
     if (!still) return std::nullopt;
-    // The length of the force measures the bias along gravity: one sample of the spread of all
-    // three axes. The setting counts as three more samples.
+    // The length of the force measures the bias along gravity. It counts as one sample of the bias
+    // of all three axes. The setting counts as three more samples.
     constexpr double kPriorSamples = 3.0;
     const double bias_var = (kPriorSamples * square(config.accel_bias_m_s2) + square(excess_m_s2)) /
                             (kPriorSamples + 1.0);
