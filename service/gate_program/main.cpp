@@ -35,12 +35,13 @@ namespace {
 constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
-/// How long to wait for a port in use. The gate of a `surefoot serve` that has just ended releases
-/// its port within milliseconds.
+/// Longest wait for a port in use. When a `surefoot serve` has just ended, its gate releases the
+/// port within milliseconds.
 constexpr std::int64_t kPortPatience_ns = 1'500'000'000;
 
 std::atomic<bool> stop_wanted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+static_assert(std::atomic<bool>::is_always_lock_free,
+              "a signal handler sets this flag, so it must be lock-free");
 
 struct Options {
     std::string machine = "rex";
@@ -68,7 +69,7 @@ int fail(const Error& error) {
 }
 
 /// Reads the key of the snapshot channel from the program that started the gate, or from a file.
-/// Without a key it returns a new random one, so the gate trusts no map.
+/// Without a key, returns a new random key, so the gate trusts no map.
 Result<gate_process::ChecksumKey> channel_key(const Options& options) {
     if (options.parent_fd >= 0) {
         std::array<char, 16> bytes{};
@@ -119,8 +120,8 @@ class ChannelNews {
     gate_process::ChannelState told_ = gate_process::ChannelState::absent;
 };
 
-/// Opens the server. If another process uses the port it retries for kPortPatience_ns, then returns
-/// an error that names that process.
+/// Opens the server. If another process uses the port, retries for kPortPatience_ns and then
+/// returns an error that names this process.
 Result<std::unique_ptr<gate_process::WebsocketServer>> listen(
     const gate_process::ServerConfig& config,
     gate_process::StepGate& gate,
@@ -150,19 +151,18 @@ gate::ReadinessLimits limits_of(const io::MachineFile& file) {
     return limits;
 }
 
-/// Requests short time slices for the calling thread. The scheduler then runs it soon after it
-/// wakes up for a query, instead of at the end of another thread's slice (milliseconds). It needs
-/// no privileges. Linux before 6.12 ignores the request.
+/// Requests short time slices for the calling thread. After a query wakes the thread, the scheduler
+/// runs it soon, not only at the end of another thread's slice (milliseconds). The request needs no
+/// privileges. Linux before 6.12 ignores it.
 void ask_for_short_slices() {
-    if (::sched_getscheduler(0) != SCHED_OTHER)
-        return;  // the starter chose another policy: keep it
-    struct {     // for sched_setattr(2); the kernel's header conflicts with the C library's
+    if (::sched_getscheduler(0) != SCHED_OTHER) return;  // the process has another policy; keep it
+    struct {  // for sched_setattr(2); the kernel's header conflicts with the C library's
         std::uint32_t size = 48;
         std::uint32_t policy = SCHED_OTHER;
         std::uint64_t flags = 0;
         std::int32_t nice = ::getpriority(PRIO_PROCESS, 0);  // unchanged
         std::uint32_t priority = 0;
-        std::uint64_t slice_ns = 100'000;  // the shortest that Linux accepts
+        std::uint64_t slice_ns = 100'000;  // the shortest slice that Linux accepts
         std::uint64_t deadline_ns = 0;
         std::uint64_t period_ns = 0;
     } wish;
@@ -228,7 +228,7 @@ int serve(const Options& options, const io::MachineFile& file) {
     ask_for_short_slices();
     running->run();
     keeper.stop();
-    server->reset();  // release the port before the log writes its remaining records
+    server->reset();  // releases the port before the log writes its last records
     if (audit != nullptr) audit->stop();
     return kExitOk;
 }
@@ -246,8 +246,8 @@ int run(Options options) {
     if (options.assured && options.audit_dir.empty())
         return fail(
             usage_error("--assured needs an audit log: give the folder of the log with --audit"));
-    // Each start of the gate begins at another connection number, so a verdict from before the
-    // start never carries the number of a present client.
+    // Each start of the gate begins at another connection number. So a verdict from before the
+    // start never has the number of a present client.
     options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };
@@ -350,7 +350,8 @@ int main_with_arguments(int argc, char** argv) {
 }  // namespace
 }  // namespace surefoot::app
 
-// However the process ends, its clients get no further answer, so no step is allowed.
+// The clients of an ended process get no further answer, so no step is allowed. This holds for
+// every way in which the process ends.
 int main(int argc, char** argv) {
     try {
         return surefoot::app::main_with_arguments(argc, argv);

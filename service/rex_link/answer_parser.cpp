@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outside tests the only file here that includes nlohmann-json: 6 s per translation unit.
+// Apart from tests, only this file includes nlohmann-json: it adds 6 s per translation unit.
 #include "service/rex_link/answer_parser.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepest = 8;  // the gate's messages are less deep
+constexpr int kDeepest = 8;  // deepest JSON; the gate's messages are less deep
 constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::int64_t kLongestLife_ms = 60'000;
 
@@ -53,7 +53,7 @@ bool is_text(const Json* value, const char* text) {
     return value != nullptr && value->is_string() && value->get_ref<const std::string&>() == text;
 }
 
-/// The text if it has no control characters, so that a terminal can show it; else empty.
+/// Returns the text if it has no control characters, so that a terminal can show it; else empty.
 std::optional<std::string> printable(const Json* value) {
     if (value == nullptr || !value->is_string()) return std::nullopt;
     const auto& text = value->get_ref<const std::string&>();
@@ -74,7 +74,7 @@ std::string format_id(std::uint64_t nonce, const Question& question) {
     return fmt::format("rex:{:016x}:{}:{}", nonce, question.sequence, question.command);
 }
 
-/// Reads the question from an id. The values read must format to exactly the same id.
+/// Reads the question from an id. The values must give exactly the same id when formatted.
 bool read_id(const std::string& id, Answer& answer) {
     const std::string_view text = id;
     constexpr std::size_t kNonceAt = 4, kSequenceAt = 21;

@@ -60,8 +60,8 @@ void check_numbers(const Query& query, const GateLimits& limits, Findings& findi
     if (!(pose && stance && attested)) findings.deny(Reason::bad_number);
 }
 
-/// Tests that an age is neither too large nor negative (a stamp in the future). Unsigned
-/// differences cannot overflow.
+/// Tests that a stamp is neither too old nor too far in the future. Unsigned differences cannot
+/// overflow.
 void check_stamp(std::int64_t stamp_ns,
                  std::int64_t now_ns,
                  std::int64_t max_age_ns,

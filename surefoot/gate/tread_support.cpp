@@ -61,7 +61,7 @@ class FootAxes {
         return place_of(ground_.doubled_center(ix, iy, middle_));
     }
     [[nodiscard]] std::int64_t reach() const noexcept { return reach_; }
-    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< doubled half of it
+    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< half of it, doubled
     [[nodiscard]] std::int64_t width() const noexcept { return width_; }
     [[nodiscard]] std::int64_t ankle() const noexcept { return ankle_; }
     /// Returns half of the extent of the ankle area along the foot: half a patch, doubled.

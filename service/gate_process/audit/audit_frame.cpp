@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kCheckedBytes = kFrameHeaderBytes - 4;
 
-/// Both halves of the hash, combined: checks the header alone, so a wrong length is never used.
+/// Combines both halves of the hash. This value checks the header alone, so a wrong length is never
+/// used.
 std::uint32_t check_of(std::string_view header) noexcept {
     const std::uint64_t hash = fnv1a(header.substr(0, kCheckedBytes));
     return static_cast<std::uint32_t>(hash ^ hash >> 32U);

@@ -17,14 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Far above the writer's limit; a larger file is an error and must not fill the memory.
+/// Largest size of a file that is read. It is far above the writer's limit; a larger file is an
+/// error and must not fill the memory.
 constexpr std::uintmax_t kMaxFileBytes = 256ULL << 20U;
 
 bool is_zero(std::string_view bytes) noexcept {
     return bytes.find_first_not_of('\0') == bytes.npos;
 }
 
-/// True if bytes that are too short for a header begin like one.
+/// True if bytes that are too short for a frame header equal the start of a header.
 bool begins_like_a_frame(std::string_view bytes) noexcept {
     constexpr std::string_view kStart = "SFA";
     const std::size_t size = std::min(bytes.size(), kStart.size());
@@ -61,7 +62,7 @@ void AuditReader::read(std::string_view bytes, const std::string& file) {
     }
 }
 
-/// Returns nothing at the end of the file and at damage; notes the damage.
+/// Returns nothing at the end of the file or at damage, and notes the damage.
 std::optional<AuditReader::Frame> AuditReader::next_frame(std::string_view rest) {
     if (is_zero(rest)) {  // space that was allocated for the file but never written
         end_unfinished(rest.size(), "are zero");
@@ -153,7 +154,7 @@ bool AuditReader::follows(const FrameHeader& header, const Link& link) {
     return true;
 }
 
-/// The first file may begin anywhere in the chain, because old files are removed.
+/// The first file may start anywhere in the chain, because old files are removed.
 bool AuditReader::take_file_head(const Frame& frame) {
     FileHead head;
     if (const Status status = parse_file_head(frame.payload, head); !status)
@@ -208,7 +209,7 @@ bool AuditReader::take_act(const Frame& frame) {
 void AuditReader::end_unfinished(std::size_t bytes, const char* how) {
     summary_.unfinished.push_back(
         fmt::format("{}: the last {} bytes {}: the writer stopped there", file_, bytes, how));
-    // A file without a head still has a number.
+    // A file without a head still has a number in its name.
     std::uint64_t number = 0;
     if (offset_ == 0 && head_ && parse_audit_file_name(fs::path(file_).filename().string(), number))
         head_->number = number;

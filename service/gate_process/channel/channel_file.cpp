@@ -25,7 +25,7 @@ bool is_regular(int file, struct stat& info) noexcept {
     return ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/// The lock holder for messages: "process 1234 (surefoot)".
+/// Returns the lock holder for messages: "process 1234 (surefoot)".
 std::string owner_words(const ChannelFile& file) {
     ChannelBegin begin;
     if (!file.read(&begin, sizeof(begin), 0) || begin.owner == 0) return "another process";
@@ -61,7 +61,7 @@ Result<ChannelFile> ChannelFile::open(const std::string& path) {
 }
 
 Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t magic) {
-    // The previous owner may delete the file between open and lock: then retry.
+    // The previous owner may delete the file between open and lock. In that case, retry.
     constexpr int kAttempts = 10;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         ChannelFile file(::open(path.c_str(), kFlags | O_CREAT, 0600));

@@ -44,7 +44,7 @@ Error key_error(const std::string& path, const std::string& what) {
     return usage_error("key file " + path + ": " + what);
 }
 
-/// Reads at most a few bytes: a key has 32 digits, so a longer file is no key file.
+/// Reads at most 64 bytes. A key has 32 digits, so a longer file is not a key file.
 Result<std::string> read_small_file(const std::string& path) {
     constexpr std::size_t kMost_bytes = 64;
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -125,7 +125,7 @@ void KeyedChecksum::add(std::uint64_t word) noexcept {
 }
 
 void KeyedChecksum::add(std::span<const unsigned char> bytes) noexcept {
-    KeyedChecksum state = *this;  // in registers while the loop runs
+    KeyedChecksum state = *this;  // copies that stay in registers during the loop
     const std::size_t whole = bytes.size() / kWord * kWord;
     for (std::size_t i = 0; i < whole; i += kWord) state.compress(word_at(bytes.data() + i));
     if (whole < bytes.size()) std::memcpy(&state.tail_, bytes.data() + whole, bytes.size() - whole);

@@ -9,8 +9,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Checks a text without storing it and stops at the first forbidden element. The function names
-/// are required by nlohmann-json.
+/// Checks a text without storing it, and stops at the first forbidden element. nlohmann-json
+/// requires the names of the functions.
 class Guard {
   public:
     explicit Guard(const JsonLimits& limits) : limits_(limits) {}

@@ -13,24 +13,26 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Command of `step_forward`: the joystick's outer ring, ahead (machines/rex.yaml: N).
+/// Command of `step_forward`: the outer ring of the joystick, straight ahead (machines/rex.yaml:
+/// N).
 constexpr std::uint8_t kForwardCode = 9;
 
-/// The id of a message in the form that rosbridge clients send; any other form is dropped.
+/// Returns the id of a message in the form that rosbridge clients send; any other form is dropped.
 Json id_of(const Json& message) {
     const auto id = message.find("id");
     if (id == message.end() || !(id->is_string() || id->is_number_integer())) return nullptr;
     return *id;
 }
 
-/// The arguments of a call. Clients omit them or send null if there are none.
+/// Returns the arguments of a call. Clients omit the arguments or send null if there are none.
 const Json& args_of(const Json& message) {
     static const Json empty = Json::object();
     const auto args = message.find("args");
     return args == message.end() || args->is_null() ? empty : *args;
 }
 
-/// An integer from 0 to `most`; empty if invalid. Missing or null counts as 0.
+/// Returns an integer from 0 to `most`; empty if it is invalid. A missing value or null counts as
+/// 0.
 std::optional<std::int64_t> limited_member(const Json& message, const char* name, int most) {
     const auto value = message.find(name);
     if (value == message.end() || value->is_null()) return 0;
@@ -275,11 +277,12 @@ void RosbridgeSession::serve_step(const ServiceEntry& entry, const Call& call, c
     const Json verdict = verdict_object(answer.verdict, answer.text);
     switch (entry.service) {
         case Service::step_with_reasons: respond(call, verdict, readable); break;
-        // The type Empty has no member, so such clients read only `result`.
+        // The service type Empty has no member, so its clients read only `result`.
         case Service::step_forward: respond(call, {{"resultCode", code}}, code == 0); break;
         default: respond(call, {{"resultCode", code}}, readable);
     }
-    // Verdicts on messages that came too fast are not published: a flood would reach all clients.
+    // Verdicts on messages that came too fast are not published. Otherwise one flooding client
+    // would flood all clients.
     if (!call.overloaded) call.out.published.push_back(topic_message(Topic::verdict, verdict));
 }
 

@@ -8,10 +8,11 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kForgetHalf_ns = 1'000'000'000;
-/// A question costs 0.15 ms. A rider that asks 15 times a second reaches this decayed cost.
+/// Cost above which a client counts as too expensive. A question costs 0.15 ms, and a rider that
+/// asks 15 times a second reaches this decayed cost.
 constexpr std::int64_t kHeavy_ns = 5'000'000;
 
-/// Costs decay completely within a minute.
+/// After a minute, costs have decayed completely.
 std::int64_t remaining(std::int64_t cost_ns, std::int64_t age_ns) noexcept {
     constexpr std::int64_t kMostHalves = 62;
     return cost_ns >> std::clamp<std::int64_t>(age_ns / kForgetHalf_ns, 0, kMostHalves);

@@ -43,7 +43,7 @@ std::string system_says() {
     return std::generic_category().message(errno);
 }
 
-/// 128 random bits as hexadecimal digits; empty if the system has no random numbers.
+/// Returns 128 random bits as hexadecimal digits; empty if the system has no random numbers.
 std::string new_token() {
     std::array<std::uint8_t, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
@@ -128,7 +128,7 @@ Result<TokenFile> read_or_make_tokens(const std::string& path) {
         if (auto made = make_folder_of(path); !made) return made.error();
         const Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
         if (file.number() >= 0) return make_tokens(file.number(), path);
-        if (errno != EEXIST)  // another start may have created it just now
+        if (errno != EEXIST)  // another process may have created it meanwhile
             return input_error(path + ": the token file cannot be created: " + system_says());
     }
     auto access = read_tokens(path);
