@@ -121,7 +121,7 @@ class ChannelNews {
 };
 
 /// Opens the server. If another process uses the port, retries for kPortPatience_ns and then
-/// returns an error that names this process.
+/// returns an error that names the other process.
 Result<std::unique_ptr<gate_process::WebsocketServer>> listen(
     const gate_process::ServerConfig& config,
     gate_process::StepGate& gate,

@@ -9,7 +9,7 @@
 namespace surefoot::gate {
 namespace {
 
-// Cosine and sine of this yaw are exact, and it is not parallel to a grid axis.
+// The cosine and sine of this yaw are exact. Its direction is not parallel to a grid axis.
 constexpr double kCosYaw = 0.8;
 constexpr double kSinYaw = 0.6;
 constexpr std::int64_t kNowNs = 1'000'000'000'000;
@@ -222,8 +222,8 @@ constexpr auto kDamages = std::to_array<Fault>({
 
 constexpr std::size_t kFaultCount = kFaults.size() + 2 * kGroundFaults.size() + kDamages.size();
 
-/// Returns canary `index` of those that break a rule: its rule, its foot, and whether the change
-/// happens after the map was sealed.
+/// A canary that breaks a rule: its rule, its foot, and whether the change happens after the map
+/// was sealed.
 struct Broken {
     const Fault& fault;
     std::size_t foot = 0;
@@ -242,8 +242,8 @@ std::int64_t length_sq(const Movement& m) noexcept {
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
 }
 
-/// The longest movement covers the most ground. The faults are faults of flat ground; on stairs
-/// some of them are treads.
+/// True if `a` is better for the canaries than `b`. A longer movement covers more ground. The
+/// broken rules are rules for flat ground: on stairs, some of the faults would be treads.
 bool is_harder(const Movement& a, const Movement& b) noexcept {
     if (a.movement_class != b.movement_class) return a.movement_class == MovementClass::walk;
     return length_sq(a) > length_sq(b);

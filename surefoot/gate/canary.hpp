@@ -11,8 +11,8 @@ namespace surefoot::gate {
 
 /// Canaries: maps with known verdicts. Level ground must be OK for every movement of the machine.
 /// For the longest movement, one canary breaks each ground rule; each rule of a foot has a canary
-/// per foot. Canaries pass through decide() like every query. So a gate that gives the same verdict
-/// always is detected. Judge all before the gate is armed, then one after the other while it runs.
+/// per foot. Canaries pass through decide() like every query. So a gate that always gives the same
+/// verdict is detected. Judge all before the gate is armed, then one after the other while it runs.
 ///
 /// Holds one map of 0.9 MB, so allocate it on the heap. Allocates nothing after construction. One
 /// canary costs less than a millisecond.

@@ -193,8 +193,8 @@ void check_step(const Landing& landing) noexcept {
         evidence.height_delta_tenth_mm = rise;
     const StepLimits& limits = step_limits(landing.scene);
     check_rise(limits, landing.at(0.0, 0.0, rise, 0), landing.findings);
-    // Tests the height of each foot alone, too. If one foot stands above the mean of both feet and
-    // the other below, its height could change by twice the limit.
+    // Also tests the rise of this foot alone. If one foot stands above the mean of both feet and
+    // the other foot below, the height of one foot could change by twice the limit.
     const Scene& scene = landing.scene;
     const auto stood = scene.foot_stance_tenth_mm[landing.foot.foot == Foot::left ? 0 : 1];
     if (!stood) return;

@@ -228,7 +228,7 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 
 constexpr auto kNothing = [](const Place&) noexcept {};
 
-/// Returns the mean height of the known cells under the present feet.
+/// Mean height of the known cells under the present feet.
 struct MeanHeight {
     std::int64_t sum = 0;
     std::int64_t known = 0;

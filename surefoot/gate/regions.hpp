@@ -33,7 +33,7 @@ struct Scene {
 /// Heights of the ground under the present feet: means of the known cells. Empty if no cell is
 /// known.
 struct StanceHeights {
-    std::optional<std::int64_t> both_tenth_mm;  ///< the height in the query has priority
+    std::optional<std::int64_t> both_tenth_mm;  ///< from the query if its source is `given`
     std::array<std::optional<std::int64_t>, 2> feet_tenth_mm;
 };
 [[nodiscard]] StanceHeights stance_heights(const Ground& ground,

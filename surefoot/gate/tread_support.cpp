@@ -92,7 +92,7 @@ class FootAxes {
     std::int64_t ankle_reach_;
 };
 
-/// Returns the mean height above the stance of the cells under the ankle.
+/// Finds the mean height above the stance of the cells under the ankle.
 void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const FootAxes axes(scene, foot);
     std::int64_t sum = 0;

@@ -16,7 +16,7 @@ struct Tread {
     static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
 
     bool known = false;              ///< every cell under the ankle is known
-    std::int64_t rise_tenth_mm = 0;  ///< above the stance; mean under the ankle
+    std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
     /// Start of the first cell that is lower than the tread by a drop, counted from the ankle to
     /// the toes and from the ankle to the heel (backward). kNone: no such cell in the band.
     std::int64_t toe_edge = kNone;

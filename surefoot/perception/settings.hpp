@@ -30,7 +30,7 @@ struct Settings {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Sources of the settings. A later source wins: defaults, preset, file, overrides.
+/// Sources of the settings: defaults, preset, file, overrides. Later sources have priority.
 struct SettingsRequest {
     std::string preset;                  ///< traversability preset, one of kPresetNames
     std::string config_file;             ///< YAML file, as `surefoot config` writes it

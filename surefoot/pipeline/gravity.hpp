@@ -14,7 +14,7 @@ namespace surefoot::pipeline {
 /// A direction in base_link with its uncertainty.
 struct Direction {
     Eigen::Vector3d unit_body = Eigen::Vector3d::UnitZ();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the unit vector [rad^2], rank 2
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< error of `unit_body` [rad^2], rank 2
 
     /// One sigma about any axis across the direction: root of the mean of the two variances.
     [[nodiscard]] double sigma_rad() const;

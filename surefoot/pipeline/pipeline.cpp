@@ -139,7 +139,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
         T_odom_first_body ? known_alignment(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
     tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
-    feature_tracker_.forget();  // odom is a new frame
+    feature_tracker_.forget();  // odom is a new coordinate frame
     mirror_watch_.forget();
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;

@@ -120,7 +120,7 @@ class Pipeline {
              Clock clock);
 
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
-    /// Returns false without changes if the rig cannot be rectified.
+    /// Changes to another rig. Returns false without changes if the rig cannot be rectified.
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
@@ -134,9 +134,9 @@ class Pipeline {
     [[nodiscard]] FrameReport skip(const StereoFrame& frame, FrameReport report);
     /// Returns the motion up to this frame. Moves the map window and its remembered cells.
     MotionEstimate move(const StereoFrame& frame);
-    /// The result is kept until the next call; it is empty if the frame has its own depth.
+    /// Rectifies the images. The result is kept until the next call; empty if depth is given.
     const camera::RectifiedPair& rectify(const StereoFrame& frame);
-    /// The result is kept until the next call.
+    /// Measures the depth image. The result is kept until the next call.
     const DepthImage& measure_depth(const StereoFrame& frame, const camera::RectifiedPair& pair);
     [[nodiscard]] ground::GroundSighting observe_ground(const DepthImage& depth,
                                                         const Pose& T_level_body,

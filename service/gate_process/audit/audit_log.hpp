@@ -63,7 +63,7 @@ class AuditLog {
     void push(const AuditedVerdict& audited) noexcept;
     /// Adds an act in order between the verdicts. If the memory is full, the act is dropped.
     void push(const Act& act) noexcept;
-    /// Returns the state at `now_ns`, on the clock of the verdicts. Assured gates need a good log.
+    /// Returns the state at `now_ns` (clock of the verdicts). An assured gate needs the state `ok`.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
     /// Writes the waiting entries, retries a failing disk once and ends the thread. Blocks until
     /// the disk returns.

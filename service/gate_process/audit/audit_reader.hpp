@@ -66,7 +66,7 @@ class AuditReader {
     };
     /// The link that the next frame must continue.
     struct Link {
-        std::uint64_t sequence = 0;  ///< expected in the next frame
+        std::uint64_t sequence = 0;  ///< sequence of the next frame
         std::uint64_t previous_hash = 0;
     };
 

@@ -60,7 +60,7 @@ Status AuditWriter::write(FrameKind kind, std::string_view payload) {
 Status AuditWriter::sync() {
     if (!is_open_ || synced_) return {};
     Status status = disk_->sync();
-    // After a failed write the content of the file is uncertain: continue in a new file.
+    // After a failed sync the content of the file is uncertain: continue in a new file.
     if (!status) leave_file();
     synced_ = true;
     return status;

@@ -66,7 +66,7 @@ class SnapshotReader {
         nothing,  ///< this writer has not published a snapshot
         same,     ///< no new snapshot since the last fresh one; `out` is unchanged
         fresh,    ///< `out` is the newest snapshot
-        torn,     ///< overwritten during the copy, three times; `out` is invalid
+        torn,     ///< overwritten during all three copies; `out` is invalid
         forged,   ///< made without the key, or older than the last one; `out` is invalid
         lost      ///< the file was deleted, replaced or truncated: call `reopen`
     };

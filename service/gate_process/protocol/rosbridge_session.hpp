@@ -29,7 +29,7 @@ struct SessionLimits {
 /// Permissions of the client of a session.
 struct SessionRights {
     Role role = Role::none;          ///< role at the start
-    const Access* access = nullptr;  ///< tokens for other roles; nullptr: no tokens. Must outlive
+    const Access* access = nullptr;  ///< tokens of the roles, or nullptr; must outlive the session
 };
 
 /// The effects of one received message.

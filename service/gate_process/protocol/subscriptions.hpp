@@ -22,7 +22,7 @@ struct TopicMessage {
 /// The rate at which a client wants a topic, as in rosbridge: throttle_rate is a time in ms,
 /// queue_length is the number of messages kept during that time.
 struct SubscriptionWish {
-    std::string id;  ///< may be empty
+    std::string id;  ///< id of the wish; may be empty
     std::int64_t interval_ns = 0;
     std::size_t queue_length = 0;
 };
