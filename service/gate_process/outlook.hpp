@@ -24,8 +24,8 @@ struct OutlookDemand {
 class OutlookRounds {
   public:
     /// Call it every few milliseconds. Asks the gate only if a client subscribes. Unread bytes
-    /// delay a movement by a few calls at most, so that one client that floods the gate cannot stop
-    /// the outlook of the others.
+    /// delay a movement by a few calls at most. So one client that floods the gate cannot stop the
+    /// outlook of the others.
     [[nodiscard]] std::optional<TopicMessage> next(StepGate& gate,
                                                    const OutlookDemand& demand,
                                                    std::int64_t now_ns);

@@ -20,8 +20,8 @@ namespace surefoot::gate {
 class Attestation {
   public:
     /// Attests level ground under the soles, within `radius_tenth_mm` of base_link. Returns false
-    /// and changes nothing if the radius is below the least radius or above the machine file's
-    /// limit, or if the snapshot cannot be used.
+    /// and changes nothing if the snapshot cannot be used. The same holds for a radius below the
+    /// least radius or above the limit of the machine file.
     [[nodiscard]] bool attest(const Machine& machine,
                               const grid::MapSnapshot& map,
                               std::int64_t radius_tenth_mm,

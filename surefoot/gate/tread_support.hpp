@@ -17,8 +17,8 @@ struct Tread {
 
     bool known = false;              ///< every cell under the ankle is known
     std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
-    /// Start of the first cell that is lower than the tread by a drop, counted from the ankle to
-    /// the toes and from the ankle to the heel (backward). kNone: no such cell in the band.
+    /// Start of the first cell that is lower than the tread by a drop. `heel_edge` counts backward
+    /// from the middle of the foot. kNone: no such cell in the band.
     std::int64_t toe_edge = kNone;
     std::int64_t heel_edge = kNone;
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band

@@ -48,7 +48,7 @@ Error key_error(const std::string& path, const std::string& what) {
 Result<std::string> read_small_file(const std::string& path) {
     constexpr std::size_t kMost_bytes = 64;
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return key_error(path, "it cannot be opened");
+    if (file < 0) return key_error(path, "it cannot be opened; check its path and permissions");
     struct stat info {};
     const bool known = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
     std::array<char, kMost_bytes> bytes{};

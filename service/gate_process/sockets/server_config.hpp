@@ -36,7 +36,7 @@ struct ServerConfig {
     /// including new WebSockets. The client with the least use is served first. Messages beyond the
     /// limit wait.
     int guest_work_us = 1500;
-    int door_work_us = 750;                 ///< time between two ticks to accept and read requests
+    int door_work_us = 750;                 ///< most time per tick to accept and read requests
     int handshake_ms = 2000;                ///< time limit for the complete WebSocket handshake
     int idle_ms = 10000;                    ///< longest time without data; ping at half this time
     int message_ms = 2000;                  ///< time limit for receiving one message

@@ -14,8 +14,8 @@ namespace surefoot::gate_process {
 struct SlotLimits {
     std::size_t max_clients = 64;
     std::size_t reserved = 8;  ///< part of max_clients that is reserved for clients of high rank
-    /// Limit of connections without a complete request; above the limit, one is closed. The limit
-    /// is large, so that many new connections do not displace a client before its request arrives.
+    /// Limit of connections without a complete request; above it, one connection is closed. The
+    /// limit is large: many new connections must not displace a client before its request arrives.
     std::size_t max_handshakes = 256;
     std::size_t per_peer = 16;  ///< most clients of low rank per other computer
     /// A low-rank client served within this time is not closed for another low-rank client, unless

@@ -652,7 +652,7 @@ void SocketServer::take_turns(std::int64_t now_ns) {
     });
     auto newcomer = turns.begin();
     auto client = clients;
-    newcomers_first_ = !newcomers_first_;  // for a tick with time for only one
+    newcomers_first_ = !newcomers_first_;  // each group is first in every second tick
     for (bool newcomers_turn = newcomers_first_; newcomer != clients || client != turns.end();
          newcomers_turn = !newcomers_turn) {
         // If no time is left, the connections wait again.
