@@ -34,8 +34,8 @@ namespace surefoot {
 /// the line, the key and the limit.
 [[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
 
-/// The whole chain behind one object: from frames of a stereo or depth camera to a rated map of the
-/// ground, its stairs and drops, and the gate's verdict on a movement.
+/// The whole processing in one object. Input: frames of a stereo or depth camera. Results: a rated
+/// map of the ground, its stairs and drops, and the gate's verdict on a movement.
 ///
 ///     auto source = surefoot::open_recording("my_recording");
 ///     auto perception = surefoot::Perception::make((*source)->rig());
@@ -44,9 +44,9 @@ namespace surefoot {
 ///             std::cout << report.motion.T_odom_body.translation_m.transpose() << '\n';
 ///
 /// Start-up: the first frames are kept until they show gravity and the ground (pipeline::StartUp),
-/// then odom is placed and the kept frames are processed. Frames: odom, z up, below the first
-/// base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of one core for
-/// a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
+/// then odom is placed and the kept frames are processed. Results are in odom: z up, origin below
+/// the first base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of
+/// one core for a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
 class Perception {
   public:
     /// `rig`: the camera. If it does not state its mounting, the mounting of the machine is used.

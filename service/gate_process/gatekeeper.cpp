@@ -267,7 +267,7 @@ Status Gatekeeper::check_radius(double radius_m) const {
 
 std::int64_t Gatekeeper::least_radius_tenth_mm() const {
     const auto square = static_cast<double>(gate::least_attested_radius_sq(machine_));
-    return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));  // in range: of an integer
+    return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));  // in range: root of an integer
 }
 
 Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {

@@ -114,7 +114,7 @@ class Gatekeeper final : public StepGate {
     std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest complete snapshot
     std::unique_ptr<grid::MapSnapshot> incoming_;  ///< the snapshot being read
     bool has_map_ = false;
-    bool waits_ = false;          ///< the stamp of `incoming_` is later than the last call
+    bool waits_ = false;          ///< true: the stamp of `incoming_` is later than the last call
     std::uint64_t writer_ = 0;    ///< writer of `map_`
     std::uint64_t given_up_ = 0;  ///< writer that must restart; its maps are rejected
     std::int64_t next_open_ns_ = 0;

@@ -13,14 +13,14 @@ namespace surefoot::gate_process {
 
 /// Conditions under which the outlook may be computed now.
 struct OutlookDemand {
-    bool subscribed = false;      ///< at least one client subscribes
+    bool subscribed = false;      ///< at least one client subscribes to the outlook
     bool question_waits = false;  ///< a client has unread bytes, and answers have priority
 };
 
 /// Computes the gate's answer to every movement of the machine, for display. One call judges one
 /// movement, so a question waits for at most one verdict. A complete round is published, at most
 /// four times a second. A change of the gate's state restarts the round, so no message mixes two
-/// states. Judging allocates nothing; making the message does.
+/// states. Judging allocates nothing, but making the message allocates.
 class OutlookRounds {
   public:
     /// Call it every few milliseconds. Asks the gate only if a client subscribes. Unread bytes

@@ -156,7 +156,7 @@ gate::ReadinessLimits limits_of(const io::MachineFile& file) {
 /// privileges. Linux before 6.12 ignores it.
 void ask_for_short_slices() {
     if (::sched_getscheduler(0) != SCHED_OTHER) return;  // the process has another policy; keep it
-    struct {  // for sched_setattr(2); the kernel's header conflicts with the C library's
+    struct {  // as in sched_setattr(2); the kernel's header conflicts with that of the C library
         std::uint32_t size = 48;
         std::uint32_t policy = SCHED_OTHER;
         std::uint64_t flags = 0;

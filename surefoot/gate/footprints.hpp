@@ -26,7 +26,7 @@ struct FixedPose {
     std::int64_t sin_yaw = 0;
 };
 
-/// Precondition: |cos_yaw| and |sin_yaw| <= 1.001.
+/// Makes a pose. Precondition: |cos_yaw| and |sin_yaw| <= 1.001.
 [[nodiscard]] FixedPose fixed_pose(std::int64_t x_tenth_mm,
                                    std::int64_t y_tenth_mm,
                                    double cos_yaw,
@@ -71,7 +71,7 @@ struct Extent {
 /// regions do not cover it.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
-/// `margin_tenth_mm` widens every region except the stance and landing areas.
+/// Returns all regions. `margin_tenth_mm` widens all except the stance and landing areas.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
                              const Movement& movement,

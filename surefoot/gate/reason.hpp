@@ -54,7 +54,7 @@ enum class Reason : std::uint8_t {
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
 
-/// The code in messages and logs, for example "UNKNOWN_CELLS".
+/// Returns the code in messages and logs, for example "UNKNOWN_CELLS".
 [[nodiscard]] const char* to_string(Reason reason) noexcept;
 
 [[nodiscard]] constexpr bool is_error(Reason reason) noexcept {
@@ -81,7 +81,7 @@ class ReasonSet {
         return reason != Reason::none && (bits_ >> static_cast<unsigned>(reason) & 1U) != 0;
     }
     [[nodiscard]] constexpr bool empty() const noexcept { return bits_ == 0; }
-    /// The reason of highest precedence, or `none` for an empty set.
+    /// Returns the reason of highest precedence, or `none` for an empty set.
     [[nodiscard]] constexpr Reason primary() const noexcept {
         for (int i = 0; i < kReasonCount; ++i) {
             if (contains(static_cast<Reason>(i))) return static_cast<Reason>(i);

@@ -16,8 +16,8 @@ namespace surefoot::pipeline {
 
 struct AlignmentConfig {
     double pitch_deg = 0.0;          ///< pitch below the horizon if not measured
-    double still_gyro_rad_s = 0.15;  ///< MEMS bias (EuRoC 0.08) plus noise. Above it,
-                                     ///< the accelerometer does not measure gravity
+    double still_gyro_rad_s = 0.15;  ///< largest turn rate that counts as rest:
+                                     ///< MEMS bias (EuRoC 0.08 rad/s) plus noise
     double still_force_m_s2 = 0.3;   ///< largest |mean force - 9.81 m/s^2| at rest
     GravityConfig gravity;           ///< uncertainty of the plane and the accelerometer
     /// The mount counts as moved (mount_monitor.hpp) if base_link leans by over `max_lean_deg` from

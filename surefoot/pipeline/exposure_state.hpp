@@ -17,7 +17,7 @@ enum class ExposureState : std::uint8_t {
 /// From this value on, the true brightness of a pixel is unknown. 8-bit cameras clip a little below
 /// 255 after lens shading correction.
 inline constexpr int kSaturated_dn = 250;
-/// Black level and read noise of 8-bit cameras lie below this.
+/// Black level and read noise of 8-bit cameras lie below this value.
 inline constexpr int kBlack_dn = 10;
 /// ASSUMPTION: three quarters of an image are enough. Half an image was enough for ground planes,
 /// and two thirds for the corners of the online rig self-calibration (docs/lab/ground.md).

@@ -53,7 +53,7 @@ struct GravityConfig {
                                                    std::span<const StereoFrame> frames);
 
 /// Returns the up direction if only the ground plane is known: its normal. The plane alone cannot
-/// distinguish a level floor from a ramp, so the uncertainty is that of sloped floors.
+/// distinguish a level floor from a ramp. So the uncertainty covers sloped floors.
 [[nodiscard]] Direction up_from_plane(const GravityConfig& config, const Direction& normal);
 
 /// Up direction from both sources, and the probability that the floor was built level.

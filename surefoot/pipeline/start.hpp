@@ -20,7 +20,7 @@ using NextFrame = std::function<std::optional<StereoFrame>()>;
 
 struct Start {
     std::vector<StereoFrame> frames;  ///< frames of the alignment, still to be processed
-    int waited_frames = 0;            ///< earlier frames, which have no pose
+    int waited_frames = 0;            ///< number of earlier frames, which have no pose
 };
 
 /// Collects frames until odom can be placed, and aligns the pipeline with them. The reference

@@ -41,7 +41,7 @@ struct AuditReport {
     std::uint64_t written = 0;  ///< verdicts and acts in the log
     std::uint64_t lost = 0;     ///< verdicts and acts that were dropped
     bool failing = false;
-    std::string last_error;  ///< empty = no error yet
+    std::string last_error;  ///< message of the last error; empty = no error yet
 };
 
 /// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate

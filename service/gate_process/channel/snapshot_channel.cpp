@@ -103,7 +103,7 @@ struct SnapshotWriter::State {
     [[nodiscard]] Status restore(const Head& kept);
 
     const ChannelAddress address;
-    std::mutex mutex;  ///< `publish` and `mend` run on two threads
+    std::mutex mutex;  ///< needed: `publish` and `mend` run on two threads
     ChannelFile file;
     std::uint64_t writer = 0;
     std::uint64_t published = 0;

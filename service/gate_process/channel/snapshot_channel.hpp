@@ -67,7 +67,7 @@ class SnapshotReader {
         same,     ///< no new snapshot since the last fresh one; `out` is unchanged
         fresh,    ///< `out` is the newest snapshot
         torn,     ///< overwritten during all three copies; `out` is invalid
-        forged,   ///< made without the key, or older than the last one; `out` is invalid
+        forged,   ///< made without the key, or older than the last snapshot; `out` is invalid
         lost      ///< the file was deleted, replaced or truncated: call `reopen`
     };
     [[nodiscard]] Read read(grid::MapSnapshot& out) noexcept;

@@ -24,7 +24,7 @@ struct ServerConfig {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 9090;           ///< the rosbridge port; 0 = any free port
     Access access;                       ///< tokens and roles
-    TlsFiles tls;                        ///< empty = no TLS
+    TlsFiles tls;                        ///< files for TLS; empty = no TLS
     std::string insecure;                ///< kInsecureSentence permits other computers without TLS
     std::vector<std::string> origins;    ///< allowed web pages, in addition to this machine's pages
     std::uint64_t first_connection = 1;  ///< number of the first client; never 0

@@ -95,7 +95,7 @@ void Slots::served(Id id, std::int64_t now_ns, std::int64_t cost_ns) noexcept {
     Held& held = found->second;
     const std::int64_t age_ns = now_ns - held.cost_at_ns;
     held.cost_ns = cost_ns + remaining(held.cost_ns, age_ns);
-    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within a second are added
+    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within 1 s add up
     held.was_served = true;
     held.since_ns = now_ns;
 }

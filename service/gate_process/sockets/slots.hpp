@@ -48,7 +48,7 @@ class Slots {
     struct Entry {
         bool granted = false;
         bool peer_is_full = false;  ///< refused: too many clients from this computer
-        std::optional<Id> ended;    ///< close this connection
+        std::optional<Id> ended;    ///< connection that the caller must close
     };
 
     explicit Slots(const SlotLimits& limits) : limits_(limits) {}

@@ -14,7 +14,7 @@ namespace surefoot::gate_process {
 struct ServerCounts {
     std::size_t clients = 0;     ///< clients that use rosbridge now
     std::size_t handshakes = 0;  ///< connections without a complete request
-    std::uint64_t accepted = 0;  ///< connections since the start
+    std::uint64_t accepted = 0;  ///< accepted connections since the start
     std::uint64_t refused = 0;   ///< connections refused by token, origin, request or limit
     std::uint64_t dropped = 0;   ///< clients that were disconnected: slow, too many messages,
                                  ///< invalid messages, or closed for another client
