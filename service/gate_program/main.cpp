@@ -103,8 +103,8 @@ class ChannelNews {
         const bool was_lost = told_ == gate_process::ChannelState::lost;
         told_ = state;
         if (state == gate_process::ChannelState::lost)
-            say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
-                "has created it again");
+            say("the channel was deleted, replaced or cut off; no step is allowed until perception "
+                "has created the channel again");
         if (state == gate_process::ChannelState::open && was_lost) say("the channel is open again");
         if (state == gate_process::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "
@@ -308,7 +308,10 @@ int main_with_arguments(int argc, char** argv) {
            options.server.origins,
            "origin whose web pages may connect, for example http://192.0.2.7:8000, null or file://")
         ->type_name("URL");
-    app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
+    app.add_option("--audit",
+                   options.audit_dir,
+                   "folder for the audit log; without this option the gate writes no log")
+        ->type_name("DIR");
     app.add_flag(
         "--assured", options.assured, "never answer OK while the audit log cannot be written");
     app.add_option("--audit-mb",

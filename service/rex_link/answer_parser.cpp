@@ -115,7 +115,7 @@ Status read_verdict(const Json& values, Answer& answer) {
         return missing("reasons", "a list of texts");
     }
     if (reasons->empty() != (*known == AnswerVerdict::ok))
-        return missing("reasons", "empty for an OK and filled for all other verdicts");
+        return missing("reasons", "a list that is empty for OK and not empty for other verdicts");
     answer.verdict = *known;
     return {};
 }

@@ -176,7 +176,8 @@ class Client {
         const std::int64_t now_ns = steady_ns();
         const auto parsed =
             is_text ? parse_answer(bytes)
-                    : Result<ParsedAnswer>(input_error("answer: a binary message instead of text"));
+                    : Result<ParsedAnswer>(
+                          input_error("answer: the gate sent a binary message instead of text"));
         LinkEvent event = event_of(parsed ? LinkEventKind::answer : LinkEventKind::damaged);
         event.text = parsed ? parsed.value().text : parsed.error().message;
         if (parsed) {

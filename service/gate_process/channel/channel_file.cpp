@@ -56,7 +56,8 @@ Result<ChannelFile> ChannelFile::open(const std::string& path) {
     ChannelFile file(::open(path.c_str(), kFlags));
     if (file.file_ < 0) return channel_error(path, "it cannot be opened: " + system_words());
     struct stat info {};
-    if (!is_regular(file.file_, info)) return channel_error(path, "it is not a regular file");
+    if (!is_regular(file.file_, info))
+        return channel_error(path, "it is not a regular file; name another file");
     return file;
 }
 
@@ -67,7 +68,8 @@ Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t mag
         ChannelFile file(::open(path.c_str(), kFlags | O_CREAT, 0600));
         if (file.file_ < 0) return channel_error(path, "it cannot be opened: " + system_words());
         struct stat info {};
-        if (!is_regular(file.file_, info)) return channel_error(path, "it is not a regular file");
+        if (!is_regular(file.file_, info))
+            return channel_error(path, "it is not a regular file; name another file");
         if (info.st_uid != ::geteuid())
             return channel_error(path, "it belongs to another user; name another file");
         if (::flock(file.file_, LOCK_EX | LOCK_NB) != 0) {

@@ -64,7 +64,7 @@ class Guard {
     }
     bool shallow_enough() {
         return keys_.size() <= static_cast<std::size_t>(limits_.max_depth) ||
-               refuse("nested deeper than " + std::to_string(limits_.max_depth));
+               refuse("the JSON is nested deeper than " + std::to_string(limits_.max_depth));
     }
 
     const JsonLimits& limits_;

@@ -114,7 +114,7 @@ void RosbridgeSession::handle(const Call& call) {
     if (op == "set_level") return set_level(call);
     if (op == "unadvertise" || op == "status") return;  // accepted and ignored
     if (op == "auth") return auth(call);
-    status(call, Level::error, "op '" + op + "' is not served here");
+    status(call, Level::error, "the gate does not support the op '" + op + "'");
 }
 
 void RosbridgeSession::status(const Call& call, Level level, const std::string& text) const {
@@ -152,7 +152,8 @@ void RosbridgeSession::subscribe(const Call& call) {
     const std::string type = text_member(call.message, "type");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to subscribe to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can subscribe to");
     if (!type.empty() && type != "*" && !same_type(entry->type, type)) {
         return status(
             call, Level::error, "topic '" + name + "' is of type " + std::string(entry->type));
@@ -188,7 +189,8 @@ void RosbridgeSession::advertise(const Call& call) {
     const std::string name = text_member(call.message, "topic");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to publish to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can publish to");
     if (!same_type(entry->type, text_member(call.message, "type"))) {
         status(call, Level::error, "topic '" + name + "' is of type " + std::string(entry->type));
     }
@@ -198,7 +200,8 @@ void RosbridgeSession::publish(const Call& call) {
     const std::string name = text_member(call.message, "topic");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to publish to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can publish to");
     if (!has_right(call, Role::rider, ActKind::ask))
         return status(call, Level::error, no_right_text(Role::rider));
     judge_goal(call);
@@ -308,8 +311,10 @@ Answer RosbridgeSession::ask(const Call& call, const StepQuestion& question) {
     const gate::Verdict& verdict = answer.verdict;
     if (verdict.connection != question.connection || verdict.sequence != question.sequence ||
         verdict.command != question.command) {
-        return refusal(
-            call, question, gate::Reason::internal, "the gate answered another question");
+        return refusal(call,
+                       question,
+                       gate::Reason::internal,
+                       "the gate answered another question; ask again");
     }
     if (verdict.decision == gate::Decision::ok && !verdict.allows_step(call.now_ns))
         return refusal(call, question, gate::Reason::expired, "the answer has expired");
