@@ -173,13 +173,15 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         max_lean_still_s,
         0.1,
         600.0,
-        "longest time of a lean above max_lean_deg at rest; after it the mount counts as moved");
-    visitor.number("max_lean_walking_s",
-                   max_lean_walking_s,
-                   0.1,
-                   600.0,
-                   "longest total time of a lean above max_lean_deg without an upright phase; "
-                   "after it the mount counts as moved");
+        "longest lean above mount.max_lean_deg while the machine stands still; after a longer lean "
+        "the mount counts as moved");
+    visitor.number(
+        "max_lean_walking_s",
+        max_lean_walking_s,
+        0.1,
+        600.0,
+        "longest total lean above mount.max_lean_deg since the last upright phase; after a "
+        "longer total lean the mount counts as moved");
     visitor.number("wait_for_exposure_s",
                    wait_for_exposure_s,
                    0.0,
@@ -229,7 +231,7 @@ Alignment place_odom(const AlignmentConfig& config,
         alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(
             "the ground lies {:.2f} m below base_link, but {:.2f} m are expected "
-            "(ground.expected_height_m, from the machine file; limit {:.0f} % off): "
+            "(ground.expected_height_m, from the machine file; largest difference {:.0f} %): "
             "check the rig's baseline, its focal length and the machine file, and "
             "show near ground; the gate answers ERROR on this map",
             alignment.ground_height_m,

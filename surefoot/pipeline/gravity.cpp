@@ -104,7 +104,8 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
         sloped_floor_deg,
         0.001,
         20.0,
-        "one sigma of the slope of all other floors, and of the vertical without an accelerometer");
+        "one sigma of the slope of floors that are not built level, and of the vertical without an "
+        "accelerometer");
     visitor.number("sloped_share",
                    sloped_share,
                    0.001,
