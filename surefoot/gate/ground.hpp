@@ -41,7 +41,7 @@ struct GroundCell {
 /// without a measurement becomes known only if it lies wholly in the attested area. There the
 /// attestation also replaces a measurement that agrees with it but is too uncertain to decide. So
 /// measuring a cell never makes the verdict worse than leaving it unmeasured. Overhead obstacles
-/// and drop evidence stay. An unknown cell is a drop if a ray shows ground lower by more than
+/// and drop evidence stay. An unknown cell there is a drop if a ray proves it lower by more than
 /// `drop`.
 class Ground {
   public:
@@ -122,8 +122,8 @@ class ReachableSurfaces {
   public:
     void add(std::uint16_t component) noexcept;
     [[nodiscard]] bool contains(std::uint16_t component) const noexcept;
-    /// Adds surfaces in or beside the attested area. They lie at most `step_tenth_mm` above or
-    /// below the area. So an attestation extends to the floor that it touches.
+    /// Adds surfaces in or beside the attested area that lie at most `step_tenth_mm` above or below
+    /// the area. So an attestation extends to the floor that it touches.
     void add_beside_attested(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
 
   private:
