@@ -34,8 +34,8 @@ namespace surefoot {
 /// the line, the key and the limit.
 [[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
 
-/// The whole chain behind one object: from frames of a stereo or depth camera to a rated map of the
-/// ground, its stairs and drops, and the gate's verdict on a movement.
+/// The whole processing in one object. Input: frames of a stereo or depth camera. Results: a rated
+/// map of the ground, its stairs and drops, and the gate's verdict on a movement.
 ///
 ///     auto source = surefoot::open_recording("my_recording");
 ///     auto perception = surefoot::Perception::make((*source)->rig());
@@ -44,49 +44,49 @@ namespace surefoot {
 ///             std::cout << report.motion.T_odom_body.translation_m.transpose() << '\n';
 ///
 /// Start-up: the first frames are kept until they show gravity and the ground (pipeline::StartUp),
-/// then odom is placed and the kept frames are processed. Frames: odom, z up, below the first
-/// base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of one core for
-/// a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
+/// then odom is placed and the kept frames are processed. Results are in odom: z up, origin below
+/// the first base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of
+/// one core for a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
 class Perception {
   public:
     /// `rig`: the camera. If it does not state its mounting, the mounting of the machine is used.
-    /// `machine`: needed for verdicts. `threads`: 0 = one per core. Fails with the first problem of
-    /// the rig or of the settings.
+    /// `machine`: needed for verdicts. `threads`: 0 = one per core. Returns the first problem of
+    /// the rig or of the settings as an error.
     [[nodiscard]] static Result<Perception> make(const camera::StereoRig& rig,
                                                  std::optional<io::MachineFile> machine = {},
                                                  Settings settings = {},
                                                  int threads = 0);
 
-    /// Processes the next frame in time order. Returns the reports of all frames processed in this
-    /// call: none during start-up, several at its end, then one. The reports are valid until the
-    /// next call. `Work::odometry` estimates the motion only, in a fraction of the time.
+    /// Processes the next frame in time order. Returns the reports of all frames that it processed:
+    /// none during start-up, several at its end, then one per call. The reports are valid until the
+    /// next call. `Work::odometry` estimates only the motion and is much faster.
     std::span<const FrameReport> process(const StereoFrame& frame, Work work = Work::full);
     /// Call this when the source ends. It processes a recording that is shorter than the start-up.
     std::span<const FrameReport> finish();
 
     /// True once odom is placed. Before that, the map and the features are empty.
     [[nodiscard]] bool is_started() const noexcept { return !start_.has_value(); }
-    /// The map of the ground, robot-centric, in odom.
+    /// Returns the map of the ground: robot-centric, in odom.
     [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return pipeline_->map(); }
-    /// Slope, step height, roughness and traversability of each cell of the map.
+    /// Returns slope, step height, roughness and traversability of each cell of the map.
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return pipeline_->rating();
     }
-    /// Stairs, drops, kerbs, sills and doors, tracked over time.
+    /// Returns stairs, drops, kerbs, sills and doors, tracked over time.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept {
         return pipeline_->features();
     }
-    /// The data that the gate reads, as of the last frame. An error names the wrong value.
+    /// Returns the data that the gate reads, as of the last frame. An error names the wrong value.
     [[nodiscard]] Result<std::unique_ptr<grid::MapSnapshot>> snapshot() const;
     /// Answers "may the machine make this movement from its present pose?" as of the last frame.
     /// Every missing input inhibits: no machine, no map, an unknown command. Use this for tests and
     /// analysis only. A moving machine asks the gate process (surefoot-gate), which also checks the
     /// age of the map and the health of perception.
     [[nodiscard]] gate::Verdict verdict(std::uint8_t command) const;
-    /// The verdict as one sentence: what, where, value and limit.
+    /// Returns the verdict as one sentence: obstacle, position, value and limit.
     [[nodiscard]] std::string text_of(const gate::Verdict& verdict) const;
 
-    /// All other results: alignment, camera, depth image of the last frame, footholds.
+    /// Gives all other results: alignment, camera, depth image of the last frame, footholds.
     [[nodiscard]] const pipeline::Pipeline& pipeline() const noexcept { return *pipeline_; }
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
 
@@ -100,9 +100,9 @@ class Perception {
     Settings settings_;
     std::uint64_t settings_hash_;
     std::optional<io::MachineFile> machine_;
-    std::unique_ptr<Executor> executor_;  // the pipeline refers to it: its address must stay
+    std::unique_ptr<Executor> executor_;  // the pipeline keeps its address
     std::unique_ptr<pipeline::Pipeline> pipeline_;
-    std::optional<pipeline::StartUp> start_;  ///< until odom is placed
+    std::optional<pipeline::StartUp> start_;  ///< exists until odom is placed
     std::vector<FrameReport> reports_;
 };
 

@@ -154,7 +154,7 @@ void add_rex_link(VerbGroup verbs) {
         Reads::no_settings);
     verb.option("--url",
                 o.url,
-                "address of the gate: numbers or localhost (default ws://127.0.0.1:9090)")
+                "address of the gate: an IP address or localhost (default ws://127.0.0.1:9090)")
         .value("ws://ADDRESS[:PORT][/PATH]");
     verb.option("--token-file",
                 o.token_file,

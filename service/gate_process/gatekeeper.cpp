@@ -27,7 +27,7 @@ std::unique_ptr<grid::MapSnapshot> nothing_seen() {
 }
 
 std::int64_t tenth_mm(double length_m) {
-    // in range: check_radius() wants a number up to what the machine file allows
+    // in range: check_radius() accepts only numbers up to the limit of the machine file
     return std::llround(length_m * 1e4);
 }
 
@@ -93,8 +93,8 @@ SnapshotReader::Read Gatekeeper::read_channel(std::int64_t now_ns) {
 }
 
 /// True if `incoming_` may be used now. The process can pause between reading the clock and reading
-/// the channel. A frame from this pause is not from the future: it waits for the next call, but
-/// only once, because a wrong stamp stays ahead of the clock.
+/// the channel. A frame from this pause is not from the future, so it waits for the next call. It
+/// waits only once, because a wrong stamp stays ahead of the clock.
 bool Gatekeeper::has_arrived(SnapshotReader::Read read, std::int64_t now_ns) noexcept {
     using Read = SnapshotReader::Read;
     if (read != Read::fresh && !(read == Read::same && waits_)) {
@@ -167,7 +167,7 @@ Answer Gatekeeper::ask_step(const StepQuestion& question, std::int64_t now_ns) {
     fetch(now_ns);
     const bool in_sequence = is_in_sequence(question);
     Judgement judgement = judge(question, in_sequence, now_ns);
-    // A newer snapshot has arrived: judge again with it, but only once.
+    // If a newer snapshot has arrived, judges again with this snapshot, but only once.
     if (judgement.verdict.allows_step(now_ns) && reader_ && reader_->has_fresh()) {
         fetch(now_ns);
         judgement = judge(question, in_sequence, now_ns);
@@ -185,7 +185,7 @@ Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
     gate::Query here = gate::query_at_body(0, *map_);
     here.attested = attestation_.area();
     here.connection = question.connection;
-    // make_query rejects invalid numbers; then the goal has no valid pose.
+    // make_query rejects invalid numbers. In that case the goal has no valid pose.
     const gate::Query there = gate::make_query(
         0, question.x_m, question.y_m, std::cos(question.yaw_rad), std::sin(question.yaw_rad));
     const gate::GoalPose goal{there.x_tenth_mm, there.y_tenth_mm, there.cos_yaw, there.sin_yaw};
@@ -232,7 +232,7 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
 }
 
 Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
-    // The canaries take milliseconds, so run them only in a fault, not whenever a client asks.
+    // The canaries take milliseconds. So run them only in a fault, not whenever a client asks.
     if (readiness_.state() == gate::GateState::fault && !canaries_->judge_all().passed)
         return Error{
             ErrorCode::usage,
@@ -240,11 +240,11 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
             "not be used. Restart the gate; if that does not help, reinstall it"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
-                     "nothing to re-arm: the gate has no fault, or a fault that only a "
-                     "restart with a valid configuration ends"};
+                     "the gate was not re-armed: it has no fault, or its configuration is "
+                     "invalid. Correct an invalid configuration and restart the gate"};
     attestation_.revoke();
     if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
-    if (reader_) {  // do not use the map from before the fault again
+    if (reader_) {  // the map from before the fault is not used again
         reader_->keep_faults(0);
         reader_->want_restart();
         given_up_ = reader_->writer();
@@ -267,7 +267,7 @@ Status Gatekeeper::check_radius(double radius_m) const {
 
 std::int64_t Gatekeeper::least_radius_tenth_mm() const {
     const auto square = static_cast<double>(gate::least_attested_radius_sq(machine_));
-    return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));  // in range: of an integer
+    return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));  // in range: root of an integer
 }
 
 Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
@@ -305,9 +305,9 @@ void Gatekeeper::give_starters_word(std::int64_t now_ns) {
     const gate::GateState state = readiness_.state();
     if (state != gate::GateState::ready && state != gate::GateState::fault) return;
     const double radius_m = std::exchange(starters_word_m_, 0.0);
-    if (attestation_.area().active) return;  // do not replace the operator's own attestation
-    // If this is refused in a fault, do not retry: the attestation was for the position at the
-    // start. `report` shows whether it is valid.
+    if (attestation_.area().active) return;  // the operator's own attestation stays
+    // If a fault causes a refusal, do not retry: the attestation was for the position at the start.
+    // `report` shows whether the attestation is valid.
     const Status attested = attest(0, radius_m, now_ns);
     note(act_of(ActKind::attest, Role::operator_, 0, attested, now_ns, radius_m));
 }

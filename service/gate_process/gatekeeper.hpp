@@ -20,7 +20,7 @@
 
 namespace surefoot::gate_process {
 
-/// A verdict and its inputs, except the machine and the map.
+/// A verdict and its inputs, without the machine and the map.
 struct Judgement {
     gate::Query query;
     gate::GateHealth health;
@@ -30,15 +30,15 @@ struct Judgement {
 
 /// State of the channel from which the gate reads its maps.
 enum class ChannelState : std::uint8_t {
-    absent,  ///< does not exist yet
+    absent,  ///< the channel file does not exist yet
     open,
-    lost,   ///< deleted, replaced or truncated; reopened after perception has repaired it
+    lost,   ///< file deleted, replaced or truncated; reopened after perception repaired it
     forged  ///< a snapshot was not made by perception: a fault until an operator re-arms the gate
 };
 
 /// The step gate of the gate process. Joins the newest snapshot of the channel, the state machine,
 /// the canaries, the operator's attestation and decide(). Use it from one thread. Times are
-/// arguments; no clock inside. Call `poll` every few milliseconds, also without questions.
+/// arguments; it reads no clock. Call `poll` every few milliseconds, even without questions.
 class Gatekeeper final : public StepGate {
   public:
     /// Called with every verdict about a step; must not block or throw.
@@ -46,15 +46,15 @@ class Gatekeeper final : public StepGate {
     /// Called with every act that belongs into the log; must not block or throw.
     using AuditAct = std::function<void(const Act&)>;
 
-    /// The channel may be created later.
+    /// Makes the gate of a machine. The channel may be created later.
     Gatekeeper(const Machine& machine,
                const gate::ReadinessLimits& limits,
                ChannelAddress channel,
                Audit audit = {},
                AuditAct audit_act = {});
 
-    /// Reads new snapshots, advances the time and judges a canary now and then. `boottime_ns`:
-    /// steady time that includes the time the computer slept.
+    /// Reads new snapshots, advances the time and sometimes judges a canary. `boottime_ns`: steady
+    /// time that includes the time the computer slept.
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
     /// A gate that requires a log gives no OK (Reason::audit) while the log cannot be written.
     void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
@@ -62,7 +62,7 @@ class Gatekeeper final : public StepGate {
     /// first ready, and never after a fault. An earlier attestation of the operator stays. Returns
     /// an error for a radius that can never be attested.
     [[nodiscard]] Status attest_when_ready(double radius_m);
-    /// The process ends: no verdict is OK from now on.
+    /// Ends the gate with its process: no verdict is OK from now on.
     void stop() noexcept { readiness_.stop(); }
 
     [[nodiscard]] ChannelState channel_state() const noexcept { return channel_state_; }
@@ -99,7 +99,7 @@ class Gatekeeper final : public StepGate {
                                   std::int64_t now_ns) const noexcept;
 
     Machine machine_;
-    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< movement_count_ are valid
+    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< movement_count_ are used
     std::size_t movement_count_ = 0;
     ChannelAddress channel_;
     Audit audit_;
@@ -112,16 +112,16 @@ class Gatekeeper final : public StepGate {
     std::optional<SnapshotReader> reader_;
     ChannelState channel_state_ = ChannelState::absent;
     std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest complete snapshot
-    std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being read
+    std::unique_ptr<grid::MapSnapshot> incoming_;  ///< the snapshot being read
     bool has_map_ = false;
-    bool waits_ = false;          ///< the stamp of `incoming_` is later than the last call
+    bool waits_ = false;          ///< true: the stamp of `incoming_` is later than the last call
     std::uint64_t writer_ = 0;    ///< writer of `map_`
-    std::uint64_t given_up_ = 0;  ///< writer asked to restart; its maps are rejected
+    std::uint64_t given_up_ = 0;  ///< writer that must restart; its maps are rejected
     std::int64_t next_open_ns_ = 0;
     std::int64_t next_canary_ns_ = 0;
     int canary_ = 0;
     std::map<std::uint64_t, std::uint64_t> sequences_;  ///< last sequence of each connection
-    double starters_word_m_ = 0.0;                      ///< radius that is still to be attested
+    double starters_word_m_ = 0.0;  ///< radius still to be attested at the start
     bool log_failing_ = false;
     std::uint64_t asked_ = 0;
     std::uint64_t allowed_ = 0;

@@ -9,8 +9,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-constexpr std::int64_t kRoundNs = 250'000'000;  // from one round's start to the next: 4 Hz
-constexpr int kMostWaits = 4;                   // calls; 20 ms at the service's tick of 5 ms
+constexpr std::int64_t kRoundNs = 250'000'000;  // period of the rounds: 4 Hz
+constexpr int kMostWaits = 4;  // number of calls; 20 ms at the service's tick of 5 ms
 
 }  // namespace
 

@@ -11,21 +11,21 @@
 
 namespace surefoot::gate_process {
 
-/// Conditions for computing the outlook at this moment.
+/// Conditions under which the outlook may be computed now.
 struct OutlookDemand {
-    bool subscribed = false;      ///< at least one client subscribes
-    bool question_waits = false;  ///< a client has unread bytes: answers have priority
+    bool subscribed = false;      ///< at least one client subscribes to the outlook
+    bool question_waits = false;  ///< a client has unread bytes, and answers have priority
 };
 
 /// Computes the gate's answer to every movement of the machine, for display. One call judges one
 /// movement, so a question waits for at most one verdict. A complete round is published, at most
 /// four times a second. A change of the gate's state restarts the round, so no message mixes two
-/// states. Judging allocates nothing; making the message does.
+/// states. Judging allocates nothing, but making the message allocates.
 class OutlookRounds {
   public:
     /// Call it every few milliseconds. Asks the gate only if a client subscribes. Unread bytes
-    /// delay a movement by a few calls at most, so that one client that floods the gate cannot stop
-    /// the outlook of the others.
+    /// delay a movement by a few calls at most. So one client that floods the gate cannot stop the
+    /// outlook of the others.
     [[nodiscard]] std::optional<TopicMessage> next(StepGate& gate,
                                                    const OutlookDemand& demand,
                                                    std::int64_t now_ns);
@@ -38,7 +38,7 @@ class OutlookRounds {
     std::array<Prospect, kMostMovements> prospects_;
     std::size_t judged_ = 0;  ///< movements judged in this round
     gate::GateState state_ = gate::GateState::init;
-    std::optional<std::int64_t> began_ns_;  ///< start of this round, or of the last one
+    std::optional<std::int64_t> began_ns_;  ///< start of this round, or of the last round
     int gave_way_ = 0;                      ///< consecutive calls that gave priority to questions
 };
 

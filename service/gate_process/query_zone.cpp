@@ -11,7 +11,7 @@ namespace {
 
 using grid::MapSnapshot;
 
-/// 100 km and 2 m, as in the gate: with these bounds no product overflows.
+/// Limits of 100 km and 2 m, as in the gate. Within these limits no product overflows.
 constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
 constexpr std::int64_t kWidestAttestedTenthMm = 20'000;
 
@@ -30,7 +30,7 @@ bool has_cells(const MapSnapshot& map) noexcept {
            within(map.origin_y_tenth_mm, kFarthestTenthMm);
 }
 
-/// At least as permissive as the gate's own tests before it reads the ground.
+/// Accepts at least all that the gate's own tests accept before the gate reads the ground.
 bool can_look(const Machine& machine, const gate::Query& query, const MapSnapshot& map) noexcept {
     const gate::AttestedArea& area = query.attested;
     const bool attested = !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
@@ -44,7 +44,7 @@ bool can_look(const Machine& machine, const gate::Query& query, const MapSnapsho
            is_unit(query.sin_yaw) && attested;
 }
 
-/// First cell and number of cells of [low, high] on an axis of `n` cells.
+/// The first cell and the number of cells of [low, high] on an axis of `n` cells.
 struct Range {
     std::int32_t first = 0;
     std::int32_t count = 0;
@@ -72,7 +72,7 @@ CellBox query_zone(const Machine& machine,
     if (!can_look(machine, query, map)) return {};
     const gate::FixedPose start =
         gate::fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
-    // Cells with more drift than allowed are refused before they widen a region.
+    // The gate refuses cells with more drift than the limit, before these cells widen a region.
     const std::int64_t drift =
         std::clamp<std::int64_t>(drift_tenth_mm, 0, machine.limits.drift_tenth_mm);
     const gate::Sweep sweep = gate::sweep_of(machine,

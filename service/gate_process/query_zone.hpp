@@ -24,12 +24,12 @@ struct CellBox {
 /// True if the rectangle lies inside the map and the map's layers have these cells.
 [[nodiscard]] bool is_inside(const CellBox& box, const grid::MapSnapshot& map) noexcept;
 
-/// The rectangle of all cells that decide() may read for a query, with a ring of cells around them.
-/// It covers both feet at start and target with corridors and drop bands, the path of the body, and
+/// Returns the rectangle of all cells that decide() may read for a query, plus a ring of cells. It
+/// covers both feet at start and target with corridors and drop bands, the path of the body, and
 /// the attested area. `drift_tenth_mm`: the largest drift of the verdict (Evidence); it widens the
 /// regions. Accepts any arguments. Empty if decide() does not read the ground (invalid pose,
-/// command, machine or map size), or if the zone is outside the map. Pure; allocates nothing; about
-/// a microsecond.
+/// command, machine or map size), or if the zone is outside the map. Pure; allocates nothing; takes
+/// about a microsecond.
 [[nodiscard]] CellBox query_zone(const Machine& machine,
                                  const gate::Query& query,
                                  const grid::MapSnapshot& map,

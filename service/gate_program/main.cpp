@@ -35,12 +35,13 @@ namespace {
 constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
-/// How long to wait for a port in use. The gate of a `surefoot serve` that has just ended releases
-/// its port within milliseconds.
+/// Longest wait for a port in use. When a `surefoot serve` has just ended, its gate releases the
+/// port within milliseconds.
 constexpr std::int64_t kPortPatience_ns = 1'500'000'000;
 
 std::atomic<bool> stop_wanted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+static_assert(std::atomic<bool>::is_always_lock_free,
+              "a signal handler sets this flag, so it must be lock-free");
 
 struct Options {
     std::string machine = "rex";
@@ -68,20 +69,22 @@ int fail(const Error& error) {
 }
 
 /// Reads the key of the snapshot channel from the program that started the gate, or from a file.
-/// Without a key it returns a new random one, so the gate trusts no map.
+/// Without a key, returns a new random key, so the gate trusts no map.
 Result<gate_process::ChecksumKey> channel_key(const Options& options) {
     if (options.parent_fd >= 0) {
         std::array<char, 16> bytes{};
         if (::recv(options.parent_fd, bytes.data(), bytes.size(), MSG_WAITALL) !=
             static_cast<ssize_t>(bytes.size()))
-            return usage_error("--parent-fd: only `surefoot serve` uses this option");
+            return usage_error(
+                "--parent-fd: only `surefoot serve` uses this option; start without it");
         ::fcntl(options.parent_fd, F_SETFD, FD_CLOEXEC);
         return gate_process::key_of({bytes.data(), bytes.size()});
     }
     if (!options.key_file.empty()) return gate_process::read_checksum_key(options.key_file);
-    fmt::print(stderr,
-               "surefoot-gate: warning: without the key of the channel no map is trusted and every "
-               "answer is ERROR; give the key file of `surefoot serve` with --channel-key\n");
+    fmt::print(
+        stderr,
+        "surefoot-gate: warning: without the key of the channel the gate trusts no map and every "
+        "answer is ERROR; give the key file of `surefoot serve` with --channel-key\n");
     return gate_process::new_checksum_key();
 }
 
@@ -100,8 +103,8 @@ class ChannelNews {
         const bool was_lost = told_ == gate_process::ChannelState::lost;
         told_ = state;
         if (state == gate_process::ChannelState::lost)
-            say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
-                "has created it again");
+            say("the channel was deleted, replaced or cut off; no step is allowed until perception "
+                "has created the channel again");
         if (state == gate_process::ChannelState::open && was_lost) say("the channel is open again");
         if (state == gate_process::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "
@@ -117,8 +120,8 @@ class ChannelNews {
     gate_process::ChannelState told_ = gate_process::ChannelState::absent;
 };
 
-/// Opens the server. If another process uses the port it retries for kPortPatience_ns, then returns
-/// an error that names that process.
+/// Opens the server. If another process uses the port, retries for kPortPatience_ns and then
+/// returns an error that names the other process.
 Result<std::unique_ptr<gate_process::WebsocketServer>> listen(
     const gate_process::ServerConfig& config,
     gate_process::StepGate& gate,
@@ -148,19 +151,18 @@ gate::ReadinessLimits limits_of(const io::MachineFile& file) {
     return limits;
 }
 
-/// Requests short time slices for the calling thread. The scheduler then runs it soon after it
-/// wakes up for a query, instead of at the end of another thread's slice (milliseconds). It needs
-/// no privileges. Linux before 6.12 ignores the request.
+/// Requests short time slices for the calling thread. After a query wakes the thread, the scheduler
+/// runs it soon, not only at the end of another thread's slice (milliseconds). The request needs no
+/// privileges. Linux before 6.12 ignores it.
 void ask_for_short_slices() {
-    if (::sched_getscheduler(0) != SCHED_OTHER)
-        return;  // the starter chose another policy: keep it
-    struct {     // for sched_setattr(2); the kernel's header conflicts with the C library's
+    if (::sched_getscheduler(0) != SCHED_OTHER) return;  // the process has another policy; keep it
+    struct {  // as in sched_setattr(2); the kernel's header conflicts with that of the C library
         std::uint32_t size = 48;
         std::uint32_t policy = SCHED_OTHER;
         std::uint64_t flags = 0;
         std::int32_t nice = ::getpriority(PRIO_PROCESS, 0);  // unchanged
         std::uint32_t priority = 0;
-        std::uint64_t slice_ns = 100'000;  // the shortest that Linux accepts
+        std::uint64_t slice_ns = 100'000;  // the shortest slice that Linux accepts
         std::uint64_t deadline_ns = 0;
         std::uint64_t period_ns = 0;
     } wish;
@@ -226,7 +228,7 @@ int serve(const Options& options, const io::MachineFile& file) {
     ask_for_short_slices();
     running->run();
     keeper.stop();
-    server->reset();  // release the port before the log writes its remaining records
+    server->reset();  // releases the port before the log writes its last records
     if (audit != nullptr) audit->stop();
     return kExitOk;
 }
@@ -244,9 +246,10 @@ int run(Options options) {
     fmt::print(stderr, "{}", loaded->news);
     options.server.access = std::move(loaded->access);
     if (options.assured && options.audit_dir.empty())
-        return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
-    // Each start of the gate begins at another connection number, so a verdict from before the
-    // start never carries the number of a present client.
+        return fail(
+            usage_error("--assured needs an audit log: give the folder of the log with --audit"));
+    // Each start of the gate begins at another connection number. So a verdict from before the
+    // start never has the number of a present client.
     options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };
@@ -260,9 +263,9 @@ int run(Options options) {
 int main_with_arguments(int argc, char** argv) {
     Options options;
     CLI::App app(
-        "The step gate: answers over a WebSocket whether a step may be taken. It may only "
-        "inhibit.\n"
-        "Usually started by `surefoot serve`.");
+        "The step gate: answers over a WebSocket whether a step may be taken. The gate can forbid "
+        "a step; it never starts one.\n"
+        "Usually `surefoot serve` starts this program.");
     app.footer("Example:\n  surefoot-gate --snapshots /dev/shm/surefoot.channel --audit out/audit");
     app.add_option("--snapshots", options.snapshots, "file in shared memory that holds the maps")
         ->required()
@@ -296,22 +299,27 @@ int main_with_arguments(int argc, char** argv) {
                    options.server.tls.key_file,
                    "file with the private key for TLS (PEM), permissions 0600")
         ->type_name("FILE");
-    app.add_option("--insecure",
-                   options.server.insecure,
-                   "sentence that confirms an address other than loopback without TLS; the error "
-                   "message without this option gives the sentence")
+    app.add_option(
+           "--insecure",
+           options.server.insecure,
+           "sentence that confirms an address other than loopback without TLS; start without "
+           "this option, and the error message shows the sentence")
         ->type_name("TEXT");
     app.add_option(
            "--origin",
            options.server.origins,
            "origin whose web pages may connect, for example http://192.0.2.7:8000, null or file://")
         ->type_name("URL");
-    app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
+    app.add_option("--audit",
+                   options.audit_dir,
+                   "folder for the audit log; without this option the gate writes no log")
+        ->type_name("DIR");
     app.add_flag(
         "--assured", options.assured, "never answer OK while the audit log cannot be written");
     app.add_option("--audit-mb",
                    options.audit_mb,
-                   "largest size of the folder of the audit log; the gate deletes the oldest logs")
+                   "largest size of the folder of the audit log; if the logs need more, the gate "
+                   "deletes the oldest logs")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str()
         ->type_name("MB");
@@ -356,7 +364,8 @@ int main_with_arguments(int argc, char** argv) {
 }  // namespace
 }  // namespace surefoot::app
 
-// However the process ends, its clients get no further answer, so no step is allowed.
+// The clients of an ended process get no further answer, so no step is allowed. This holds for
+// every way in which the process ends.
 int main(int argc, char** argv) {
     try {
         return surefoot::app::main_with_arguments(argc, argv);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outside tests the only file here that includes nlohmann-json: 6 s per translation unit.
+// Apart from tests, only this file includes nlohmann-json: it adds 6 s per translation unit.
 #include "service/rex_link/answer_parser.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepest = 8;  // the gate's messages are less deep
+constexpr int kDeepest = 8;  // deepest JSON; the gate's messages are less deep
 constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::int64_t kLongestLife_ms = 60'000;
 
@@ -53,7 +53,7 @@ bool is_text(const Json* value, const char* text) {
     return value != nullptr && value->is_string() && value->get_ref<const std::string&>() == text;
 }
 
-/// The text if it has no control characters, so that a terminal can show it; else empty.
+/// Returns the text if it has no control characters, so that a terminal can show it; else empty.
 std::optional<std::string> printable(const Json* value) {
     if (value == nullptr || !value->is_string()) return std::nullopt;
     const auto& text = value->get_ref<const std::string&>();
@@ -74,7 +74,7 @@ std::string format_id(std::uint64_t nonce, const Question& question) {
     return fmt::format("rex:{:016x}:{}:{}", nonce, question.sequence, question.command);
 }
 
-/// Reads the question from an id. The values read must format to exactly the same id.
+/// Reads the question from an id. The values must give exactly the same id when formatted.
 bool read_id(const std::string& id, Answer& answer) {
     const std::string_view text = id;
     constexpr std::size_t kNonceAt = 4, kSequenceAt = 21;
@@ -106,16 +106,16 @@ Status read_verdict(const Json& values, Answer& answer) {
     if (known == kVerdicts.end()) return missing("verdict", "OK, NOT_TRAVERSABLE or ERROR");
     const Json* code = find(values, "result_code");
     if (code == nullptr || !code->is_number_integer() || *code != result_code_of(*known))
-        return missing("result_code", "the code of the verdict");
+        return missing("result_code", "the result code of its verdict");
     const Json* reasons = find(values, "reasons");
     const bool is_list = reasons != nullptr && reasons->is_array();
     if (!is_list || !std::all_of(reasons->begin(), reasons->end(), [](const Json& reason) {
             return reason.is_string();
         })) {
-        return missing("reasons", "a list of words");
+        return missing("reasons", "a list of texts");
     }
     if (reasons->empty() != (*known == AnswerVerdict::ok))
-        return missing("reasons", "empty for an OK and filled for all other verdicts");
+        return missing("reasons", "a list that is empty for OK and not empty for other verdicts");
     answer.verdict = *known;
     return {};
 }
@@ -130,7 +130,7 @@ Status read_question(const Json& values, Answer& answer) {
         return missing("command", "the number in the id of the answer");
     const Json* connection = find(values, "connection");
     if (connection == nullptr || !connection->is_number_unsigned() || *connection == 0)
-        return missing("connection", "a whole number from 1 on");
+        return missing("connection", "a whole number of at least 1");
     answer.connection = connection->get<std::uint64_t>();
     const Json* life = find(values, "valid_for_ms");
     if (life == nullptr || !life->is_number_unsigned() || *life > kLongestLife_ms)
@@ -149,7 +149,7 @@ Result<ParsedAnswer> read_response(const Json& message) {
     const Json* id = find(message, "id");
     if (id == nullptr || !id->is_string() ||
         !read_id(id->get_ref<const std::string&>(), parsed.answer)) {
-        return missing("id", "an id of this link");
+        return missing("id", "an id that this link sends");
     }
     const Json* values = find(message, "values");
     if (values == nullptr || !values->is_object()) return missing("values", "an object");
@@ -187,8 +187,7 @@ Result<ParsedAnswer> parse_answer(std::string_view bytes) {
         },
         false);
     if (message.is_discarded() || !message.is_object())
-        return input_error(
-            fmt::format("answer: {} bytes that are not a JSON object", bytes.size()));
+        return input_error(fmt::format("answer: its {} bytes are not a JSON object", bytes.size()));
     if (!shape.sound())
         return input_error("answer: a name occurs twice, or the JSON is nested too deeply");
     return read_response(message);

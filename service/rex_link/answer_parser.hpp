@@ -21,17 +21,17 @@ struct ParsedAnswer {
     std::string text;     ///< a sentence without control characters
 };
 
-/// The rosbridge call of kStepService, as JSON. Its `id` holds nonce, sequence and command. The
-/// gate returns the `id`, so an answer names its question twice: in the `id` and in its values.
+/// Returns the rosbridge call of kStepService, as JSON. Its `id` holds nonce, sequence and command.
+/// The gate returns the `id`, so an answer names its question twice: in the `id` and in its values.
 [[nodiscard]] std::string format_question(std::uint64_t nonce, const Question& question);
 
 /// Parses one answer. Any deviation from the format is an error with a sentence, and the caller
 /// must then inhibit. A valid answer is one JSON object that has every required field, with the
-/// right type and within its range. No name occurs twice. Nothing in it is contradictory: `id` and
-/// values name the same question, verdict and result code the same decision, and only an OK has no
+/// right type and within its range. No name occurs twice. The fields agree: `id` and values name
+/// the same question, verdict and result code name the same decision, and only an OK has no
 /// reasons.
 ///
-/// `bytes` may have at most kLongestAnswer_bytes. Allocates at most a small multiple of that.
+/// `bytes` may have at most kLongestAnswer_bytes. Allocates at most a small multiple of this size.
 /// Thread-safe.
 [[nodiscard]] Result<ParsedAnswer> parse_answer(std::string_view bytes);
 

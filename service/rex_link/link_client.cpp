@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outside tests the only file here that includes Boost: half a minute per translation unit.
+// Apart from tests, only this file includes Boost: it adds half a minute per translation unit.
 #include "service/rex_link/link_client.hpp"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         waiting_ = std::move(text);
         if (!writing_) write();
     }
-    /// Closes the connection; the listener is not called any more.
+    /// Closes the connection. After this call the listener gets no events.
     void abandon() {
         listener_ = {};
         error_code ignored;
@@ -130,7 +130,7 @@ class Client {
     }
 
     void run() {
-        // io_ waits even if no handler is pending
+        // keeps io_ waiting without a pending handler
         const auto idle_guard = asio::make_work_guard(io_);
         while (true) {
             const std::int64_t now_ns = steady_ns();
@@ -176,7 +176,8 @@ class Client {
         const std::int64_t now_ns = steady_ns();
         const auto parsed =
             is_text ? parse_answer(bytes)
-                    : Result<ParsedAnswer>(input_error("answer: a binary message instead of text"));
+                    : Result<ParsedAnswer>(
+                          input_error("answer: the gate sent a binary message instead of text"));
         LinkEvent event = event_of(parsed ? LinkEventKind::answer : LinkEventKind::damaged);
         event.text = parsed ? parsed.value().text : parsed.error().message;
         if (parsed) {
@@ -235,7 +236,7 @@ class Client {
     const LinkEventSink& sink_;
     RexLink link_;
     asio::io_context io_;
-    std::shared_ptr<Connection> connection_;  ///< shared with its own pending handlers
+    std::shared_ptr<Connection> connection_;  ///< also held by its own pending handlers
     std::int64_t start_ns_ = steady_ns();
     std::int64_t retry_ns_ = 0;
     std::uint64_t nonce_ = 0;
@@ -244,8 +245,9 @@ class Client {
 };
 
 Error bad_url(std::string_view url) {
-    return usage_error("'" + std::string(url) +
-                       "': give an address such as ws://127.0.0.1:9090 (numbers or localhost)");
+    return usage_error(
+        "'" + std::string(url) +
+        "': give an address such as ws://127.0.0.1:9090 (an IP address or localhost)");
 }
 
 }  // namespace

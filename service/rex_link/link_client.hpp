@@ -13,9 +13,9 @@
 /// Runs the REX link over a WebSocket, in real time.
 namespace surefoot::rex_link {
 
-/// Where the gate listens. The address is numeric because a name lookup may take seconds.
+/// The address of the gate. It is numeric because a name lookup may take seconds.
 struct GateAddress {
-    std::string address;  ///< numeric IPv4 or IPv6 address
+    std::string address;  ///< IPv4 or IPv6 address in digits
     std::uint16_t port = 9090;
     std::string target = "/";  ///< path and query; the query may hold a token
     /// Adds ?token=... to the target; an empty token adds nothing.
@@ -42,31 +42,31 @@ enum class LinkEventKind : std::uint8_t {
     tone,
     motion,
 };
-/// The name of the kind, for example "connected".
+/// Returns the name of the kind, for example "connected".
 [[nodiscard]] const char* to_string(LinkEventKind kind) noexcept;
 
 /// One event of a run. Only the members that belong to the kind are set.
 struct LinkEvent {
     LinkEventKind kind = LinkEventKind::connected;
-    std::int64_t time_ns = 0;    ///< since the start of the run
+    std::int64_t time_ns = 0;    ///< time since the start of the run [ns]
     std::uint64_t sequence = 0;  ///< question, answer
-    std::uint8_t command = 0;    ///< joystick, question, answer, motion
+    std::uint8_t command = 0;    ///< for joystick, question, answer, motion
     AnswerVerdict verdict = AnswerVerdict::error;
     Tone tone = Tone::cannot_judge;
     Inhibit inhibit = Inhibit::gate_error;
     std::int64_t duration_ns = 0;  ///< motion
-    std::string text;              ///< answer: its sentence; damaged, disconnected: the reason
+    std::string text;  ///< for an answer: its sentence; damaged, disconnected: the cause
 };
 
-/// Returns the joystick's code (0 = at rest) at a time since the start of the run, or nothing to
-/// end the run. Called about every 2 ms; must not block.
+/// Returns the joystick's code (0 = at rest) at a time since the start of the run. Returns nothing
+/// to end the run. Called about every 2 ms; must not block.
 using Joystick = std::function<std::optional<std::uint8_t>(std::int64_t elapsed_ns)>;
 /// Receives every event, on the thread of run_link(); must not block.
 using LinkEventSink = std::function<void(const LinkEvent&)>;
 
 /// Plays the REX master unit until `joystick` returns nothing. Runs on the calling thread and reads
-/// the steady clock. If a connection cannot be made or breaks, it is tried again after
-/// `reconnect_pause_ns`; a break is also an event.
+/// the steady clock. If there is no connection or it breaks, the link connects again after
+/// `reconnect_pause_ns`. A break is also an event.
 void run_link(const LinkClientConfig& config, const Joystick& joystick, const LinkEventSink& sink);
 
 }  // namespace surefoot::rex_link

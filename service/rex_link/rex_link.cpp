@@ -22,9 +22,9 @@ std::optional<std::string> RexLinkConfig::problem() const {
     if (!within(max_valid_for_ns, 1, kLongestLife_ns))
         return "max_valid_for_ns: must be above 0 and at most 300 ms";
     if (!within(second_question_delay_ns, 1, max_valid_for_ns))
-        return "second_question_delay_ns: must be above 0 ms and at most max_valid_for_ns, the "
-               "validity of the first OK";
-    if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be 0 to 60 s";
+        return "second_question_delay_ns: must be above 0 and at most max_valid_for_ns, the "
+               "longest validity of the first OK";
+    if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be from 0 to 60 s";
     if (!within(step_duration_ns, 1, kLongest_ns))
         return "step_duration_ns: must be above 0 and at most 60 s";
     return std::nullopt;
@@ -67,7 +67,8 @@ RexLink::RexLink(const RexLinkConfig& config) : config_(config) {
     SUREFOOT_ASSERT(!config.problem());
 }
 
-/// Common part of every event: note the time, handle the event, then handle expired deadlines.
+/// Common part of every event: notes the time, handles the event, then handles deadlines that have
+/// passed.
 template <typename Meaning>
 Actions RexLink::event(std::int64_t now_ns, const Meaning& meaning) {
     Actions actions;
@@ -94,7 +95,7 @@ Actions RexLink::disconnected(std::int64_t now_ns) {
 Actions RexLink::joystick(std::uint8_t code, std::int64_t now_ns) {
     return event(now_ns, [&](Actions&) {
         if (code == code_) return;
-        // the user changed the joystick: the attempt ends without a warning
+        // if the user changes the joystick, the attempt ends without a warning
         if (attempting()) state_ = LinkState::idle;
         if (code_ == 0 && now_ns - rest_since_ns_ >= config_.rest_pause_ns) refused_.reset();
         if (code == 0) rest_since_ns_ = now_ns;
@@ -142,7 +143,7 @@ void RexLink::note_time(std::int64_t now_ns, Actions& actions) {
     const bool backwards = now_ns < last_ns_;
     last_ns_ = now_ns;
     if (!backwards) return;
-    rest_since_ns_ = now_ns;  // the duration of the rest is unknown now
+    rest_since_ns_ = now_ns;  // restarts, because the duration of the rest is unknown
     if (attempting()) inhibit(Inhibit::clock, actions);
 }
 
@@ -162,7 +163,7 @@ void RexLink::fall_due(std::int64_t now_ns, Actions& actions) {
     if (state_ == LinkState::idle && code_ != 0 && !refused_[code_]) begin(now_ns, actions);
 }
 
-/// Asks the first question about the joystick's code, or inhibits if that is not possible.
+/// Asks the first question about the joystick's code, or inhibits if it cannot ask.
 void RexLink::begin(std::int64_t now_ns, Actions& actions) {
     if (code_ >= Machine::kMovementCodes) {
         inhibit(Inhibit::unknown_code, actions);
@@ -182,7 +183,7 @@ void RexLink::ask(LinkState state, std::int64_t now_ns, Actions& actions) {
     actions.question = attempt_.question;
 }
 
-/// True if the answer is of this session and this attempt, about this movement.
+/// True if the answer belongs to this session and this attempt, and is about this movement.
 bool RexLink::fits(const Answer& answer) const noexcept {
     return answer.nonce == nonce_ && answer.connection != 0 &&
            (attempt_.connection == 0 || answer.connection == attempt_.connection) &&
@@ -191,7 +192,7 @@ bool RexLink::fits(const Answer& answer) const noexcept {
 }
 
 /// Applies an answer to the attempt. Late answers to earlier attempts and repeated OKs are ignored.
-/// Any other answer inhibits, unless it is a fresh OK to the current question.
+/// Any other answer inhibits, except a fresh OK to the current question.
 void RexLink::accept(const Answer& answer, std::int64_t now_ns, Actions& actions) {
     if (answer.nonce == nonce_ && answer.sequence < attempt_.first_sequence) return;
     if (!fits(answer)) return inhibit(Inhibit::mismatch, actions);
@@ -201,8 +202,8 @@ void RexLink::accept(const Answer& answer, std::int64_t now_ns, Actions& actions
     // this OK was already counted
     if (!asking() || answer.sequence != attempt_.question.sequence) return;
 
-    // The validity counts from the sending of the question, so that a delay of the answer shortens
-    // it.
+    // The validity counts from the time when the question was sent. So a delay of the answer
+    // shortens the validity.
     const std::int64_t age_ns = now_ns - attempt_.sent_ns;
     if (age_ns >= config_.answer_timeout_ns) return inhibit(Inhibit::silence, actions);
     if (answer.valid_for_ns > config_.max_valid_for_ns) return inhibit(Inhibit::damaged, actions);

@@ -8,34 +8,34 @@
 
 namespace surefoot::rex_link {
 
-/// Time limits of the REX master unit. The safety limits may be made stricter, never looser:
-/// problem() rejects looser values.
+/// Time limits of the REX master unit. problem() accepts stricter safety limits and rejects looser
+/// safety limits.
 struct RexLinkConfig {
-    std::int64_t answer_timeout_ns = 100'000'000;         ///< no answer within this time inhibits
-    std::int64_t second_question_delay_ns = 150'000'000;  ///< from the acknowledgement tone on
-    /// Rest of the joystick before a refused code is asked again.
+    std::int64_t answer_timeout_ns = 100'000'000;  ///< longest wait for an answer; then inhibits
+    std::int64_t second_question_delay_ns = 150'000'000;  ///< time after the acknowledgement tone
+    /// Time at rest after which the joystick may ask again about a refused code.
     std::int64_t rest_pause_ns = 200'000'000;
     /// Longest validity of a verdict (docs/evidence/safety.md).
     std::int64_t max_valid_for_ns = 300'000'000;
-    std::int64_t step_duration_ns = 10'000'000'000;  ///< one movement: 0.35 m at 0.0347 m/s
+    std::int64_t step_duration_ns = 10'000'000'000;  ///< one movement of 0.35 m at 0.0347 m/s
 
-    /// The first invalid value, as a sentence; empty if all are valid.
+    /// Returns the first invalid value, as a sentence; empty if all values are valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
 /// A question to the gate: "May I make this movement now?"
 struct Question {
-    std::uint64_t sequence = 0;  ///< increases with every question, across all connections
+    std::uint64_t sequence = 0;  ///< increases with every question, even on a new connection
     std::uint8_t command = 0;    ///< joystick code
 };
 
-/// The gate's verdict. Code must handle any value of the underlying type, because damaged bytes may
-/// produce one.
+/// The gate's verdict. Damaged bytes may produce any value of the underlying type, so code must
+/// handle all values.
 enum class AnswerVerdict : std::uint8_t { error = 0, not_traversable = 1, ok = 2 };
-/// "OK", "NOT_TRAVERSABLE" or "ERROR"; any other value gives "ERROR".
+/// Returns "OK", "NOT_TRAVERSABLE" or "ERROR"; "ERROR" also for any other value.
 [[nodiscard]] const char* to_string(AnswerVerdict verdict) noexcept;
 
-/// A parsed answer. RexLink checks whether it belongs to the current question.
+/// A parsed answer. RexLink checks whether the answer belongs to the current question.
 struct Answer {
     std::uint64_t nonce = 0;       ///< the session's nonce, returned by the gate
     std::uint64_t connection = 0;  ///< the gate's own number of the connection, never 0
@@ -48,22 +48,22 @@ struct Answer {
 
 enum class Tone : std::uint8_t { acknowledge, not_traversable, cannot_judge };
 inline constexpr int kToneCount = 3;
-/// The name of the tone, for example "acknowledge". Its audio file is this name with ".wav".
+/// Returns the name of the tone, for example "acknowledge". Audio file: this name with ".wav".
 [[nodiscard]] const char* to_string(Tone tone) noexcept;
 
-/// Why a requested movement does not take place.
+/// The reason why a requested movement does not take place.
 enum class Inhibit : std::uint8_t {
     not_traversable,  ///< the gate answered NOT_TRAVERSABLE
     gate_error,       ///< the gate answered ERROR or an unknown verdict
     silence,          ///< no answer in time
-    mismatch,         ///< an answer to another question, or of another session
+    mismatch,         ///< an answer to another question or of another session
     damaged,          ///< invalid answer, or a validity above the limit
     expired,          ///< the OK arrived, or would be used, after its validity
-    disconnected,     ///< no connection, or a new one
+    disconnected,     ///< there is no connection, or it is a new connection
     clock,            ///< time went backwards
     unknown_code,     ///< the joystick's code is not a movement
 };
-/// The name of the reason, for example "not_traversable".
+/// Returns the name of the reason, for example "not_traversable".
 [[nodiscard]] const char* to_string(Inhibit inhibit) noexcept;
 
 /// A motion of the machine: the movement's joystick code and its duration.
@@ -72,27 +72,27 @@ struct Motion {
     std::int64_t duration_ns = 0;
 };
 
-/// What the caller must do now. No action ends a motion: a step in progress is never stopped.
+/// Tells the caller what to do now. No action ends a motion: a step in progress is never stopped.
 struct Actions {
-    std::optional<Question> question;  ///< send it at once
-    std::optional<Tone> tone;          ///< play it without waiting for its end
+    std::optional<Question> question;  ///< question to send at once
+    std::optional<Tone> tone;          ///< tone to play; do not wait for its end
     std::optional<Motion> motion;      ///< start it
-    std::optional<Inhibit> inhibit;    ///< the reason of the warning tone, for logs and displays
+    std::optional<Inhibit> inhibit;    ///< reason of the warning tone, for logs and displays
 };
 
 enum class LinkState : std::uint8_t {
-    idle,             ///< joystick at rest, or at a refused code
-    first_question,   ///< sent, no answer yet
-    acknowledged,     ///< first OK received; waits before the second question
-    second_question,  ///< sent, no answer yet
+    idle,             ///< the joystick is at rest, or at a refused code
+    first_question,   ///< first question sent, no answer yet
+    acknowledged,     ///< first OK received; the second question waits
+    second_question,  ///< second question sent, no answer yet
     stepping,         ///< a motion is in progress
 };
 
 /// State machine of the REX master unit. It takes the joystick's code, asks the gate twice, and
 /// lets the machine move only after the second OK. Everything else inhibits: a negative verdict, no
-/// answer in time, an answer to another question, damaged bytes, an expired OK, a new connection. A
-/// refused code is asked again only after the joystick was at rest. Every step needs two OKs of its
-/// own, however long the joystick is held.
+/// answer in time, an answer to another question, damaged bytes, an expired OK, a new connection.
+/// The link asks about a refused code again only after the joystick was at rest. Every step needs
+/// two new OKs, however long the joystick is held.
 ///
 /// Each event is a call with the steady clock's `now_ns`. The link reads no clock, sends nothing
 /// and owns no thread. If the time goes backwards, the current attempt is inhibited. Not
@@ -102,22 +102,22 @@ class RexLink {
     /// Precondition: `config.problem()` is empty.
     explicit RexLink(const RexLinkConfig& config);
 
-    /// A connection was established. `nonce` is a random number for this session; answers must
-    /// return it.
+    /// Notes a new connection. `nonce` is a random number for this session; valid answers must
+    /// contain the same number.
     [[nodiscard]] Actions connected(std::uint64_t nonce, std::int64_t now_ns);
-    /// The connection ended. An attempt in progress is inhibited; a step in progress goes on.
+    /// Notes the end of the connection. Inhibits a running attempt; a step in progress goes on.
     [[nodiscard]] Actions disconnected(std::int64_t now_ns);
-    /// The joystick's code; 0 = at rest. Repeating the same code changes nothing.
+    /// Takes the joystick's code; 0 = at rest. Repeating the same code changes nothing.
     [[nodiscard]] Actions joystick(std::uint8_t code, std::int64_t now_ns);
-    /// An answer arrived. It has an effect only while an attempt is in progress.
+    /// Takes an answer. The answer has an effect only while an attempt is in progress.
     [[nodiscard]] Actions answer(const Answer& answer, std::int64_t now_ns);
-    /// Bytes arrived that are not a valid answer.
+    /// Notes bytes that are not a valid answer.
     [[nodiscard]] Actions damaged_answer(std::int64_t now_ns);
-    /// Time passed. Call it at next_deadline_ns() at the latest; a later call can only inhibit
-    /// more.
+    /// Notes the passing of time. Call it at next_deadline_ns() at the latest; a later call can
+    /// only inhibit more.
     [[nodiscard]] Actions tick(std::int64_t now_ns);
 
-    /// Time of the next action of the link itself; empty while it only waits for the user.
+    /// Returns the time of the link's next own action; empty while it waits only for the user.
     [[nodiscard]] std::optional<std::int64_t> next_deadline_ns() const noexcept;
     [[nodiscard]] LinkState state() const noexcept { return state_; }
 
@@ -125,7 +125,7 @@ class RexLink {
     /// One attempt at a movement, from the first question on.
     struct Attempt {
         Question question;  ///< the last question sent
-        /// First question; answers to it also belong to the attempt.
+        /// Sequence number of the first question; answers to it also belong to the attempt.
         std::uint64_t first_sequence = 0;
         std::int64_t sent_ns = 0;          ///< time at which `question` was sent
         std::uint64_t connection = 0;      ///< connection of the first OK; 0 = no OK yet

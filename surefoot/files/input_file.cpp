@@ -62,10 +62,11 @@ Status check_input(const std::string& path, std::uint64_t max_bytes, Accept acce
 
 Result<InputFile> InputFile::open(const std::string& path, std::uint64_t max_bytes, Accept accept) {
     struct stat status = {};
-    // Checks the kind by name first: opening alone starts some devices (a watchdog, a tape).
+    // Checks the kind of file by its name first, because opening a device can start it (a watchdog,
+    // a tape).
     if (::stat(path.c_str(), &status) != 0) return cannot_read(path, errno);
     if (Status fits = check_kind(path, status, max_bytes, accept); !fits) return fits.error();
-    // A FIFO may have replaced the file since then: with O_NONBLOCK, opening does not wait for a
+    // A FIFO may have replaced the file meanwhile. With O_NONBLOCK, opening does not wait for a
     // writer.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0) return cannot_read(path, errno);
@@ -140,7 +141,9 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
         size += piece->bytes;
         if (size > max_bytes) return too_large(path, size, max_bytes);
         if (piece->would_wait)
-            return input_error(path + ": cannot read: it has no data now; give a regular file");
+            return input_error(
+                path +
+                ": cannot read: the file has no data now and may get more; give a regular file");
         if (piece->bytes == 0) break;
     }
     content.resize(size);

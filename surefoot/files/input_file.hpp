@@ -10,12 +10,12 @@
 /// The only module that opens a user's file for reading.
 namespace surefoot::files {
 
-/// Largest size per format [bytes]. A larger file is refused before it is read.
+/// Largest size of a file per format [bytes]. A larger file is refused before it is read.
 namespace limits {
 inline constexpr std::uint64_t kKeyBytes = 4096;              ///< tokens
 inline constexpr std::uint64_t kSettingsBytes = 4ULL << 20U;  ///< settings, rigs, machines, scenes
 inline constexpr std::uint64_t kTextBytes = 512ULL << 20U;    ///< lists, trajectories, IMU, reports
-inline constexpr std::uint64_t kImageBytes = 512ULL << 20U;   ///< PNG, JPEG, PGM, PPM, PFM
+inline constexpr std::uint64_t kImageBytes = 512ULL << 20U;   ///< images: PNG, JPEG, PGM, PPM, PFM
 inline constexpr std::uint64_t kMapBytes = 2ULL << 30U;       ///< grids, map regions, places
 inline constexpr std::uint64_t kCloudBytes = 4ULL << 30U;     ///< clouds that are read whole
 inline constexpr std::uint64_t kStreamBytes = 1ULL << 42U;    ///< videos and clouds read in pieces
@@ -27,17 +27,17 @@ enum class Accept : std::uint8_t {
     regular_or_fifo,  ///< also a FIFO; `read` then reports `would_wait` and does not block
 };
 
-/// Error unless `path` can be opened for reading, is of an accepted kind, and has at most
-/// `max_bytes`. For readers that open the file themselves by its name (videos).
+/// Returns an error unless `path` can be opened for reading, is of an accepted kind, and has at
+/// most `max_bytes`. For readers that open the file themselves by its name (videos).
 [[nodiscard]] Status check_input(const std::string& path,
                                  std::uint64_t max_bytes,
                                  Accept accept = Accept::regular);
 
-/// A file that is open for reading. Opening never blocks. Use by one thread at a time.
+/// A file that is open for reading. Opening never blocks. Use it from one thread at a time.
 class InputFile {
   public:
-    /// Errors (ErrorCode::input) name the path, and either its kind if it is not accepted, or its
-    /// size and the limit.
+    /// Errors (ErrorCode::input) name the path. They also name the kind if it is not accepted, or
+    /// the size and the limit if the file is too large.
     [[nodiscard]] static Result<InputFile> open(const std::string& path,
                                                 std::uint64_t max_bytes,
                                                 Accept accept = Accept::regular);
@@ -45,18 +45,18 @@ class InputFile {
     InputFile(InputFile&& other) noexcept;
     InputFile& operator=(InputFile&& other) noexcept;
 
-    /// Size when opened [bytes]; 0 for a FIFO and for files of the kernel.
+    /// Returns the size when opened [bytes]; 0 for a FIFO and for files of the kernel.
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
     struct Piece {
         std::size_t bytes = 0;    ///< bytes read into the buffer
-        bool would_wait = false;  ///< a FIFO without data at the moment
+        bool would_wait = false;  ///< true: the FIFO has no data now
     };
-    /// Reads the next bytes; 0 bytes at the end of the file.
+    /// Reads the next bytes. Returns 0 bytes at the end of the file.
     [[nodiscard]] Result<Piece> read(std::span<char> buffer);
-    /// `count` bytes from `offset`; fewer if the file, as opened, ends before. An error if the file
-    /// became shorter.
+    /// Reads `count` bytes from `offset`, or fewer if the opened file ends before. Returns an error
+    /// if the file became shorter.
     [[nodiscard]] Result<std::string> read_at(std::uint64_t offset, std::uint64_t count);
 
   private:

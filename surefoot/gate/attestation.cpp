@@ -30,7 +30,7 @@ bool Attestation::attest(const Machine& machine,
     area_.center_y_tenth_mm = map.body_y_tenth_mm;
     area_.radius_tenth_mm = static_cast<std::int32_t>(radius_tenth_mm);
     area_.height_tenth_mm =
-        // in range: is_intact() bounds the one to 10^9, Machine::problem() the other to 30 000
+        // in range: is_intact() bounds body_z to 10^9, Machine::problem() sole_depth to 30 000
         static_cast<std::int32_t>(map.body_z_tenth_mm - machine.sole_depth_tenth_mm);
     longest_lost_ns_ = machine.limits.pose_age_ns;
     known_ns_ = now_ns;

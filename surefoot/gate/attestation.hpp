@@ -14,14 +14,14 @@ namespace surefoot::gate {
 [[nodiscard]] std::int64_t least_attested_radius_sq(const Machine& machine) noexcept;
 
 /// The operator's attestation of the ground where the machine stands, and its validity. The camera
-/// cannot see that ground, so the first step is refused without an attestation. Initially there is
-/// none. An attestation ends for good when base_link leaves the area, when the pose is lost for too
-/// long, or when it is revoked. Not thread-safe.
+/// cannot see that ground, so the gate refuses the first step without an attestation. Initially
+/// there is no attestation. It ends for good when base_link leaves the area, when the pose is lost
+/// for too long, or when it is revoked. Not thread-safe.
 class Attestation {
   public:
     /// Attests level ground under the soles, within `radius_tenth_mm` of base_link. Returns false
-    /// and changes nothing if the radius is below the least radius or above the machine file's
-    /// limit, or if the snapshot cannot be used.
+    /// and changes nothing if the snapshot cannot be used. The same holds for a radius below the
+    /// least radius or above the limit of the machine file.
     [[nodiscard]] bool attest(const Machine& machine,
                               const grid::MapSnapshot& map,
                               std::int64_t radius_tenth_mm,
@@ -30,14 +30,14 @@ class Attestation {
     /// the largest age of a pose (`pose_age` of the machine file). A later valid pose does not
     /// restore the attestation.
     void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
-    /// Ends the attestation: after a fault, a restart, or on request.
+    /// Ends the attestation. For use after a fault, after a restart, or on request.
     void revoke() noexcept { *this = Attestation{}; }
     [[nodiscard]] const AttestedArea& area() const noexcept { return area_; }
 
   private:
     AttestedArea area_;
     std::int64_t longest_lost_ns_ = 0;
-    std::int64_t known_ns_ = 0;  ///< last time of a known pose
+    std::int64_t known_ns_ = 0;  ///< time of the last known pose [ns]
     bool lost_ = false;
 };
 

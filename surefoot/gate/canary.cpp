@@ -9,14 +9,14 @@
 namespace surefoot::gate {
 namespace {
 
-// A yaw with exact cosine and sine that is not parallel to a grid axis.
+// The cosine and sine of this yaw are exact. Its direction is not parallel to a grid axis.
 constexpr double kCosYaw = 0.8;
 constexpr double kSinYaw = 0.6;
 constexpr std::int64_t kNowNs = 1'000'000'000'000;
 constexpr std::int32_t kSideTenthMm = 250;
 constexpr std::uint16_t kSigmaTenthMm = 10;
 
-/// The inputs of an OK verdict on level ground that a canary may change.
+/// The inputs of an OK verdict on level ground. A canary may change them.
 struct Setting {
     const Machine& machine;
     grid::MapSnapshot& map;
@@ -61,8 +61,9 @@ void make_level(grid::MapSnapshot& map) noexcept {
     grid::seal(map);
 }
 
-/// A point well inside a landing foot, as far as possible from its present position. After a short
-/// step the middle of the foot would be ground that already carries the machine.
+/// Returns a point well inside a landing foot, as far as possible from the present position of this
+/// foot. In a short step, the machine already stands on the ground under the middle of the landing
+/// foot.
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
     const auto from_stance =
@@ -80,8 +81,8 @@ grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     return farthest;
 }
 
-/// Changes a cell of new ground. If it lies outside the map, changes the last cell of the map, so
-/// that the canary fails and reports it.
+/// Changes a cell of the ground that the foot newly touches. If the cell lies outside the map,
+/// changes the last cell of the map, so that the canary fails and reports the case.
 template <typename Change>
 void change_one_cell(const Setting& s, Change&& change) noexcept {
     const grid::FixedPoint place = new_ground(s.foot);
@@ -94,7 +95,8 @@ void change_one_cell(const Setting& s, Change&& change) noexcept {
     change(static_cast<std::size_t>(iy * s.map.nx + ix));
 }
 
-/// Changes that cell and its neighbour, because a single cell counts as a pebble.
+/// Changes the cell of change_one_cell() and its neighbour, because a single cell counts as a
+/// pebble.
 template <typename Change>
 void change_two_cells(const Setting& s, Change&& change) noexcept {
     change_one_cell(s, [&](std::size_t i) {
@@ -116,7 +118,7 @@ struct Fault {
 };
 
 constexpr auto kFaults = std::to_array<Fault>({
-    // Faults that perception reports, and faults of time.
+    // Faults that perception reports, and faults of time stamps.
     {Reason::frame_stale,
      [](const Setting& s) { s.map.frame_time_ns -= s.machine.limits.frame_age_ns + 1; }},
     {Reason::pose_stale,
@@ -153,7 +155,7 @@ constexpr auto kGroundFaults = std::to_array<Fault>({
              s.map.source[i] = grid::EvidenceSource::unknown;
          });
      }},
-    // An attestation of ground that rays prove to be lower.
+    // An operator attests ground, but rays prove that it is lower.
     {Reason::unknown_cells,
      [](const Setting& s) {
          const GateLimits& limits = s.machine.limits;
@@ -220,8 +222,8 @@ constexpr auto kDamages = std::to_array<Fault>({
 
 constexpr std::size_t kFaultCount = kFaults.size() + 2 * kGroundFaults.size() + kDamages.size();
 
-/// Broken-rule canary `index`: its rule, its foot, and whether the change happens after the map was
-/// sealed.
+/// A canary that breaks a rule: its rule, its foot, and whether the change happens after the map
+/// was sealed.
 struct Broken {
     const Fault& fault;
     std::size_t foot = 0;
@@ -240,8 +242,8 @@ std::int64_t length_sq(const Movement& m) noexcept {
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
 }
 
-/// The longest movement covers the most ground. The faults are faults of flat ground; on stairs
-/// some of them are treads.
+/// True if `a` is better for the canaries than `b`. A longer movement covers more ground. The
+/// broken rules are rules for flat ground: on stairs, some of the faults would be treads.
 bool is_harder(const Movement& a, const Movement& b) noexcept {
     if (a.movement_class != b.movement_class) return a.movement_class == MovementClass::walk;
     return length_sq(a) > length_sq(b);
@@ -252,7 +254,7 @@ bool is_harder(const Movement& a, const Movement& b) noexcept {
 const int Canaries::kBrokenRules = static_cast<int>(kFaultCount);
 
 Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
-    if (machine.problem() != nullptr) return;  // no movement: every canary fails
+    if (machine.problem() != nullptr) return;  // if there is no movement, every canary fails
     for (std::size_t i = 1; i < machine.movements.size(); ++i) {
         const auto code = static_cast<std::uint8_t>(i);
         if (movement_for(machine, code) == nullptr) continue;

@@ -10,9 +10,9 @@
 namespace surefoot::gate {
 
 /// Canaries: maps with known verdicts. Level ground must be OK for every movement of the machine.
-/// For the longest movement each ground rule is broken once, those of the feet under either foot.
-/// Canaries pass through decide() like every query, so a gate that always says OK (or never does)
-/// is detected. Judge all before the gate is armed, then one after the other while it runs.
+/// For the longest movement, one canary breaks each ground rule; each rule of a foot has a canary
+/// per foot. Canaries pass through decide() like every query. So a gate that always gives the same
+/// verdict is detected. Judge all before the gate is armed, then one after the other while it runs.
 ///
 /// Holds one map of 0.9 MB, so allocate it on the heap. Allocates nothing after construction. One
 /// canary costs less than a millisecond.
@@ -39,8 +39,8 @@ class Canaries {
 
     Machine machine_;
     grid::MapSnapshot map_;
-    int first_fault_ = 0;       ///< index of the first broken-rule canary = number of movements
-    std::uint8_t longest_ = 0;  ///< movement that the broken-rule canaries use
+    int first_fault_ = 0;       ///< number of movements; first canary that breaks a rule
+    std::uint8_t longest_ = 0;  ///< movement of the canaries that break a rule
 };
 
 }  // namespace surefoot::gate

@@ -11,13 +11,13 @@ namespace surefoot::gate {
 
 /// One broken rule: its cell, the value and the limit.
 struct Finding {
-    std::int64_t cell_x = 0;  ///< in cells of the snapshot; may lie outside the snapshot
+    std::int64_t cell_x = 0;  ///< position [cells]; may lie outside the snapshot
     std::int64_t cell_y = 0;
     std::int64_t value_tenth_mm = 0;
     std::int64_t limit_tenth_mm = 0;
-    std::int64_t severity = 0;  ///< the most severe one per reason is kept, of equals the first
+    std::int64_t severity = 0;  ///< the most severe finding per reason is kept; if equal, the first
     Foot foot = Foot::none;
-    bool overhead = false;  ///< an overhanging obstacle: the value is the height of its lower side
+    bool overhead = false;  ///< overhanging obstacle; the value is the height of its lower side
 };
 
 /// Collects proofs and broken rules during one decision.
@@ -37,11 +37,11 @@ class Findings {
     }
     [[nodiscard]] ReasonSet reasons() const noexcept { return reasons_; }
     [[nodiscard]] bool complete() const noexcept { return unproven() == 0; }
-    /// The proofs that do not hold, one bit each, as in Evidence.
+    /// Returns the proofs that do not hold: bit i stands for Proof i, as in Evidence.
     [[nodiscard]] std::uint32_t unproven() const noexcept {
         return (bit(Proof::count) - 1U) & ~proofs_;
     }
-    /// The most severe finding of a reason, or nullptr if it was denied without a cell.
+    /// Returns the most severe finding of a reason, or nullptr if no finding names a cell.
     [[nodiscard]] const Finding* worst(Reason reason) const noexcept;
 
     Evidence evidence;  ///< numbers that every verdict contains

@@ -11,7 +11,8 @@ namespace {
 
 using grid::FixedPoint;
 
-/// Exact sums over cells: x, y = doubled coordinates from the foot's middle, z above the stance.
+/// Exact sums over cells. x and y are doubled coordinates from the middle of the foot, z is the
+/// height above the stance.
 struct Sums {
     std::int64_t n = 0;
     std::int64_t x = 0, y = 0, z = 0;
@@ -30,13 +31,13 @@ struct Sums {
     }
 };
 
-/// The weighted mean of a patch. Cells with a larger sigma than a patch may have weigh less, by
-/// their variance, so that a cell after a rejected measurement does not spoil the patch.
+/// The weighted mean of a patch. A cell whose sigma exceeds the limit of a patch weighs less, by
+/// its variance. So a cell after a rejected measurement does not spoil the patch.
 struct PatchSums {
     std::int64_t n = 0;
     double weight = 0.0;
-    double x = 0.0, y = 0.0, z = 0.0;  ///< weighted sums, like those in Sums
-    double variance = 0.0;             ///< sum with squared weights
+    double x = 0.0, y = 0.0, z = 0.0;  ///< weighted sums of x, y and z
+    double variance = 0.0;             ///< sum of the variances, with squared weights
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma, std::int64_t sure) noexcept {
         const auto variance_of = [](std::int64_t s) { return static_cast<double>(s * s); };
@@ -50,7 +51,8 @@ struct PatchSums {
     }
 };
 
-/// z = height + slope_x * (x - mean_x) + slope_y * (y - mean_y), units of 0.1 mm over doubled ones.
+/// z = height + slope_x * (x - mean_x) + slope_y * (y - mean_y), with z in 0.1 mm. x and y are
+/// doubled coordinates.
 struct FootPlane {
     bool valid = false;
     double mean_x = 0.0;
@@ -68,8 +70,8 @@ struct FootPlane {
     }
 };
 
-/// Normal equations of the centred points. The sums are exact, and only uncontracted + - * /
-/// follow, so all machines give the same bits.
+/// Solves the normal equations of the centred points. The sums are exact, and only + - * / without
+/// contraction follow. So all machines give the same bits.
 FootPlane fit_plane(const Sums& sums) noexcept {
     FootPlane plane;
     if (sums.n < 3) return plane;
@@ -110,8 +112,8 @@ class Patches {
           along_(per_side(length_, limits)),
           across_(per_side(width_, limits)) {}
 
-    /// `p`: doubled odom coordinates from the foot's middle. A cell that only overlaps the rim
-    /// belongs to the nearest patch, so no cell is lost.
+    /// Adds a cell. `p`: doubled odom coordinates from the middle of the foot. A cell that only
+    /// overlaps the rim belongs to the nearest patch, so no cell is lost.
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
         const std::int64_t forward = p.x * pose_.cos_yaw + p.y * pose_.sin_yaw;
         const std::int64_t left = p.y * pose_.cos_yaw - p.x * pose_.sin_yaw;
@@ -130,7 +132,7 @@ class Patches {
     }
     static std::int64_t index(std::int64_t at, std::int64_t size, std::int64_t count) noexcept {
         const std::int64_t from_edge =
-            at + size * FixedPose::kOne;  // doubled: half a size is `size`
+            at + size * FixedPose::kOne;  // coordinates are doubled, so half a size is `size`
         return std::clamp<std::int64_t>(
             grid::floor_div(from_edge * count, 2 * size * FixedPose::kOne), 0, count - 1);
     }
@@ -151,7 +153,7 @@ struct Landing {
     FootPlane plane;
     Findings& findings;
 
-    /// A finding at the cell of a point in doubled coordinates from the foot's middle.
+    /// Returns a finding at the cell of a point in doubled coordinates from the middle of the foot.
     [[nodiscard]] Finding at(double x,
                              double y,
                              std::int64_t value,
@@ -171,7 +173,7 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// Tests the step limits. `where`: a finding whose value is its height above the stance.
+/// Tests the step limits. `where`: a finding; its value is the height above the stance.
 void check_rise(const StepLimits& limits, Finding where, Findings& findings) noexcept {
     const std::int64_t rise = where.value_tenth_mm;
     const auto deny = [&](Reason reason, std::int64_t value, std::int64_t limit) {
@@ -191,8 +193,8 @@ void check_step(const Landing& landing) noexcept {
         evidence.height_delta_tenth_mm = rise;
     const StepLimits& limits = step_limits(landing.scene);
     check_rise(limits, landing.at(0.0, 0.0, rise, 0), landing.findings);
-    // If one foot is above the mean of both feet and the other below, the height of one foot could
-    // change by twice the limit.
+    // Also tests the rise of this foot alone. If one foot stands above the mean of both feet and
+    // the other foot below, the height of one foot could change by twice the limit.
     const Scene& scene = landing.scene;
     const auto stood = scene.foot_stance_tenth_mm[landing.foot.foot == Foot::left ? 0 : 1];
     if (!stood) return;
@@ -200,7 +202,7 @@ void check_step(const Landing& landing) noexcept {
     check_rise(limits, landing.at(0.0, 0.0, own, 0), landing.findings);
 }
 
-/// Returns false if it denies, like check_patch().
+/// Tests the tilt limit. Returns false if it denies, like check_patch().
 bool check_tilt(const Landing& landing) noexcept {
     const double tan_sq =
         steepest_tan_sq(landing.plane.tilt_tan_sq(), landing.scene.ground.vertical_bound_tan());
@@ -214,11 +216,12 @@ bool check_tilt(const Landing& landing) noexcept {
 }
 
 bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
-    if (patch.n == 0) return true;  // large cells leave patches empty; every cell lies in a patch
+    if (patch.n == 0) return true;  // large cells leave patches empty; every cell is in one
     const GateLimits& limits = landing.scene.machine.limits;
     const double x = patch.x / patch.weight;
     const double y = patch.y / patch.weight;
-    // Errors of neighbours are correlated: more than `independent` cells average no further.
+    // Errors of neighbouring cells are correlated. So at most `independent` cells reduce the
+    // variance.
     const std::int64_t independent =
         std::min<std::int64_t>(patch.n, limits.patch_independent_cells);
     const double alike = static_cast<double>(patch.n) / static_cast<double>(independent);
@@ -233,7 +236,7 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
         finding.severity = rounded(variance);
         landing.findings.deny(Reason::not_resolvable, finding);
     }
-    // If the noise alone breaks the limit, the residual is tested without noise.
+    // If the patch is not resolvable, tests the residual alone, without sigma.
     const double noise_sq = resolvable ? limits.sigma_factor * limits.sigma_factor * variance : 0.0;
     const double residual = patch.z / patch.weight - landing.plane.at(x, y);
     const double size = residual < 0.0 ? -residual : residual;
@@ -249,7 +252,7 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
 struct FootCells {
     Sums all{};
     Patches patches;
-    bool has_pebble = false;   ///< one cell stands alone (stands_alone)
+    bool has_pebble = false;   ///< true: one cell stands alone (stands_alone)
     std::int64_t grounds = 0;  ///< number of the other cells
     Finding lowest{};          ///< lowest of the other cells; value = height above the stance
     Finding highest{};
@@ -266,10 +269,10 @@ struct FootCells {
     }
 };
 
-/// True for a single cell beyond the step limits whose eight neighbours are known and within them,
-/// and which is neither an obstacle for a swinging foot nor a drop. It is a wrong match or a
-/// pebble, and the mean of its patch covers it. A real kerb or sill fills more than one cell. One
-/// such cell per foot is allowed; on several the foot would stand.
+/// True for a single cell outside the step limits whose eight neighbours are known and within the
+/// limits. The cell must be neither an obstacle for a swinging foot nor a drop. It is a wrong match
+/// or a pebble, and the mean of its patch covers it. A real kerb or sill fills more than one cell.
+/// One such cell per foot is allowed, because the foot would stand on several such cells.
 bool stands_alone(const Scene& scene,
                   std::int64_t ix,
                   std::int64_t iy,
@@ -286,7 +289,7 @@ bool stands_alone(const Scene& scene,
     });
 }
 
-/// Returns false if a cell is unknown: then no plane exists.
+/// Adds all cells under the foot. Returns false if a cell is unknown: then no plane exists.
 bool gather_cells(const Scene& scene,
                   const FootSweep& foot,
                   const ReachableSurfaces& reachable,
@@ -302,7 +305,7 @@ bool gather_cells(const Scene& scene,
             }
             if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
                 findings.deny(Reason::disconnected, here);
-            // Other rules refuse heights beyond 3 m; the clamp keeps the sums exact.
+            // Other rules refuse heights above 3 m. The clamp keeps the sums exact.
             const std::int64_t height = std::clamp<std::int64_t>(
                 cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
             cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
@@ -331,8 +334,8 @@ void check_landing(const Scene& scene,
         findings.deny(Reason::not_resolvable, landing.at(0.0, 0.0, 0, 0));
         return;
     }
-    // Then some cell is an obstacle or a drop. A plane through both levels would give a height and
-    // a tilt that no part of the ground has.
+    // With a larger spread, some cell is an obstacle or a drop. A plane through both levels would
+    // give a height and a tilt that no part of the ground has.
     const std::int64_t spread = cells.highest.value_tenth_mm - cells.lowest.value_tenth_mm;
     const std::int64_t spread_limit = limits.swing_clearance_tenth_mm + limits.drop_tenth_mm;
     if (spread > spread_limit) {
@@ -343,7 +346,7 @@ void check_landing(const Scene& scene,
     bool flat = check_tilt(landing);
     for (std::int64_t i = 0; i < cells.patches.count(); ++i)
         flat = check_patch(landing, cells.patches[i]) && flat;
-    if (!flat) return;  // already refused, with a better reason than its highest cell
+    if (!flat) return;  // already refused, with a reason better than the cell heights
     check_rise(step_limits(scene), cells.highest, findings);
     check_rise(step_limits(scene), cells.lowest, findings);
 }

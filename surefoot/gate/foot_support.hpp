@@ -7,18 +7,18 @@ namespace surefoot::gate {
 
 /// Checks the ground under one landing foot on flat ground:
 /// 1. Every cell is known, and every measured cell belongs to a reachable surface.
-/// 2. The cells have one level: their spread is at most swing_clearance + drop, else
-/// ROUGHNESS.
+/// 2. The cells lie on one level: highest minus lowest cell is at most swing_clearance + drop. If
+///    not, the reason is ROUGHNESS.
 /// 3. A least-squares plane through the cells keeps the tilt limit (z of its normal against a
-/// cosine). Its height at the middle of the foot keeps the step limits of the movement class.
-/// 4. The foot is cut into patches of at least `patch_side` (50 mm). The variance of a patch
-/// mean is (mean of the cell variances) / min(cells, `patch_independent_cells`). Errors of
-/// neighbouring cells are correlated, so averaging counts only a fixed small number of cells,
-/// for any cell size. Each patch needs sigma <= `patch_sigma` and |residual to the plane| +
-/// sigma_factor * sigma <= `patch_residual`.
-/// 5. Every cell keeps those step limits: a toe on the begin of a ramp is a step up, even if
-/// the middle of the foot is not.
-/// No mean over the whole foot decides. Each patch is tested; the worst is reported.
+///    cosine). Its height at the middle of the foot keeps the step limits of the movement class.
+/// 4. The foot is cut into patches of at least `patch_side` (50 mm). The variance of a patch mean
+///    is (mean of the cell variances) / min(cells, `patch_independent_cells`). Errors of
+///    neighbouring cells are correlated. So only a fixed small number of cells counts as
+///    independent, for any cell size. Each patch needs sigma <= `patch_sigma` and |residual to the
+///    plane| + sigma_factor * sigma <= `patch_residual`.
+/// 5. Every cell keeps the step limits of rule 3. Example: toes on the start of a ramp step up,
+///    even if the middle of the foot does not.
+/// No mean over the whole foot decides. Each patch is tested, and the worst patch is reported.
 void check_landing(const Scene& scene,
                    const FootSweep& foot,
                    const GroundBox& box,

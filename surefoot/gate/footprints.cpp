@@ -8,17 +8,17 @@ namespace {
 
 using Corners = std::array<grid::FixedPoint, 4>;
 
-/// Drift that kBesideTenthMm and the margins of feet and body cover. Up to this drift no hazard was
-/// missed with a wrong machine position (docs/lab/gate_scenes.md).
+/// Drift that is covered by kBesideTenthMm and the margins of feet and body. Up to this drift, a
+/// wrong machine position caused no missed hazard (docs/lab/gate_scenes.md).
 constexpr std::int64_t kDriftWithinTenthMm = 100;
 
-/// x / 2^20, rounded to nearest with halves upward, for both signs of x.
+/// Returns x / 2^20, rounded to the nearest integer. Halves round upward for both signs of x.
 constexpr std::int64_t round_fraction(std::int64_t x) noexcept {
     return grid::floor_div(x + FixedPose::kOne / 2, FixedPose::kOne);
 }
 
-/// Precondition: |value| <= 1.001, checked by check_numbers(), the snapshot header and
-/// Machine::problem().
+/// Returns value * 2^20, rounded. Precondition: |value| <= 1.001; check_numbers(), the snapshot
+/// header and Machine::problem() check this.
 std::int64_t fraction(double value) noexcept {
     const double scaled = value * static_cast<double>(FixedPose::kOne);
     // in range: at most 1.001 * 2^20

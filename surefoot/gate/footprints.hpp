@@ -10,10 +10,10 @@
 
 namespace surefoot::gate {
 
-/// The map can show an object up to one 25 mm cell beside its true position. Example: a cell that a
-/// table rim half covers can show the floor behind the rim. On maps with measured noise, all missed
-/// hazards except the corner of a hole had a cell with the hazard within this distance
-/// (docs/lab/gate_scenes.md).
+/// The map can show an object up to one cell of 25 mm beside its true position. Example: a table
+/// rim covers half of a cell, and the cell shows the floor behind the rim. On maps with measured
+/// noise, all missed hazards except the corner of a hole had a cell with the hazard within this
+/// distance (docs/lab/gate_scenes.md).
 inline constexpr std::int64_t kBesideTenthMm = 250;
 
 /// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.
@@ -26,16 +26,16 @@ struct FixedPose {
     std::int64_t sin_yaw = 0;
 };
 
-/// Precondition: |cos_yaw| and |sin_yaw| <= 1.001.
+/// Makes a pose. Precondition: |cos_yaw| and |sin_yaw| <= 1.001.
 [[nodiscard]] FixedPose fixed_pose(std::int64_t x_tenth_mm,
                                    std::int64_t y_tenth_mm,
                                    double cos_yaw,
                                    double sin_yaw) noexcept;
-/// A body point in odom, rounded to 0.1 mm.
+/// Returns a point of the body in odom, rounded to 0.1 mm.
 [[nodiscard]] grid::FixedPoint to_odom(const FixedPose& pose,
                                        std::int64_t forward_tenth_mm,
                                        std::int64_t left_tenth_mm) noexcept;
-/// The pose of base_link after the movement.
+/// Returns the pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 
 /// The regions that one foot needs for a movement.
@@ -63,15 +63,15 @@ struct Extent {
 
     void include(grid::FixedPoint p) noexcept;
 };
-/// The least rectangle that contains the whole sweep.
+/// Returns the smallest rectangle that contains the whole sweep.
 [[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
 
-/// Extra distance by which every region grows because the cells have drifted (1 sigma, horizontal)
-/// since they were measured: `sigma_factor` times the drift that the margins of the regions do not
-/// already cover.
+/// Returns the extra distance by which every region grows, because the cells drifted after their
+/// measurement: `sigma_factor` times the drift (1 sigma, horizontal), as far as the margins of the
+/// regions do not cover it.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
-/// `margin_tenth_mm` widens every region except the stance and landing areas.
+/// Returns all regions. `margin_tenth_mm` widens all except the stance and landing areas.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
                              const Movement& movement,

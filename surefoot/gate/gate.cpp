@@ -16,7 +16,8 @@
 namespace surefoot::gate {
 namespace {
 
-/// 100 km and 1 km: with these bounds every product of the exact geometry fits into 64 bits.
+/// Limits of 100 km and 1 km. Within these limits every product of the exact geometry fits into 64
+/// bits.
 constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
 constexpr std::int64_t kHighestTenthMm = 10'000'000;
 
@@ -29,7 +30,7 @@ void check_process(const GateHealth& health, std::int64_t now_ns, Findings& find
         findings.deny(Reason::warmup);
     else if (health.state != GateState::ready)
         findings.deny(Reason::not_ready);
-    // A valid steady clock is not negative and below half of its range.
+    // A valid steady clock is not negative and is below half of its range.
     if (!(now_ns >= 0 && now_ns <= std::numeric_limits<std::int64_t>::max() / 2))
         findings.deny(Reason::clock);
     for (int i = 0; i < kReasonCount; ++i) {
@@ -59,7 +60,8 @@ void check_numbers(const Query& query, const GateLimits& limits, Findings& findi
     if (!(pose && stance && attested)) findings.deny(Reason::bad_number);
 }
 
-/// Tests both ends of an age: too old, and from the future. Unsigned differences cannot overflow.
+/// Tests that a stamp is neither too old nor too far in the future. Unsigned differences cannot
+/// overflow.
 void check_stamp(std::int64_t stamp_ns,
                  std::int64_t now_ns,
                  std::int64_t max_age_ns,
@@ -112,7 +114,7 @@ void check_camera(CameraState camera, Findings& findings) noexcept {
 }
 
 /// Tests the snapshot independently of the query, without reading the cells. `camera`: the camera
-/// state of the map, or a better one.
+/// state of the map, or a state that counts instead.
 void judge_snapshot(const GateLimits& limits,
                     const grid::MapSnapshot& map,
                     CameraState camera,
@@ -126,7 +128,7 @@ void judge_snapshot(const GateLimits& limits,
         if (map.gravity_source != grid::GravitySource::plane &&
             map.gravity_source != grid::GravitySource::imu)
             findings.deny(Reason::plane_invalid);
-        // The vertical is so uncertain that level ground might break the tilt limit.
+        // Refuses if the vertical is so uncertain that level ground might break the tilt limit.
         if (!keeps_tilt_limit(steepest_tan_sq(0.0, vertical_bound_tan(map, limits)), limits))
             findings.deny(Reason::plane_invalid);
     });
@@ -134,9 +136,9 @@ void judge_snapshot(const GateLimits& limits,
     findings.prove(Proof::camera_healthy, [&] { check_camera(camera, findings); });
 }
 
-/// True if measured ground under the feet lies at the height of the soles, within a step plus twice
-/// the swing clearance for bent knees. Also true without measured ground, because there is nothing
-/// to compare.
+/// True if measured ground under the feet lies at the height of the soles. The tolerance is a step
+/// plus twice the swing clearance, for bent knees. Also true without measured ground, because there
+/// is nothing to compare.
 bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcept {
     const Query here = query_at_body(0, map);
     const Sweep standing =
@@ -173,7 +175,7 @@ void judge_readiness(const Machine& machine,
     });
 }
 
-/// Tests all ground ahead of the present feet, for flat ground.
+/// Tests all ground ahead of the present feet, for movements on flat ground.
 void judge_walk(const Scene& scene, Findings& findings) noexcept {
     findings.prove(Proof::corridors_clear, [&] { check_corridors(scene, findings); });
     findings.prove(Proof::body_clear, [&] { check_body(scene, findings); });
@@ -227,7 +229,7 @@ void judge_sweep(const Machine& machine,
     findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
-    if (!stance.both_tenth_mm) {  // no height to compare with: unknown cells are already reported
+    if (!stance.both_tenth_mm) {  // no height to compare with; unknown cells are already reported
         findings.deny(reason_of_unknown(Knowledge::unknown));
         return;
     }
@@ -253,11 +255,12 @@ void judge_terrain(const Machine& machine,
     const std::int64_t margin = drift_margin(machine.limits, drift);
     if (margin == 0 || !findings.reasons().empty()) return;
     findings = before;
-    findings.evidence.max_drift_tenth_mm = drift;  // documents how far the regions were widened
+    findings.evidence.max_drift_tenth_mm = drift;  // states how far the regions were widened
     judge_sweep(machine, query, ground, sweep_of(machine, start, movement, margin), findings);
 }
 
-/// ERROR > NOT_TRAVERSABLE > OK. OK only if nothing was denied and everything was proven.
+/// Completes the verdict. ERROR has priority over NOT_TRAVERSABLE, and NOT_TRAVERSABLE over OK. OK
+/// only if nothing was denied and everything was proven.
 void seal(const Machine& machine,
           const grid::MapSnapshot& map,
           const Findings& findings,
@@ -318,7 +321,7 @@ ReasonSet snapshot_faults(const Machine& machine,
                           const grid::MapSnapshot& map,
                           std::int64_t now_ns) noexcept {
     Findings findings;
-    // Every step leans the camera: no movement may begin then, but it is no fault.
+    // Every step leans the camera. No movement may begin during a lean, but a lean is not a fault.
     const bool leans = map.camera == CameraState::leaning;
     judge_snapshot(machine.limits, map, leans ? CameraState::ok : map.camera, now_ns, findings);
     if (!grid::is_intact(map))

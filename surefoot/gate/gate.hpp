@@ -9,16 +9,16 @@
 
 namespace surefoot::gate {
 
-/// Source of the height of the ground under the present feet.
+/// Source of the height of the ground under the feet before the movement.
 enum class StanceHeight : std::uint8_t {
     map,   ///< mean of the cells under both feet
-    given  ///< from the caller (joint sensors, arming); the cells must be known nevertheless
+    given  ///< the caller gives it (joint sensors, arming); the cells must be known as well
 };
 
 /// Ground that an operator attested when arming. Unknown cells that lie wholly inside count as flat
-/// ground at `height`. Measured cells keep their heights: an attestation never hides an obstacle.
-/// It is valid only while base_link is inside. The caller discards it for good when base_link
-/// leaves, logs it and displays it. Inactive by default.
+/// ground at `height`. Measured cells keep their heights, so an attestation never hides an
+/// obstacle. The attestation is valid only while base_link is inside. When base_link leaves, the
+/// caller discards the attestation for good. The caller logs and displays it. Inactive by default.
 struct AttestedArea {
     bool active = false;
     std::int64_t center_x_tenth_mm = 0;  ///< odom
@@ -27,7 +27,7 @@ struct AttestedArea {
     std::int32_t height_tenth_mm = 0;
 };
 
-/// The question "may I make this movement from here?" A default query is refused: no valid pose.
+/// The question "may I make this movement from here?" A default query has no valid pose: refused.
 struct Query {
     std::uint8_t command = 0;     ///< joystick code 1..26, see system_facts.md 7.2
     std::int64_t x_tenth_mm = 0;  ///< base_link in odom
@@ -35,7 +35,7 @@ struct Query {
     double cos_yaw = 0.0;
     double sin_yaw = 0.0;
     StanceHeight stance_source = StanceHeight::map;
-    std::int32_t stance_height_tenth_mm = 0;  ///< odom z, for StanceHeight::given
+    std::int32_t stance_height_tenth_mm = 0;  ///< odom z of the ground, for StanceHeight::given
     AttestedArea attested;
     /// Identifies the client and its question. The verdict returns both numbers and answers only
     /// this question.
@@ -43,8 +43,8 @@ struct Query {
     std::uint64_t sequence = 0;
 };
 
-/// The movement of a command code. nullptr for code 0, codes beyond the table, codes without an
-/// entry and disabled classes.
+/// Returns the movement of a command code. Returns nullptr for code 0, codes beyond the table,
+/// codes without an entry and disabled classes.
 [[nodiscard]] const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept;
 
 /// Makes a query from coordinates in m. If a coordinate is not finite or beyond 100 km, the pose
@@ -62,17 +62,17 @@ struct GateHealth {
     ReasonSet faults;  ///< ERROR codes raised by monitors; a terrain code here becomes INTERNAL
 };
 
-/// The faults of a snapshot at `now_ns` that do not depend on the query: damage, age, a stamp of
-/// the future, gravity, pose, camera. decide() applies the same tests. One more test: measured
-/// ground under the feet must lie at the height of the soles (PLANE_INVALID); it needs a machine
-/// that stands on the map. Empty = the snapshot can be used.
+/// Returns the faults of a snapshot at `now_ns` that do not depend on the query: damage, age, a
+/// stamp in the future, gravity, pose, camera. decide() applies the same tests. It also tests that
+/// measured ground under the feet lies at the height of the soles (PLANE_INVALID), if the machine
+/// stands on the map. An empty set means that the snapshot can be used.
 [[nodiscard]] ReasonSet snapshot_faults(const Machine& machine,
                                         const grid::MapSnapshot& map,
                                         std::int64_t now_ns) noexcept;
 
-/// Decides whether a movement is safe. Pure: no clock, allocation, input, output or libm; the same
-/// bytes give the same verdict on every machine. Missing, damaged, NaN, outdated or future input
-/// always inhibits. Thread-safe. Costs less than 0.2 ms.
+/// Decides whether a movement is safe. Pure: uses no clock, allocation, input, output or libm, so
+/// the same bytes give the same verdict on every machine. Missing, damaged, NaN, outdated or future
+/// input always inhibits. Thread-safe. Costs less than 0.2 ms.
 [[nodiscard]] Verdict decide(const Machine& machine,
                              const Query& query,
                              const grid::MapSnapshot& map,

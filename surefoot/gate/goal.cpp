@@ -11,8 +11,8 @@
 namespace surefoot::gate {
 namespace {
 
-/// Requires that the surfaces under the goal's feet are connected to the surfaces under its feet
-/// now.
+/// Requires that the surfaces under the feet at the goal are connected to the surfaces under the
+/// feet now.
 void check_joined(const Machine& machine,
                   const Query& here,
                   const Sweep& there,

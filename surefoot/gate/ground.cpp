@@ -20,7 +20,7 @@ Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimit
       attested_(query.attested.active ? query.attested : AttestedArea{}),
       vertical_bound_tan_(gate::vertical_bound_tan(map, limits)),
       drop_tenth_mm_(limits.drop_tenth_mm) {
-    // The attestation is void as soon as base_link is outside the area.
+    // The attestation is invalid as soon as base_link is outside the area.
     const std::int64_t dx = query.x_tenth_mm - attested_.center_x_tenth_mm;
     const std::int64_t dy = query.y_tenth_mm - attested_.center_y_tenth_mm;
     const std::int64_t radius = attested_.radius_tenth_mm;

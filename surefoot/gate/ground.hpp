@@ -15,14 +15,14 @@ namespace surefoot::gate {
 /// Source of the knowledge about a cell. Only `attested` and `measured` count as known.
 enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
 
-/// The reason for which the gate refuses a cell whose height is not known. Only this function turns
-/// unknown ground into a reason; every proof that meets such a cell denies with it.
+/// Returns the reason for which the gate refuses a cell without a known height. No other function
+/// turns unknown ground into a reason: every proof that meets such a cell uses this reason.
 [[nodiscard]] constexpr Reason reason_of_unknown(Knowledge knowledge) noexcept {
     return knowledge == Knowledge::outside ? Reason::outside_map : Reason::unknown_cells;
 }
 
-/// One cell as the gate reads it. The numbers are valid only if `known()`; only the evidence of a
-/// drop is also valid in an unknown cell.
+/// One cell as the gate reads it. The numbers are valid only if `known()` is true, except for the
+/// drop evidence: it is also valid in an unknown cell.
 struct GroundCell {
     Knowledge knowledge = Knowledge::unknown;
     std::uint8_t drop_evidence = 0;
@@ -39,17 +39,17 @@ struct GroundCell {
 
 /// The map together with the operator's attestation. Only this class makes a cell known. A cell
 /// without a measurement becomes known only if it lies wholly in the attested area. There the
-/// attestation also replaces a measurement that is too uncertain to decide and agrees with it. So
+/// attestation also replaces a measurement that agrees with it but is too uncertain to decide. So
 /// measuring a cell never makes the verdict worse than leaving it unmeasured. Overhead obstacles
-/// and drop evidence stay. A ray lower than the attested ground by a drop makes an unknown cell a
-/// drop.
+/// and drop evidence stay. An unknown cell there is a drop if a ray proves it lower by more than
+/// `drop`.
 class Ground {
   public:
     Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept;
 
     [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] std::span<const grid::SnapshotEdge> edges() const noexcept;
-    /// In the header for speed: one verdict reads thousands of cells.
+    /// Defined in the header for speed: one verdict reads thousands of cells.
     [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept {
         GroundCell cell;
         if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) {
@@ -81,15 +81,15 @@ class Ground {
         }
         return true;
     }
-    /// Twice the centre of a cell minus twice `origin`; exact for every cell size.
+    /// Returns twice the centre of a cell minus twice `origin`; exact for every cell size.
     [[nodiscard]] grid::FixedPoint doubled_center(std::int64_t ix,
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_attesting() const noexcept { return attestation_; }
-    /// Tangent of the largest angle between the map's z axis and the vertical (tilt.hpp).
+    /// Returns tan of the largest angle between the map's z axis and the vertical (tilt.hpp).
     [[nodiscard]] double vertical_bound_tan() const noexcept { return vertical_bound_tan_; }
-    /// The zone that a verdict about `sweep` may read: the sweep and the attested area, plus a ring
-    /// of cells around both (`all_around`, `ReachableSurfaces::add_beside_attested`).
+    /// Returns the zone that a verdict about `sweep` may read: sweep, attested area, and a ring of
+    /// cells around both (`all_around`, `ReachableSurfaces::add_beside_attested`).
     [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
     /// True if no cell in the rows of a zone changed since the map was sealed. Precondition:
     /// grid::is_sealed().
@@ -102,9 +102,9 @@ class Ground {
                    std::int64_t ix,
                    std::int64_t iy,
                    GroundCell& cell) const noexcept;
-    /// Too uncertain for the foot limits, and within two of its sigmas of the attested height.
+    /// True if sigma is above 7.9 mm and the height is within 15 mm of the attested height.
     [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept;
-    /// For an unknown cell: rays prove that there is no ground at the attested height.
+    /// True for an unknown cell if rays prove that its ground is below the attested ground.
     [[nodiscard]] bool is_proven_lower(std::size_t at) const noexcept;
     /// True if the whole cell lies in the attested area.
     [[nodiscard]] bool is_attested(std::int64_t ix, std::int64_t iy) const noexcept;
@@ -123,7 +123,7 @@ class ReachableSurfaces {
     void add(std::uint16_t component) noexcept;
     [[nodiscard]] bool contains(std::uint16_t component) const noexcept;
     /// Adds surfaces in or beside the attested area that lie at most `step_tenth_mm` above or below
-    /// it: an attestation extends to the floor that it touches.
+    /// the area. So an attestation extends to the floor that it touches.
     void add_beside_attested(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
 
   private:

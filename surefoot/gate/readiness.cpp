@@ -4,7 +4,7 @@
 namespace surefoot::gate {
 namespace {
 
-/// Difference of two stamps. Unsigned arithmetic cannot overflow.
+/// Returns the difference of two stamps. Unsigned arithmetic cannot overflow.
 constexpr std::uint64_t gap(std::int64_t later, std::int64_t earlier) noexcept {
     return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
 }
@@ -19,18 +19,19 @@ const char* ReadinessLimits::problem() const noexcept {
     constexpr std::int64_t kSecond = 1'000'000'000;
     if (!detail::within(warmup_ns, kSecond / 2, 60 * kSecond) ||
         !detail::within(recover_ns, kSecond / 2, 60 * kSecond))
-        return "the time to warm up or to recover is outside 0.5-60 s";
+        return "warmup_ns and recover_ns must be from 0.5 s to 60 s";
     if (!detail::within(warmup_frames, 5, 10'000) || !detail::within(recover_frames, 5, 10'000))
-        return "the frames to warm up or to recover are outside 5-10000";
+        return "warmup_frames and recover_frames must be from 5 to 10000";
     if (!(warmup_timeout_ns > warmup_ns && warmup_timeout_ns <= 600 * kSecond) ||
         !(degraded_timeout_ns > recover_ns && degraded_timeout_ns <= 600 * kSecond))
-        return "a timeout is shorter than the time it waits for, or longer than 600 s";
+        return "warmup_timeout_ns must be above warmup_ns, degraded_timeout_ns above recover_ns, "
+               "and both at most 600 s";
     if (!detail::within(fastest_m_s, 0.01, 5.0) || !detail::within(fastest_rad_s, 0.01, 10.0))
-        return "the fastest motion is outside 0.01-5 m/s or 0.01-10 rad/s";
+        return "fastest_m_s must be from 0.01 to 5 m/s, and fastest_rad_s from 0.01 to 10 rad/s";
     if (!detail::within(jump_m, 0.001, 0.1) || !detail::within(jump_rad, 0.001, 0.2))
-        return "a jump is outside 1-100 mm or 0.001-0.2 rad";
+        return "jump_m must be from 0.001 to 0.1 m, and jump_rad from 0.001 to 0.2 rad";
     if (!detail::within(clock_gap_ns, kSecond / 1000, kSecond))
-        return "the gap between the clocks is outside 1 ms-1 s";
+        return "clock_gap_ns must be from 1 ms to 1 s";
     return nullptr;
 }
 
@@ -80,7 +81,7 @@ void Readiness::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexc
         const auto reason = static_cast<Reason>(i);
         if (present_.contains(reason) && is_latched(reason)) latch(reason, now_ns);
     }
-    // The fields of a damaged snapshot have no meaning, including its origin.
+    // No field of a damaged snapshot has a meaning, not even its origin.
     if (!present_.contains(Reason::internal)) check_succession(map, now_ns);
     judge(now_ns);
 }
@@ -120,7 +121,7 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // beyond a quarter turn no angle can be excluded
+    constexpr double kQuarter_rad = 1.5;  // above a quarter turn no angle can be excluded
     if (turn_rad >= kQuarter_rad) return false;
     // sin(x) <= x: an undetected turn is at most a few percent above the limit.
     const double sine = last_.cos_yaw * map.body_sin_yaw - last_.sin_yaw * map.body_cos_yaw;

@@ -9,13 +9,13 @@
 
 namespace surefoot::gate {
 
-/// Times and counts of healthy input before an OK is possible, and motion limits. ASSUMPTION: the
-/// times come from the hazard analysis. No value of a limit disables a rule.
+/// Times and counts of healthy input before an OK is possible, and limits of the motion.
+/// ASSUMPTION: the times come from the hazard analysis. No valid value of a limit disables a rule.
 struct ReadinessLimits {
-    std::int64_t warmup_ns = 2'000'000'000;  ///< required healthy time, with the frames below
+    std::int64_t warmup_ns = 2'000'000'000;  ///< required time of healthy input
     std::int32_t warmup_frames = 20;
     std::int64_t warmup_timeout_ns = 60'000'000'000;  ///< a longer warm-up is a fault
-    std::int64_t recover_ns = 1'000'000'000;          ///< required healthy time after a disturbance
+    std::int64_t recover_ns = 1'000'000'000;          ///< healthy time after a disturbance
     std::int32_t recover_frames = 10;
     std::int64_t degraded_timeout_ns = 10'000'000'000;
     /// Largest speed of base_link, and the extra motion between two snapshots that pose errors may
@@ -24,10 +24,10 @@ struct ReadinessLimits {
     double fastest_rad_s = 1.5708;
     double jump_m = 0.050;
     double jump_rad = 0.0524;
-    /// Largest difference of the two clocks; a larger one means that the computer slept.
+    /// Largest change of the clocks' difference; a larger change means that the computer slept.
     std::int64_t clock_gap_ns = 100'000'000;
 
-    /// The first reason why the limits are invalid, in words; nullptr = valid.
+    /// Returns the first problem of the limits as text, or nullptr if they are valid.
     [[nodiscard]] const char* problem() const noexcept;
 };
 
@@ -56,22 +56,22 @@ class Readiness {
     void snapshot_forged(std::int64_t now_ns) noexcept;
     /// Processes the passing of time. Call it more often than frames are expected.
     void tick(std::int64_t now_ns) noexcept;
-    /// Compares the steady clock without and with the time that the computer slept.
+    /// Compares the clock that stops while the computer sleeps with the clock that does not stop.
     void clocks(std::int64_t monotonic_ns, std::int64_t boottime_ns) noexcept;
     /// Reports a restart of perception: odom and map are new.
     void perception_restarted(std::int64_t now_ns) noexcept;
-    /// Executes an operator's re-arm request. Returns false and changes nothing without a fault,
-    /// without a passed self-test or with an invalid configuration.
+    /// Executes an operator's re-arm request. Returns false and changes nothing if there is no
+    /// fault, if the self-test has not passed, or if the configuration is invalid.
     [[nodiscard]] bool rearm(std::int64_t now_ns) noexcept;
-    /// Restores the fault of an earlier process: its `latched().bits()`, 0 = none. A restart of the
-    /// process does not clear a FAULT; only a re-arm does.
+    /// Restores the fault of an earlier process from its `latched().bits()`; 0 = no fault. A
+    /// restart of the process does not clear a FAULT; only a re-arm does.
     void resume_fault(std::uint64_t bits) noexcept;
-    /// Final state: the process ends.
+    /// Enters the final state, because the process ends.
     void stop() noexcept;
 
     [[nodiscard]] GateState state() const noexcept { return state_; }
     [[nodiscard]] ReasonSet latched() const noexcept { return latched_; }
-    /// The state and all present reasons against an OK.
+    /// Returns the state and all present reasons against an OK.
     [[nodiscard]] GateHealth health() const noexcept;
 
   private:
@@ -104,7 +104,7 @@ class Readiness {
     Sighting last_;
     std::int64_t now_ns_ = 0;
     std::int64_t entered_ns_ = 0;     ///< time at which the present state began
-    std::int64_t well_since_ns_ = 0;  ///< meaningful while `well_frames_` > 0
+    std::int64_t well_since_ns_ = 0;  ///< valid while `well_frames_` > 0
     std::int32_t well_frames_ = 0;
     bool tested_ = false;
     bool config_valid_ = false;

@@ -5,8 +5,8 @@
 
 namespace surefoot::gate {
 
-/// The reason why a step is not OK. The order defines the precedence: the first applicable reason
-/// is the primary one. ERROR codes come before terrain codes.
+/// The reason why a step is not OK. The order defines the precedence: the first reason that applies
+/// is the primary reason. ERROR codes come before terrain codes.
 enum class Reason : std::uint8_t {
     // ERROR: the gate cannot judge.
     internal,
@@ -49,12 +49,12 @@ enum class Reason : std::uint8_t {
     memory_uncertain,
     not_resolvable,
     support_area,  ///< too little of a foot is on its tread
-    edge_margin,   ///< enough support only if the edge position has no error
+    edge_margin,   ///< support is enough only if the edge position has no error
     none,          ///< only an OK has no reason
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
 
-/// The code in messages and logs, for example "UNKNOWN_CELLS".
+/// Returns the code in messages and logs, for example "UNKNOWN_CELLS".
 [[nodiscard]] const char* to_string(Reason reason) noexcept;
 
 [[nodiscard]] constexpr bool is_error(Reason reason) noexcept {
@@ -81,7 +81,7 @@ class ReasonSet {
         return reason != Reason::none && (bits_ >> static_cast<unsigned>(reason) & 1U) != 0;
     }
     [[nodiscard]] constexpr bool empty() const noexcept { return bits_ == 0; }
-    /// The reason of highest precedence, or `none` for an empty set.
+    /// Returns the reason of highest precedence, or `none` for an empty set.
     [[nodiscard]] constexpr Reason primary() const noexcept {
         for (int i = 0; i < kReasonCount; ++i) {
             if (contains(static_cast<Reason>(i))) return static_cast<Reason>(i);

@@ -9,7 +9,8 @@ namespace surefoot::gate {
 namespace {
 
 // Functions that test each of the thousands of cells of a verdict are always_inline. They have five
-// callers, so the compiler would not inline them (0.055 ms a verdict instead of 0.043).
+// callers, so the compiler would not inline them. Inlining reduces the time per verdict from 0.055
+// ms to 0.043 ms.
 
 /// A cell and its position.
 struct Place {
@@ -38,8 +39,9 @@ void deny(Findings& findings,
     findings.deny(reason, finding_at(place.ix, place.iy, place.foot, value, limit));
 }
 
-/// True if the sigma is at most `cell_sigma`. A single cell among eight known and certain ones may
-/// have twice that: it has just rejected measurements, and its neighbours have not.
+/// True if the sigma is at most `cell_sigma`. A single cell may have twice that sigma if its eight
+/// neighbours are known and keep the limit: the cell has just rejected measurements, and its
+/// neighbours have not.
 bool is_sure(const Scene& scene, const Place& place) noexcept {
     constexpr std::int64_t kAloneFactor = 2;
     const std::int64_t limit = scene.machine.limits.cell_sigma_tenth_mm;
@@ -50,7 +52,7 @@ bool is_sure(const Scene& scene, const Place& place) noexcept {
            });
 }
 
-/// The slow path of check_knowledge(): reports why a cell fails.
+/// Reports why a cell fails. This is the slow path of check_knowledge().
 bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const GroundCell& cell = place.cell;
@@ -69,8 +71,8 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return true;
 }
 
-/// The tests of every cell in every region: known, certain, not drifted. Returns false if the cell
-/// has no usable height. Nearly every cell passes after a few comparisons.
+/// Tests every cell in every region: known, certain, not drifted. Returns false if the cell has no
+/// usable height. Nearly every cell passes after a few comparisons.
 [[gnu::always_inline]] inline bool check_knowledge(const Scene& scene,
                                                    const Place& place,
                                                    Findings& findings) noexcept {
@@ -83,15 +85,15 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return check_doubtful(scene, place, findings);
 }
 
-/// Height of a cell above the stance.
+/// Returns the height of a cell above the stance.
 std::int64_t rise_of(const Scene& scene, const GroundCell& cell) noexcept {
     return cell.height_tenth_mm - scene.stance_tenth_mm;
 }
 
-/// The side of a limit relative to the stance height.
+/// The side of the stance height on which a limit lies.
 enum class Side : std::int8_t { up = 1, down = -1 };
 
-/// True if the ground of a cell lies below `limit` on this side of the stance by `factor` sigma.
+/// True if the ground of a cell keeps `limit` on this side of the stance by `factor` sigma.
 bool is_below(const Scene& scene,
               const GroundCell& cell,
               Side side,
@@ -101,7 +103,7 @@ bool is_below(const Scene& scene,
     return factor * static_cast<double>(cell.sigma_tenth_mm) <= static_cast<double>(slack);
 }
 
-/// The slow path of check_below(): reports why a cell fails.
+/// Reports why a cell fails. This is the slow path of check_below().
 void check_unsure(const Scene& scene,
                   const Place& place,
                   Side side,
@@ -127,10 +129,11 @@ void check_unsure(const Scene& scene,
          static_cast<std::int64_t>(static_cast<double>(limit - value) / factor));
 }
 
-/// Requires the ground of a cell below `limit` on this side of the stance by `sigma_factor` sigma.
-/// A single cell among eight that pass needs only one sigma: it has just rejected measurements, and
-/// real obstacles or holes are seldom smaller than a cell. A height beyond the limit is refused
-/// with `reason`; a height that is only uncertain is not resolvable.
+/// Requires that the ground of a cell keeps `limit` on this side of the stance by `sigma_factor`
+/// sigma. A single cell needs only one sigma if its eight neighbours pass: the cell has just
+/// rejected measurements, and real obstacles or holes are seldom smaller than a cell. A height
+/// beyond the limit is refused with `reason`; a height that is only uncertain is refused with
+/// NOT_RESOLVABLE.
 [[gnu::always_inline]] inline void check_below(const Scene& scene,
                                                const Place& place,
                                                Side side,
@@ -141,7 +144,7 @@ void check_unsure(const Scene& scene,
         check_unsure(scene, place, side, limit, reason, findings);
 }
 
-/// Requires that nothing hangs lower above the stance than `height`.
+/// Requires that nothing above the cell hangs lower than `height` above the stance.
 [[gnu::always_inline]] inline void check_overhead(const Scene& scene,
                                                   const Place& place,
                                                   std::int64_t height,
@@ -157,8 +160,8 @@ void check_unsure(const Scene& scene,
 }
 
 /// Tests one cell of a region: `always(place)` for a cell inside the map, `test(place)` for a known
-/// cell. Returns false outside the map, which ends the region, because its other outside cells add
-/// nothing.
+/// cell. Returns false outside the map. This ends the region, because further cells outside the map
+/// add nothing.
 template <typename Test, typename Always>
 bool check_cell(const Scene& scene,
                 std::int64_t ix,
@@ -188,8 +191,8 @@ void check_region(const Scene& scene,
         });
 }
 
-/// The space of the body over some neighbouring cells of a row: from the lowest part there to the
-/// highest, including free space between the parts.
+/// The space of the body over some neighbouring cells of a row: from the lowest to the highest part
+/// of the body there, including free space between the parts.
 struct BodyOver {
     std::int64_t low_tenth_mm = INT64_MAX;
     std::int64_t high_tenth_mm = INT64_MIN;
@@ -213,7 +216,8 @@ BodyOver body_over(std::span<const BodyPart> parts,
     return over;
 }
 
-/// Greatest height that a swinging foot may meet; on stairs the nosing that it steps over.
+/// Returns the greatest height that a swinging foot may meet. On stairs this is the nosing that the
+/// foot steps over.
 std::int64_t swing_height(const Scene& scene) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const bool stairs = scene.movement.movement_class == MovementClass::stair;
@@ -224,7 +228,7 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 
 constexpr auto kNothing = [](const Place&) noexcept {};
 
-/// Mean over the known cells under the present feet.
+/// Mean height of the known cells under the present feet.
 struct MeanHeight {
     std::int64_t sum = 0;
     std::int64_t known = 0;
@@ -325,7 +329,8 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
         rows = {std::min(rows.first, areas[i].rows().first),
                 std::max(rows.last, areas[i].rows().last)};
     }
-    // The parts lie above each other, so each cell is tested once for all parts above it.
+    // The parts of the body lie above each other. So each cell is tested once for all parts above
+    // it.
     for (std::int64_t iy = rows.first; iy <= rows.last; ++iy) {
         std::array<grid::FixedRun, Body::kMaxParts> runs;
         grid::FixedRun all{INT64_MAX, INT64_MIN};
@@ -366,8 +371,8 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
-        // A drop beside a table top is no drop for a foot on the floor. So drop evidence counts
-        // only on cells that a foot could stand on, not on higher ones.
+        // For a foot on the floor, a drop beside a table top is not a drop. So drop evidence counts
+        // only on cells on which a foot could stand, not on higher cells.
         const auto evidence = [&](const Place& place) {
             const bool above =
                 place.cell.known() && rise_of(scene, place.cell) > limits.swing_clearance_tenth_mm;

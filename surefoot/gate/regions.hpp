@@ -30,24 +30,24 @@ struct Scene {
                                  std::int64_t value_tenth_mm,
                                  std::int64_t limit_tenth_mm) noexcept;
 
-/// Heights of the ground under the present feet: means of the known cells; empty if no cell is
+/// Heights of the ground under the present feet: means of the known cells. Empty if no cell is
 /// known.
 struct StanceHeights {
-    std::optional<std::int64_t> both_tenth_mm;  ///< from the query if it has the height
+    std::optional<std::int64_t> both_tenth_mm;  ///< from the query if its source is `given`
     std::array<std::optional<std::int64_t>, 2> feet_tenth_mm;
 };
 [[nodiscard]] StanceHeights stance_heights(const Ground& ground,
                                            const Query& query,
                                            const Sweep& sweep) noexcept;
 
-/// Surfaces under the present feet at the height of the stance, and surfaces that touch the
-/// attested area.
+/// Returns the surfaces under the present feet at the height of the stance, and the surfaces that
+/// touch the attested area.
 [[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
 
-/// Tests of the four regions of safety.md 7 (4). Every cell must lie inside the map, be known
-/// (or attested), have a sigma below `cell_sigma` and a drift below `drift`. A height limit in
-/// mm must hold by `sigma_factor` sigma, else NOT_RESOLVABLE. A single cell may be less
-/// certain, but not out of limits, if its eight neighbours pass: it may be a rejected wrong
+/// Tests of the four regions of safety.md 7 (4). Every cell must lie inside the map, be known (or
+/// attested), have a sigma below `cell_sigma` and a drift below `drift`. A height limit in mm must
+/// hold by `sigma_factor` sigma, else NOT_RESOLVABLE. The sigma of a single cell may be larger if
+/// the cell keeps the limits and its eight neighbours pass: the cell may be a rejected wrong
 /// match.
 /// - check_stance: no cell under the present feet is a drop.
 void check_stance(const Scene& scene, Findings& findings) noexcept;

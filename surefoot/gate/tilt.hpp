@@ -9,7 +9,7 @@
 
 namespace surefoot::gate {
 
-/// Square root by Newton's method, because the gate calls no libm. Returns 0 for 0 and below.
+/// Square root by Newton's method, because the gate calls no libm. Returns 0 for zero and less.
 [[nodiscard]] constexpr double root(double square) noexcept {
     if (!(square > 0.0)) return 0.0;
     double value = square > 1.0 ? square : 1.0;

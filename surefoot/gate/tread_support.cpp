@@ -15,7 +15,7 @@ constexpr std::int64_t magnitude(std::int64_t x) noexcept {
     return x < 0 ? -x : x;
 }
 
-/// factor * x, rounded up and never less than x.
+/// Returns factor * x, rounded up and never less than x.
 std::int64_t times_up(double factor, std::int64_t x) noexcept {
     // in range: x has 32 bits; sigma_factor is at most 10 (Machine::problem())
     return std::max(x, static_cast<std::int64_t>(factor * static_cast<double>(x)) + 1);
@@ -29,8 +29,8 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// The axes of a landed foot. Positions count from its middle, along = forward, across = to the
-/// left, and are doubled.
+/// The axes of a landed foot. Positions count from the middle of the foot and are doubled: along =
+/// forward, across = to the left.
 class FootAxes {
   public:
     struct Place {
@@ -51,7 +51,8 @@ class FootAxes {
           ankle_(2 * scene.machine.ankle_from_heel_tenth_mm - length_),
           ankle_reach_(scene.machine.limits.patch_side_tenth_mm) {}
 
-    /// `doubled`: position in odom relative to the middle of the foot, doubled.
+    /// Returns the position along the foot axes. `doubled`: position in odom relative to the middle
+    /// of the foot, doubled.
     [[nodiscard]] Place place_of(FixedPoint doubled) const noexcept {
         return {rounded(doubled.x * pose_.cos_yaw + doubled.y * pose_.sin_yaw),
                 rounded(doubled.y * pose_.cos_yaw - doubled.x * pose_.sin_yaw)};
@@ -60,16 +61,17 @@ class FootAxes {
         return place_of(ground_.doubled_center(ix, iy, middle_));
     }
     [[nodiscard]] std::int64_t reach() const noexcept { return reach_; }
-    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< doubled half of it
+    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< half of it, doubled
     [[nodiscard]] std::int64_t width() const noexcept { return width_; }
     [[nodiscard]] std::int64_t ankle() const noexcept { return ankle_; }
-    /// Half extent of the ankle area along the foot: half a patch.
+    /// Returns half of the extent of the ankle area along the foot: half a patch, doubled.
     [[nodiscard]] std::int64_t ankle_reach() const noexcept { return ankle_reach_; }
     /// True if any part of a cell lies under the ankle or touches it.
     [[nodiscard]] bool touches_ankle(const Place& middle) const noexcept {
         return magnitude(middle.along - ankle_) < ankle_reach_ + reach_;
     }
-    /// Distance of the nearest part of a cell from the foot, doubled; negative = under the foot.
+    /// Returns the distance of the nearest part of a cell from the foot, doubled. Negative = under
+    /// the foot.
     [[nodiscard]] std::int64_t gap(const Place& middle) const noexcept {
         return std::max(magnitude(middle.along) - length_, magnitude(middle.across) - width_) -
                reach_;
@@ -90,7 +92,7 @@ class FootAxes {
     std::int64_t ankle_reach_;
 };
 
-/// Mean height above the stance of the cells under the ankle.
+/// Finds the mean height above the stance of the cells under the ankle.
 void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const FootAxes axes(scene, foot);
     std::int64_t sum = 0;
@@ -108,8 +110,8 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
 }
 
-/// Finds where the first ground begins that is lower than the tread by a drop. A cell with drop
-/// evidence is the last cell before it.
+/// Finds the start of the first ground that is lower than the tread by a drop. A cell with drop
+/// evidence is the last cell of the tread.
 void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const FootAxes axes(scene, foot);
@@ -137,7 +139,7 @@ void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
         });
 }
 
-/// A cell of a band during its tests.
+/// A cell of a drop band during its tests.
 struct BandCell {
     const GroundCell& cell;
     Finding here;
@@ -148,7 +150,7 @@ struct BandCell {
         finding.limit_tenth_mm = limit;
         findings.deny(reason, finding);
     }
-    /// Requires `value` below `limit` by `sigma_factor` sigma; see regions.cpp.
+    /// Requires `value` below `limit` by `sigma_factor` sigma, as in regions.cpp.
     void check_below(const GateLimits& limits,
                      std::int64_t value,
                      std::int64_t limit,
@@ -161,7 +163,7 @@ struct BandCell {
             deny(findings, Reason::not_resolvable, cell.sigma_tenth_mm, limit - value);
         }
     }
-    /// The tests of every cell in every region.
+    /// Runs the tests that every cell of every region must pass.
     [[nodiscard]] bool check_knowledge(const GateLimits& limits, Findings& findings) const {
         ++findings.evidence.cells;
         if (!cell.known()) {
@@ -217,12 +219,13 @@ void check_band(const Scene& scene,
             }
             return true;
         });
-    // A ridge is no tread: it has lower ground at both ends of the foot.
+    // A ridge does not count as a tread: it has lower ground at both ends of the foot.
     if (tread.toe_edge != Tread::kNone && tread.heel_edge != Tread::kNone)
         findings.deny(Reason::drop_off);
 }
 
-/// The supported part of a foot: its ends, from the middle, doubled; the heel end counts backward.
+/// The ends of the supported part of a foot, from the middle, doubled. The heel end counts
+/// backward.
 struct Carried {
     std::int64_t toe = 0;
     std::int64_t heel = 0;
@@ -238,7 +241,7 @@ bool is_enough(const Carried& carried, const FootAxes& axes, const GateLimits& l
            carried.heel >= -axes.ankle() + axes.ankle_reach();
 }
 
-/// True if the edge has numbers in the range of the exact geometry, and a valid sigma.
+/// True if the numbers of the edge are in the range of the exact geometry, and its sigma is valid.
 bool is_sound(const grid::SnapshotEdge& edge) noexcept {
     constexpr std::int64_t kFarthest = 1'000'000;  // 100 m
     const auto within = [](std::int64_t x) { return x >= -kFarthest && x <= kFarthest; };
@@ -247,8 +250,8 @@ bool is_sound(const grid::SnapshotEdge& edge) noexcept {
            edge.across_sigma_tenth_mm >= 0;
 }
 
-/// Least extent of the tread by the nosing line of the snapshot, before drift. Empty if no line is
-/// this nosing. Same coordinates as Tread's edges.
+/// Returns the shortest extent of the tread by the nosing line of the snapshot, without drift.
+/// Empty if no line of the snapshot is this nosing. Uses the coordinates of Tread's edges.
 std::optional<std::int64_t> nosing_line(const Scene& scene,
                                         const FootSweep& foot,
                                         const FootAxes& axes,
@@ -285,8 +288,8 @@ std::optional<std::int64_t> nosing_line(const Scene& scene,
     return nearest;
 }
 
-/// One end of the tread minus its uncertainty. A line may reduce the uncertainty of a cell, but the
-/// cells decide where the tread ends.
+/// Returns one end of the tread minus its uncertainty. A line may reduce the uncertainty of a cell,
+/// but the cells decide where the tread ends.
 std::int64_t sure_end(const Scene& scene,
                       const FootSweep& foot,
                       const FootAxes& axes,
@@ -314,7 +317,7 @@ std::array<FixedPoint, 4> corners_of(const FixedPose& pose,
             to_odom(pose, x - half_x, y + half_y)};
 }
 
-/// Tests the supported part like a whole foot.
+/// Tests the supported part of the foot with the rules of a whole foot.
 void check_carried(const Scene& scene,
                    const FootSweep& foot,
                    const GroundBox& box,
@@ -419,7 +422,7 @@ void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept 
             if (other.knowledge != Knowledge::measured || cell.component == other.component) return;
             const bool from_cell = here.contains(cell.component);
             if (from_cell == here.contains(other.component)) return;
-            const GroundCell& low = from_cell ? cell : other;  // the reachable one
+            const GroundCell& low = from_cell ? cell : other;  // the cell on the reachable surface
             const GroundCell& next = from_cell ? other : cell;
             const std::int64_t rise = next.height_tenth_mm - low.height_tenth_mm;
             if (rise <= step.up_tenth_mm && -rise <= step.down_tenth_mm)

@@ -16,9 +16,9 @@ struct Tread {
     static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
 
     bool known = false;              ///< every cell under the ankle is known
-    std::int64_t rise_tenth_mm = 0;  ///< above the stance; mean of the cells under the ankle
-    /// Begin of the first cell that is lower than the tread by a drop, from the ankle towards the
-    /// toes and towards the heel (there counted backward). kNone: no such cell in the band.
+    std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
+    /// Start of the first cell that is lower than the tread by a drop. `heel_edge` counts backward
+    /// from the middle of the foot. kNone: no such cell in the band.
     std::int64_t toe_edge = kNone;
     std::int64_t heel_edge = kNone;
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band
@@ -31,26 +31,26 @@ using Treads = std::array<Tread, 2>;
 /// Rise of the body at the target above its present height; 0 for a movement down.
 [[nodiscard]] std::int64_t lift_of(const Treads& treads) noexcept;
 
-/// Tests the body at its lower height, for a movement down. At the target, everything must be lower
-/// above the treads than the lower edge of each part of the body.
+/// Tests the body at its lower height, for a movement down. At the target, everything above the
+/// treads must be lower than the lower edge of each part of the body.
 void check_body_lowered(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
-/// Tests the drop bands of landing feet on treads. Like check_bands, with these differences:
-/// heights count from the tread. Nothing within the foot's margin and drift may be higher than
-/// `swing_clearance` above the tread. At one end of the foot, outside the ankle, the ground may be
-/// lower by one step of the class (by `sigma_factor` sigma): the next tread. Unknown ground is no
-/// tread. Both feet must land at one height.
+/// Tests the drop bands of landing feet on treads. Differs from check_bands: heights count from the
+/// tread. Nothing within the foot's margin and drift may be higher than `swing_clearance` above the
+/// tread. At one end of the foot, outside the ankle, the next tread may be lower by one step of the
+/// class (by `sigma_factor` sigma). Unknown ground does not count as a tread. Both feet must land
+/// at one height.
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the ground under one landing foot on a tread:
-/// 1. The tread ends where the first lower cell begins, minus an uncertainty. This is one cell,
-/// because the map can show objects up to a cell beside their position, and `sigma_factor` times
-/// the drift. If the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces
-/// the cell if that is less.
-/// 2. The rest carries the ankle and at least `tread_share` of the foot. No end overhangs by more
-/// than `tread_overhang`. Otherwise SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks the
-/// rule.
-/// 3. That part of the foot passes the rules of flat ground (check_landing).
+/// 1. The tread ends where the first lower cell begins, minus an uncertainty: one cell, because the
+///    map can show objects up to a cell beside their position, plus `sigma_factor` times the drift.
+///    If the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces the cell
+///    if that is less.
+/// 2. This tread carries the ankle and at least `tread_share` of the foot. No end overhangs by more
+///    than `tread_overhang`. Otherwise SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks
+///    the rule.
+/// 3. The part of the foot on the tread passes the rules of flat ground (check_landing).
 void check_tread(const Scene& scene,
                  const FootSweep& foot,
                  const GroundBox& box,
@@ -58,8 +58,8 @@ void check_tread(const Scene& scene,
                  const ReachableSurfaces& reachable,
                  Findings& findings) noexcept;
 
-/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` one. They
-/// are at most one step of the class higher or lower: one step, not a whole flight.
+/// Adds the surfaces that begin in the path of a foot within two cells of a `reachable` surface.
+/// They are at most one step of the class higher or lower, so a whole flight is not added.
 void add_a_step_away(const Scene& scene, ReachableSurfaces& reachable) noexcept;
 
 }  // namespace surefoot::gate

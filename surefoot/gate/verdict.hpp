@@ -8,23 +8,23 @@
 namespace surefoot::gate {
 
 enum class Decision : std::uint8_t { error = 0, not_traversable = 1, ok = 2 };
-/// "ERROR", "NOT_TRAVERSABLE", "OK".
+/// Returns "ERROR", "NOT_TRAVERSABLE" or "OK".
 [[nodiscard]] const char* to_string(Decision decision) noexcept;
 
 enum class Foot : std::uint8_t { none, left, right };
 
 /// Facts that must all be proven before the gate says OK.
 enum class Proof : std::uint8_t {
-    process_ready,    ///< state ready, no fault raised
+    process_ready,    ///< the state is `ready`, and no fault is raised
     machine_valid,    ///< the machine file passes its own check
-    snapshot_intact,  ///< layout, ranges and checksums are valid (cells: see below)
-    numbers_valid,    ///< pose, heights and areas of the query
-    stamps_fresh,     ///< neither old nor from the future
-    gravity_known,    ///< measured, not assumed
-    pose_healthy,     ///< odometry neither lost nor degraded
+    snapshot_intact,  ///< layout, ranges and checksums are valid; see `cells_intact`
+    numbers_valid,    ///< pose, heights and areas of the query are valid
+    stamps_fresh,     ///< no time stamp is too old or in the future
+    gravity_known,    ///< gravity is measured, not assumed
+    pose_healthy,     ///< the odometry is neither lost nor degraded
     camera_healthy,   ///< the images are new and complete
     command_known,    ///< the machine file has this movement and its class is enabled
-    cells_intact,     ///< the map rows that are read equal the sealed ones
+    cells_intact,     ///< the map rows that are read are unchanged since sealing
     stance_known,     ///< the ground under the present feet is known
     corridors_clear,  ///< no obstacle in the path of either foot
     body_clear,       ///< no obstacle in the path of the body
@@ -33,18 +33,18 @@ enum class Proof : std::uint8_t {
     right_supported,  ///< the right landing foot has safe ground
     count
 };
-/// The name of a proof, for example "corridors_clear".
+/// Returns the name of a proof, for example "corridors_clear".
 [[nodiscard]] const char* to_string(Proof proof) noexcept;
 
 /// The numbers behind a verdict. Lengths are in units of 0.1 mm.
 struct Evidence {
-    /// The worst cell of the primary reason (centre, odom).
+    /// The cell with the worst finding of the primary reason (its centre in odom).
     bool has_worst_cell = false;
     std::int64_t worst_x_tenth_mm = 0;
     std::int64_t worst_y_tenth_mm = 0;
     Foot foot = Foot::none;           ///< the landing foot that the primary reason is about
-    std::int64_t value_tenth_mm = 0;  ///< the value at that cell, in the unit of the limit
-    std::int64_t limit_tenth_mm = 0;  ///< the limit that it breaks; both are 0 if no length decides
+    std::int64_t value_tenth_mm = 0;  ///< value at the worst cell, in the unit of the limit
+    std::int64_t limit_tenth_mm = 0;  ///< limit that the value breaks; both 0 if no length decides
     bool overhead = false;            ///< hanging object: the value is the height of its lower side
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
@@ -55,14 +55,14 @@ struct Evidence {
     std::int64_t cells = 0;                   ///< cells read; a cell counts once per test
     std::int64_t known_cells = 0;             ///< cells that are measured or attested
     std::int64_t attested_cells = 0;          ///< cells that only an attestation makes known
-    std::int64_t height_delta_tenth_mm = 0;   ///< landing foot with the largest height difference
+    std::int64_t height_delta_tenth_mm = 0;   ///< largest rise or fall of a landing foot
     /// Squared tangent of the steeper foot plane's tilt, with the uncertainty of the vertical
     /// added.
     double max_tilt_tan_sq = 0.0;
     double max_patch_sigma_sq_tenth_mm2 = 0.0;
     std::int64_t max_drift_tenth_mm = 0;
     std::int64_t min_clearance_tenth_mm =
-        0xffff;  ///< free height over the cells asked; 0xffff = open
+        0xffff;  ///< lowest free height above the tested cells; 0xffff = open
 
     [[nodiscard]] constexpr bool lacks(Proof proof) const noexcept {
         return (unproven >> static_cast<unsigned>(proof) & 1U) != 0;
@@ -70,14 +70,14 @@ struct Evidence {
 };
 
 /// The gate's answer about one movement. A default Verdict is an ERROR. Only decide() makes an OK,
-/// from a complete list of proofs. The verdict is void from `valid_until_ns` on.
+/// from a complete list of proofs. The verdict is invalid from `valid_until_ns` on.
 struct Verdict {
     Decision decision = Decision::error;
     ReasonSet reasons{Reason::internal};
     Reason primary = Reason::internal;
     Evidence evidence;
     std::uint8_t command = 0;
-    std::uint64_t connection = 0;  ///< copied from the query, like the sequence
+    std::uint64_t connection = 0;  ///< copied from the query, as is `sequence`
     std::uint64_t sequence = 0;
     std::uint64_t map_version = 0;
     std::uint64_t config_hash = 0;

@@ -28,14 +28,15 @@ std::string length(std::int64_t tenth_mm) {
     return fixed(value_m, magnitude(value_m) < 0.0995 ? 3 : 2) + " m";
 }
 
-/// Signed distance of a point from an interval around `center`; 0 inside.
+/// Returns the signed distance of a point from an interval around `center`; 0 inside.
 double beyond(double at, double center, double size) {
     if (at > center + size / 2.0) return at - (center + size / 2.0);
     if (at < center - size / 2.0) return at - (center - size / 2.0);
     return 0.0;
 }
 
-/// Position relative to the present stance, for example "0.31 m ahead of the left foot".
+/// Returns the position relative to the present stance, for example "0.31 m ahead of the left
+/// foot".
 std::string place(const Evidence& evidence, const Query& query, const Machine& machine) {
     const double dx = metres(evidence.worst_x_tenth_mm - query.x_tenth_mm);
     const double dy = metres(evidence.worst_y_tenth_mm - query.y_tenth_mm);

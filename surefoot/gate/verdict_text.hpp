@@ -7,8 +7,8 @@
 
 namespace surefoot::gate {
 
-/// One sentence for people: the obstacle, its position relative to the machine, value and limit.
-/// Example: "drop of 0.17 m, 0.31 m ahead of the left foot (limit 0.05 m)". Decides nothing.
+/// Returns one sentence for people: obstacle, its position relative to the machine, value and
+/// limit. Example: "drop of 0.17 m, 0.31 m ahead of the left foot (limit 0.05 m)". Decides nothing.
 [[nodiscard]] std::string text_of(const Verdict& verdict,
                                   const Query& query,
                                   const Machine& machine);

@@ -12,14 +12,14 @@ namespace surefoot::machines {
 
 /// A file of the repository that is embedded in the program.
 struct Resource {
-    std::string_view name;  ///< "machines/rex.yaml"
+    std::string_view name;  ///< for example "machines/rex.yaml"
     std::string_view text;
 };
-/// All files of machines/.
+/// Returns all files of machines/.
 [[nodiscard]] const std::vector<Resource>& built_in_machines();
 
-/// Text of `folder/name.yaml` in `resources`. An unknown name is a usage error that lists the known
-/// names.
+/// Returns the text of `folder/name.yaml` in `resources`. An unknown name is a usage error that
+/// lists the known names.
 [[nodiscard]] Result<std::string> find_resource(const std::vector<Resource>& resources,
                                                 std::string_view folder,
                                                 std::string_view name);

@@ -163,7 +163,7 @@ void Odometry::start_at(const Pose& T_odom_body) {
 }
 
 MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
-    const FrameStatus frame_status = impl_->watch.look(frame);
+    const FrameStatus frame_status = impl_->watch.check(frame);
     if (frame_status.is_new_and_whole()) return update_whole(frame, executor);
     skip(frame, frame_status);
     return unseen_motion(impl_->config, impl_->last, frame.time_ns, frame_status);

@@ -9,7 +9,7 @@
 
 namespace surefoot {
 
-/// Fills settings that the user did not set with values of the camera and the machine file.
+/// Takes values of the camera and the machine file for settings that the user did not set.
 void fit_settings(const camera::StereoRig& rig,
                   const std::optional<io::MachineFile>& machine,
                   Settings& settings);

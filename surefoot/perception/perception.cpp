@@ -83,8 +83,8 @@ gate::Verdict Perception::verdict(std::uint8_t command) const {
     if (!machine_ || !is_started()) return refused;
     const auto map = snapshot();
     if (!map) return refused;
-    // The verdict holds for the moment right after the last frame. So the map is old if no frame
-    // updated it for long.
+    // The verdict holds for the moment right after the last frame. So the map counts as old if no
+    // frame has updated it for a long time.
     const gate::GateHealth health{gate::GateState::ready, {}};
     return gate::decide(machine_->machine,
                         gate::query_at_body(command, **map),

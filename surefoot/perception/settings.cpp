@@ -37,10 +37,11 @@ Result<Settings> load_settings(const SettingsRequest& request, io::Notes* notes)
             const std::vector<std::string> names(std::begin(traversability::kPresetNames),
                                                  std::end(traversability::kPresetNames));
             const std::string likely = did_you_mean(request.preset, names);
-            return usage_error(fmt::format("--preset {}: there is no such preset{} There are: {}",
-                                           request.preset,
-                                           likely.empty() ? "." : likely,
-                                           fmt::join(names, ", ")));
+            return usage_error(
+                fmt::format("--preset {}: there is no such preset{} Known presets: {}",
+                            request.preset,
+                            likely.empty() ? "." : likely,
+                            fmt::join(names, ", ")));
         }
         settings.pipeline.traversability = *preset;
     }
@@ -51,8 +52,8 @@ Result<Settings> load_settings(const SettingsRequest& request, io::Notes* notes)
     if (settings.sim.sensor == sim::Sensor::analytic && own_view) {
         return usage_error(
             "camera.rectified_focal_px, .rectified_width_px, .rectified_height_px and "
-            ".max_view_deg cannot be set with sim.sensor = analytic, whose depth is rectified "
-            "already");
+            ".max_view_deg cannot be set with sim.sensor = analytic, because this "
+            "sensor computes rectified depth");
     }
     return settings;
 }

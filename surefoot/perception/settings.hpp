@@ -30,10 +30,10 @@ struct Settings {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Sources of the settings. A later source wins: defaults, preset, file, overrides.
+/// Sources of the settings: defaults, preset, file, overrides. Later sources have priority.
 struct SettingsRequest {
     std::string preset;                  ///< traversability preset, one of kPresetNames
-    std::string config_file;             ///< YAML, as `surefoot config` writes it
+    std::string config_file;             ///< YAML file, as `surefoot config` writes it
     std::vector<std::string> overrides;  ///< "elevation.resolution_m=0.02"
 };
 
@@ -45,12 +45,12 @@ struct SettingsRequest {
 [[nodiscard]] Status apply_overrides(const SettingsRequest& request,
                                      const io::DescribeConfig& describe,
                                      io::Notes* notes = nullptr);
-/// Hash of the keys and values of all settings. The map snapshot and each verdict carry it.
+/// Returns the hash of the keys and values of all settings. Map snapshots and verdicts carry it.
 [[nodiscard]] std::uint64_t hash_of(const Settings& settings);
 
 /// Returns an executor with this many threads; 0 = one per core of the computer.
 [[nodiscard]] std::unique_ptr<Executor> make_executor(int threads = 0);
-/// Steady clock for stage times [ns].
+/// Returns the time of the steady clock, for stage times [ns].
 [[nodiscard]] std::int64_t steady_now_ns();
 
 }  // namespace surefoot

@@ -14,8 +14,8 @@
 namespace surefoot {
 
 /// Executor with `threads` threads, the caller included. A call during another call (nested, or
-/// from a second thread) runs on its own thread only. If an item throws, the items already started
-/// finish, the others do not run, and the call rethrows the first exception.
+/// from a second thread) runs only on the thread of the caller. If an item throws, the items
+/// already started finish, the others do not run, and the call rethrows the first exception.
 class ThreadPool final : public Executor {
   public:
     explicit ThreadPool(int threads);
@@ -38,7 +38,7 @@ class ThreadPool final : public Executor {
     const std::function<void(int)>* work_ = nullptr;  ///< null while no call runs
     int count_ = 0;
     int next_ = 0;
-    // Written with the mutex held; read without the mutex.
+    // Written with the mutex held. Readers do not hold the mutex.
     std::atomic<int> running_ = 0;
     std::atomic<int> calls_ = 0;
     bool stopping_ = false;

@@ -10,12 +10,11 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Largest accepted difference, as a share of the known height. No mount and no kerb explains so
-/// much.
+/// Largest accepted difference between measured and known height, as a share of the known height.
+/// No mount and no kerb explains a larger difference.
 constexpr double kMostHeightShare = 0.35;
 
-/// Returns the rotation that turns `up_body` to odom z and keeps the heading of base_link at zero
-/// yaw.
+/// Returns the rotation that turns `up_body` to odom z and sets the heading of base_link to zero.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     const Eigen::Vector3d z = up_body.normalized();
     Eigen::Vector3d x = Eigen::Vector3d::UnitX() - z.x() * z;
@@ -33,7 +32,7 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Returns the text that names the obstacle to the best plane of a search.
+/// Returns the text that names the defect of the best plane of a search.
 const char* obstacle(ground::GroundReason reason) {
     switch (reason) {
         case ground::GroundReason::rough: return ", too uneven for a plane";
@@ -42,7 +41,7 @@ const char* obstacle(ground::GroundReason reason) {
     }
 }
 
-/// Returns the text that says why there is no plane, and what helps.
+/// Returns the text that names the cause of a missing plane and the correction.
 std::string without_plane(ground::CalibrationReason reason, const GroundView& look) {
     if (reason == ground::CalibrationReason::disagreement)
         return fmt::format(
@@ -61,7 +60,7 @@ std::string without_plane(ground::CalibrationReason reason, const GroundView& lo
     return fmt::format(
         "ground plane: {}: show more level floor in the first frames, or give a machine file with "
         "the height and pitch of the mount, or set mount.pitch_deg (and "
-        "ground.expected_height_m, of base_link)",
+        "ground.expected_height_m, the height of base_link)",
         to_string(reason));
 }
 
@@ -106,7 +105,7 @@ Direction find_up(const AlignmentConfig& config,
         alignment.reason = fmt::format(
             "tilt and height from the ground plane, {}{}; the plane itself is known within "
             "{:.2f} deg, but its slope is unknown: 1 sigma of the vertical {:.1f} deg, which the "
-            "gate subtracts from its tilt limit (an IMU measures the vertical)",
+            "gate subtracts from its tilt limit (use an IMU to measure the vertical)",
             sightings(ground),
             look.searched
                 ? fmt::format(" (mounting unknown: tilt 0-{:.0f} deg was searched, {:.0f} "
@@ -134,31 +133,36 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         pitch_deg,
         -90.0,
         90.0,
-        "pitch of base_link below the horizon; used if neither a plane nor an IMU measures it");
+        "pitch of base_link below the horizon; used if neither a ground plane nor an IMU measures "
+        "the pitch");
     visitor.number("still_gyro_rad_s",
                    still_gyro_rad_s,
                    0.0,
                    1.0,
-                   "largest turn rate at which the accelerometer measures gravity");
+                   "largest turn rate at which the machine counts as standing still, so that the "
+                   "accelerometer measures gravity");
     visitor.number(
         "still_force_m_s2",
         still_force_m_s2,
         0.0,
         5.0,
-        "largest deviation of the mean specific force from 9.81 when the machine stands still");
+        "largest difference between the mean specific force and 9.81 m/s2 at which the machine "
+        "counts as standing still");
     visitor.group("gravity", gravity);
-    visitor.number("max_lean_deg",
-                   max_lean_deg,
-                   0.1,
-                   45.0,
-                   "lean of base_link against its first attitude above which the mount counts as "
-                   "moved, if the lean lasts");
-    visitor.number("max_sway_deg",
-                   max_sway_deg,
-                   0.1,
-                   90.0,
-                   "lean of base_link, above that of any gait, from which the mount counts as "
-                   "moved almost at once");
+    visitor.number(
+        "max_lean_deg",
+        max_lean_deg,
+        0.1,
+        45.0,
+        "limit of the lean of base_link, measured from its first attitude; the mount counts "
+        "as moved if the lean stays above this limit");
+    visitor.number(
+        "max_sway_deg",
+        max_sway_deg,
+        0.1,
+        90.0,
+        "lean of base_link at which the mount counts as moved almost at once; set it above "
+        "the lean of any gait");
     visitor.number("max_lean_before_step_deg",
                    max_lean_before_step_deg,
                    0.1,
@@ -169,13 +173,15 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         max_lean_still_s,
         0.1,
         600.0,
-        "longest time of a lean above max_lean_deg at rest; after it the mount counts as moved");
-    visitor.number("max_lean_walking_s",
-                   max_lean_walking_s,
-                   0.1,
-                   600.0,
-                   "longest total time of a lean above max_lean_deg without an upright phase; "
-                   "after it the mount counts as moved");
+        "longest lean above mount.max_lean_deg while the machine stands still; after a longer lean "
+        "the mount counts as moved");
+    visitor.number(
+        "max_lean_walking_s",
+        max_lean_walking_s,
+        0.1,
+        600.0,
+        "longest total lean above mount.max_lean_deg since the last upright phase; after a "
+        "longer total lean the mount counts as moved");
     visitor.number("wait_for_exposure_s",
                    wait_for_exposure_s,
                    0.0,
@@ -185,7 +191,7 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    wait_for_ground_s,
                    0.0,
                    600.0,
-                   "longest search for the ground if nothing else gives gravity and "
+                   "longest search for the ground if no other source gives gravity and "
                    "ground.expected_height_m is known");
     visitor.number("wait_for_search_s",
                    wait_for_search_s,
@@ -196,8 +202,9 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
 }
 
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
-    // base_link pitched down by p: x_body = (cos p, 0, -sin p), z_body = (sin p, 0, cos p) in level
-    // axes, so up = (0, 0, 1) has the components -sin p along x_body and cos p along z_body.
+    // base_link is pitched down by p. In level axes x_body = (cos p, 0, -sin p) and z_body = (sin
+    // p, 0, cos p). So up = (0, 0, 1) has the components -sin p along x_body and cos p along
+    // z_body.
     const double pitch_rad = config.pitch_deg / kDegPerRad;
     return {-std::sin(pitch_rad), 0.0, std::cos(pitch_rad)};
 }
@@ -219,12 +226,12 @@ Alignment place_odom(const AlignmentConfig& config,
     const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
     if (alignment.has_ground && expected_height_m > 0.0 &&
         off_m > kMostHeightShare * expected_height_m) {
-        // All lengths would be wrong by the same factor, and nothing else reveals it.
+        // All lengths would be wrong by the same factor, and no other test detects this error.
         alignment.gravity_source = grid::GravitySource::assumed;
         alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(
             "the ground lies {:.2f} m below base_link, but {:.2f} m are expected "
-            "(ground.expected_height_m, from the machine file; limit {:.0f} % off): "
+            "(ground.expected_height_m, from the machine file; largest difference {:.0f} %): "
             "check the rig's baseline, its focal length and the machine file, and "
             "show near ground; the gate answers ERROR on this map",
             alignment.ground_height_m,

@@ -15,24 +15,24 @@
 namespace surefoot::pipeline {
 
 struct AlignmentConfig {
-    double pitch_deg = 0.0;          ///< base_link below the horizon if not measured
-    double still_gyro_rad_s = 0.15;  ///< MEMS bias (EuRoC 0.08) plus noise. Above it,
-                                     ///< the accelerometer does not measure gravity
-    double still_force_m_s2 = 0.3;   ///< largest deviation of the mean force from 9.81 at rest
+    double pitch_deg = 0.0;          ///< pitch below the horizon if not measured
+    double still_gyro_rad_s = 0.15;  ///< largest turn rate that counts as rest:
+                                     ///< MEMS bias (EuRoC 0.08 rad/s) plus noise
+    double still_force_m_s2 = 0.3;   ///< largest |mean force - 9.81 m/s^2| at rest
     GravityConfig gravity;           ///< uncertainty of the plane and the accelerometer
     /// The mount counts as moved (mount_monitor.hpp) if base_link leans by over `max_lean_deg` from
     /// its first attitude for `max_lean_still_s` at rest, or `max_lean_walking_s` in all without an
-    /// upright phase; beyond `max_sway_deg` almost at once. ASSUMPTION, from the simulated REX: it
-    /// returns within 0.3 deg, sways by 5.4 deg, stands leaning for 2 s at most.
+    /// upright phase; above `max_sway_deg` almost at once. ASSUMPTION, from the simulated REX: it
+    /// sways by 5.4 deg, returns within 0.3 deg, and stands leaning for at most 2 s.
     double max_lean_deg = 1.0;
-    /// No step may begin while base_link leans more: it is in mid-step, or it was knocked.
+    /// No step may begin while base_link leans more: the machine is in mid-step, or was knocked.
     double max_lean_before_step_deg = 0.7;
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_exposure_s = 60.0;  ///< limit; Lange 2016: warm-up in the sun 10-30 s
-    double wait_for_ground_s = 10.0;    ///< limit for the search of the vertical; see start.hpp
-    double wait_for_search_s = 3.0;     ///< limit if the mounting is unknown; see start.hpp
+    double wait_for_exposure_s = 60.0;  ///< longest wait; warm-up: 10-30 s (Lange 2016)
+    double wait_for_ground_s = 10.0;    ///< longest search of the vertical: start.hpp
+    double wait_for_search_s = 3.0;     ///< longest search if mounting unknown: start.hpp
     void describe(ConfigVisitor& visitor);
 };
 
@@ -42,20 +42,20 @@ struct Alignment {
     Pose T_odom_body;  ///< pose of the first frame
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     bool has_ground = false;
-    double ground_height_m = 0.0;  ///< base_link above the ground; 0 without ground
+    double ground_height_m = 0.0;  ///< height of base_link; 0 without ground
     /// One sigma of the angle between odom's z axis and the vertical, about any horizontal axis.
     /// NaN if gravity is assumed.
     double tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
     double ground_lean_rad = 0.0;  ///< tilt of the ground in odom, if an IMU measures gravity
-    std::string reason;            ///< sources used and not used, with the causes
+    std::string reason;            ///< names used and unused sources and causes
 };
 
 /// Result of the search for the ground; the text of `Alignment::reason` uses it.
 struct GroundView {
-    bool searched = false;  ///< mounting unknown: searched over `ground.search_down_deg`
+    bool searched = false;  ///< true: searched over `ground.search_down_deg`
     double search_down_deg = 0.0;
     double image_share = 0.0;  ///< image share of the best plane in any frame
-    ground::GroundReason reason = ground::GroundReason::few_points;  ///< reason of that plane
+    ground::GroundReason reason = ground::GroundReason::few_points;  ///< reason against that plane
 };
 
 /// Returns the up direction in base_link of a level machine with the configured pitch.

@@ -6,7 +6,7 @@ namespace surefoot::pipeline {
 CameraState CameraMonitor::add(const FrameStatus& frame_status, ExposureState light) noexcept {
     const bool arrived = frame_status.is_new_and_whole();
     const bool good = arrived && light == ExposureState::well_exposed;
-    // Damaged images never became a frame. They lie between the previous frame and this one.
+    // Damaged images never became a frame. They arrived between the previous frame and this frame.
     const int bad_now = frame_status.damaged + (good ? 0 : 1);
     if (bad_now > 0) {
         bad_ += bad_now;

@@ -13,11 +13,11 @@ namespace surefoot::pipeline {
 /// the last frame.
 class CameraMonitor {
   public:
-    /// Consecutive images that are repeated, damaged, too bright or too dark and start a bad state:
-    /// two, as hazard H1 requires.
+    /// Number of consecutive bad images that start a bad state. A bad image is repeated, damaged,
+    /// too bright or too dark. Hazard H1 requires two.
     static constexpr int kBadFrames = 2;
-    /// Consecutive new, whole and well-exposed images that end a bad state. ASSUMPTION: three,
-    /// which is 200 ms at 15 Hz, as long as the gate accepts an old frame.
+    /// Number of consecutive new, whole and well-exposed images that end a bad state. ASSUMPTION:
+    /// three, which is 200 ms at 15 Hz. The gate accepts an old frame for the same time.
     static constexpr int kFreshFrames = 3;
 
     /// Takes the frames in order of arrival. Returns the state after this frame.

@@ -7,24 +7,24 @@
 
 namespace surefoot::pipeline {
 
-/// Tells if the exposure of a frame's images allows measurements.
+/// States whether the exposure of a frame's images allows measurements.
 enum class ExposureState : std::uint8_t {
     well_exposed,
-    dark,         ///< most pixels near black: a covered lens, no light
-    overexposed,  ///< too many pixels saturated: the first seconds in the sun
+    dark,         ///< most pixels are near black: covered lens or no light
+    overexposed,  ///< too many pixels are saturated, as in the first seconds in the sun
 };
 
 /// From this value on, the true brightness of a pixel is unknown. 8-bit cameras clip a little below
 /// 255 after lens shading correction.
 inline constexpr int kSaturated_dn = 250;
-/// Black level and read noise of 8-bit cameras lie below this.
+/// Black level and read noise of 8-bit cameras lie below this value.
 inline constexpr int kBlack_dn = 10;
-/// ASSUMPTION: three quarters of an image are enough. Ground planes were correct from half an image
-/// on; online rig self-calibration finds its corners from two thirds on (docs/lab/ground.md).
+/// ASSUMPTION: three quarters of an image are enough. Half an image was enough for ground planes,
+/// and two thirds for the corners of the online rig self-calibration (docs/lab/ground.md).
 inline constexpr double kMaxSaturatedShare = 0.25;
 inline constexpr double kMaxBlackShare = 0.75;
 
-/// Samples every fourth pixel of every fourth row of both cameras; the worse camera decides. A
+/// Samples every fourth pixel of every fourth row of both cameras. The worse camera decides. A
 /// frame without images (modelled depth) is well exposed.
 [[nodiscard]] ExposureState exposure_state_of(const StereoFrame& frame) noexcept;
 

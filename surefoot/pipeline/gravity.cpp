@@ -28,7 +28,7 @@ double square(double x) {
     return x * x;
 }
 
-/// Posterior of one kind of floor, in the plane across the accelerometer's up direction.
+/// Posterior for one kind of floor, in the plane across the accelerometer's up direction.
 struct Update {
     double log_weight = 0.0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -92,8 +92,8 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
                    accel_bias_m_s2,
                    1e-4,
                    5.0,
-                   "one sigma of the accelerometer's constant error along each axis; 0.02 for "
-                   "calibrated parts, 0.2 to 0.6 for others");
+                   "one sigma of the accelerometer's constant error along each axis; 0.02 m/s2 for "
+                   "calibrated accelerometers, 0.2 to 0.6 m/s2 for others");
     visitor.number("level_floor_deg",
                    level_floor_deg,
                    0.001,
@@ -104,12 +104,13 @@ void GravityConfig::describe(ConfigVisitor& visitor) {
         sloped_floor_deg,
         0.001,
         20.0,
-        "one sigma of the slope of all other floors, and of the vertical without an accelerometer");
+        "one sigma of the slope of floors that are not built level, and of the vertical without an "
+        "accelerometer");
     visitor.number("sloped_share",
                    sloped_share,
                    0.001,
                    0.999,
-                   "share of the starts on floors that are not built level");
+                   "prior probability that a start is on a floor that is not built level");
 }
 
 std::optional<Direction> up_from_imu(const GravityConfig& config,
@@ -123,8 +124,8 @@ std::optional<Direction> up_from_imu(const GravityConfig& config,
     const bool still =
         force->mean_gyro_rad_s <= still_gyro_rad_s && std::abs(excess_m_s2) <= still_force_m_s2;
     if (!still) return std::nullopt;
-    // The length of the force measures the bias along gravity: one sample of the spread of all
-    // three axes. The setting counts as three more samples.
+    // The length of the force measures the bias along gravity. It counts as one sample of the bias
+    // of all three axes. The setting counts as three more samples.
     constexpr double kPriorSamples = 3.0;
     const double bias_var = (kPriorSamples * square(config.accel_bias_m_s2) + square(excess_m_s2)) /
                             (kPriorSamples + 1.0);

@@ -14,7 +14,7 @@ namespace surefoot::pipeline {
 /// A direction in base_link with its uncertainty.
 struct Direction {
     Eigen::Vector3d unit_body = Eigen::Vector3d::UnitZ();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< for the unit vector [rad^2], rank 2
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< error of `unit_body` [rad^2], rank 2
 
     /// One sigma about any axis across the direction: root of the mean of the two variances.
     [[nodiscard]] double sigma_rad() const;
@@ -26,17 +26,17 @@ struct Direction {
 /// floors are built level, some are ramps or fall to one side. The slope about each horizontal axis
 /// is therefore drawn from one of two normal distributions.
 struct GravityConfig {
-    /// One sigma of the constant error of the accelerometer along each axis, alignment with the
-    /// camera included. Calibrated MEMS parts keep 0.02; parts that were never calibrated err by
-    /// 0.2 to 0.6 by their data sheets.
+    /// One sigma of the constant error of the accelerometer along each axis, including the error of
+    /// its alignment with the camera. Calibrated MEMS parts keep 0.02 m/s^2. By their data sheets,
+    /// other parts err by 0.2 to 0.6 m/s^2.
     double accel_bias_m_s2 = 0.02;
     /// One sigma of the slope of floors that are built level: DIN 18202 allows 4 mm over 1 m.
     /// ASSUMPTION.
     double level_floor_deg = 0.1;
-    /// The same for all other floors: 3.4 sigma reach the steepest ramp of the accessible building
-    /// codes, 1:12. ASSUMPTION.
+    /// One sigma of the slope of all other floors: 3.4 sigma reach the steepest ramp that
+    /// accessible building codes allow, 1:12. ASSUMPTION.
     double sloped_floor_deg = 1.4;
-    double sloped_share = 0.2;  ///< share of starts on sloped floors. ASSUMPTION
+    double sloped_share = 0.2;  ///< prior share of starts on sloped floors. ASSUMPTION
 
     void describe(ConfigVisitor& visitor);
 };
@@ -53,7 +53,7 @@ struct GravityConfig {
                                                    std::span<const StereoFrame> frames);
 
 /// Returns the up direction if only the ground plane is known: its normal. The plane alone cannot
-/// distinguish a level floor from a ramp, so the uncertainty is that of sloped floors.
+/// distinguish a level floor from a ramp. So the uncertainty covers sloped floors.
 [[nodiscard]] Direction up_from_plane(const GravityConfig& config, const Direction& normal);
 
 /// Up direction from both sources, and the probability that the floor was built level.
@@ -63,8 +63,8 @@ struct FusedUp {
 };
 
 /// Fuses the two sources by Bayes' rule over the two kinds of floor. Each kind is a linear Kalman
-/// update; their mixture is reduced to its first two moments. On a probably level floor, the plane
-/// corrects the accelerometer's constant error; on a ramp, the plane has little weight.
+/// update; the mixture of both is reduced to its first two moments. On a probably level floor, the
+/// plane corrects the accelerometer's constant error. On a ramp, the plane has little weight.
 [[nodiscard]] FusedUp fuse_up(const GravityConfig& config,
                               const Direction& normal,
                               const Direction& up_imu);

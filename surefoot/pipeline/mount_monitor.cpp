@@ -9,13 +9,15 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// Motion between two frames that still counts as standing: above the noise of odometry, below any
-/// sway.
+/// Largest motion between two frames that counts as standing. It is above the noise of the odometry
+/// and below any sway.
 constexpr double kStanding_m = 1e-3;
 constexpr double kStanding_rad = 5e-4;
-/// A sway passes through the upright attitude in less time; a pause between two steps takes longer.
+/// Shortest upright time that ends a lean. A sway passes the upright attitude in less time; a pause
+/// between two steps takes longer.
 constexpr double kHome_s = 1.0;
-/// This is longer than the ringing after a foot strike.
+/// Shortest lean above `max_sway_deg` that counts as a moved mount. It is longer than the vibration
+/// after a foot strike.
 constexpr double kSway_s = 0.5;
 
 bool stands(const MotionEstimate& motion) {
@@ -31,7 +33,8 @@ void MountMonitor::compare(const Pose& T_odom_body, const Eigen::Vector3d& norma
     const Eigen::Vector3d by_ground = normal_body - normal_body_;
     const bool same = (by_odom - by_ground).norm() <= config_.max_lean_deg * kRadPerDeg;
     lean_rad_ = same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
-    // The plane of one frame is uncertain by about 0.1 deg, so it only has to agree in direction.
+    // The plane of one frame is uncertain by about 0.1 deg. So only the direction of its lean must
+    // agree.
     leans_ = by_odom.norm() > config_.max_lean_before_step_deg * kRadPerDeg &&
              by_ground.dot(by_odom) > 0.5 * by_odom.squaredNorm();
 }

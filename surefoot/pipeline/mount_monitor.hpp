@@ -10,14 +10,14 @@
 
 namespace surefoot::pipeline {
 
-/// Detects that the camera has moved on the machine since odom was placed (hazard H6). A
-/// knocked camera takes base_link along: the map stays correct, but the feet are elsewhere in
-/// base_link. The fault is reported and latched; the monitor never corrects the pose.
+/// Detects that the camera has moved on the machine since odom was placed (hazard H6). A knocked
+/// camera takes base_link along: the map stays correct, but the feet are elsewhere in base_link.
+/// The fault is reported and latched; the monitor never corrects the pose.
 ///
-/// The monitor compares the lean of base_link with two references: odom's z axis and the
-/// ground plane. On a slope only the plane leans, with odometry drift only odom leans; a
-/// knocked camera leans against both by the same turn. A walking machine sways (REX: up to 5.4
-/// deg in the simulator), but stands upright between its steps. After a knock the lean never
+/// The monitor compares the lean of base_link with two references: odom's z axis and the ground
+/// plane. On a slope base_link leans only against the plane, with odometry drift only against
+/// odom. A knocked camera leans against both by the same turn. A walking machine sways (REX: up to
+/// 5.4 deg in the simulator), but stands upright between its steps. After a knock the lean never
 /// ends.
 ///
 /// The monitor cannot detect turns about the vertical or shifts. Pass frames in time order.
@@ -25,16 +25,16 @@ class MountMonitor {
   public:
     explicit MountMonitor(const AlignmentConfig& config) : config_(config) {}
 
-    /// `ground_body`: the ground plane of this frame. The first healthy frame with a plane sets the
-    /// reference attitude; frames without a plane are not judged.
+    /// Judges one frame. `ground_body`: its ground plane. The first healthy frame with a plane sets
+    /// the reference attitude; frames without a plane are not judged.
     void add(const MotionEstimate& motion, const GroundObservation& ground_body);
 
     [[nodiscard]] bool moved() const noexcept { return moved_; }
-    /// True if base_link leaned in the last judged frame: it is in mid-step, or it was knocked. A
-    /// knock of more than `max_lean_before_step_deg` shows in the next frame, and lasts until
-    /// `moved` reports it. A step ends upright.
+    /// True if base_link leaned in the last judged frame: the machine is in mid-step, or was
+    /// knocked. A knock of over `max_lean_before_step_deg` shows in the next frame, and lasts until
+    /// `moved` reports it. A step ends upright, and then the lean ends.
     [[nodiscard]] bool leans() const noexcept { return leans_; }
-    /// Lean of base_link [rad] on which both references agree; of the last judged frame.
+    /// Lean of base_link [rad] in the last judged frame, as far as both references agree.
     [[nodiscard]] double lean_rad() const noexcept { return lean_rad_; }
 
   private:
@@ -45,10 +45,10 @@ class MountMonitor {
     Eigen::Vector3d up_body_ = Eigen::Vector3d::UnitZ();      ///< odom's z axis at the start
     Eigen::Vector3d normal_body_ = Eigen::Vector3d::UnitZ();  ///< the ground's normal at the start
     std::optional<std::int64_t> last_ns_;
-    double upright_s_ = 0.0;  ///< upright time until now
-    double leaning_s_ = 0.0;  ///< leaning time at rest until now
-    double swaying_s_ = 0.0;  ///< time beyond `max_sway_deg`, until now
-    double away_s_ = 0.0;     ///< leaning time in all since the last upright phase
+    double upright_s_ = 0.0;  ///< duration of the present upright phase
+    double leaning_s_ = 0.0;  ///< duration of the present lean at rest
+    double swaying_s_ = 0.0;  ///< duration of the present lean above `max_sway_deg`
+    double away_s_ = 0.0;     ///< total leaning time since the last upright phase
     double lean_rad_ = 0.0;
     bool leans_ = false;
     bool moved_ = false;

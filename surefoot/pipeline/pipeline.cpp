@@ -18,8 +18,8 @@ namespace {
 
 /// The second round removes errors that interpolated rows hide from the first round.
 constexpr int kSelfCalibrationRounds = 2;
-constexpr int kSelfCalibrationRows_px = 6;  ///< search range of rows
-constexpr std::uint64_t kGroundSeed = 1;    ///< equal points always give the same plane
+constexpr int kSelfCalibrationRows_px = 6;  ///< search range of rows [px]
+constexpr std::uint64_t kGroundSeed = 1;    ///< equal points give equal planes
 
 /// Measures the stages of one frame; without a clock all times are zero.
 class StageTimer {
@@ -41,10 +41,9 @@ class StageTimer {
     std::int64_t start_ns_ = 0;
 };
 
-/// A camera that works but shows nothing useful still delivers frames (hazards H3 and
-/// H20). A frame that measures a smaller area of the map does not count as an observation.
-/// ASSUMPTION: a tenth of a sole; a wall half a metre ahead that fills the view measures several
-/// times as much.
+/// Smallest measured area of the map that counts as an observation. A camera that works but shows
+/// nothing useful still delivers frames (hazards H3 and H20). ASSUMPTION: a tenth of a sole. A wall
+/// 0.5 m ahead that fills the view measures several times this area.
 constexpr double kLeastMeasured_m2 = 0.01;
 
 bool shows_ground(const FusionCounts& counts, double resolution_m) {
@@ -58,7 +57,7 @@ std::int64_t count_valid(const Image<float>& disparity_px) {
                          [](float d) { return d > 0.0F; });
 }
 
-/// The plane n . p + h = 0 of a later base_link in the first one.
+/// Returns the plane n . p + h = 0 of a later base_link in the axes of the first base_link.
 ground::GroundSighting in_first_body(ground::GroundSighting ground, const Pose& T_first_body) {
     GroundObservation& plane = ground.observation;
     plane.normal = T_first_body.rotation * plane.normal;
@@ -101,7 +100,8 @@ Result<Pipeline> Pipeline::make(const PipelineConfig& config,
         return usage_error(
             "camera.rectified_width_px, camera.rectified_height_px: odometry needs rectified "
             "images "
-            "of the size of the raw ones; only single pairs (depth, depth-accuracy) take another");
+            "of the size of the raw images, so remove both settings. Only `depth` and "
+            "`depth-accuracy` accept another size");
     }
     return Pipeline(config,
                     rig,
@@ -139,7 +139,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
         T_odom_first_body ? known_alignment(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
     tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
-    feature_tracker_.forget();  // odom is a new frame
+    feature_tracker_.forget();  // odom is a new coordinate frame
     mirror_watch_.forget();
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
@@ -156,12 +156,12 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
     const Eigen::Vector3d up_hint_body = up_imu ? up_imu->unit_body : assumed_up(config_.mount);
     GroundView look{!up_imu && is_mount_unknown(), config_.ground.search_down_deg, 0.0, {}};
 
-    // A scout odometry brings all sightings into the first body frame: the machine may move
-    // already.
+    // A separate odometry brings all observations into the first body frame, because the machine
+    // may already move.
     odometry::Odometry scout(config_.odometry, *rectifier_);
     scout.start_at(Pose{});
     ground::GroundConfig wanted = config_.ground;
-    // A source of a few frames has no more to show, so all of them must agree.
+    // A source of a few frames cannot show more, so all of its frames must agree.
     wanted.min_agreeing = std::clamp(static_cast<int>(first_frames.size()), 1, wanted.min_agreeing);
     ground::GroundCalibration calibration(wanted);
     for (const StereoFrame& frame : first_frames) {
@@ -189,7 +189,7 @@ bool Pipeline::is_mount_unknown() const {
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
     std::vector<stereo::CornerShift> corners;
-    // First, middle and last frame, because neighbours show the same scene.
+    // Uses the first, middle and last frame, because neighbouring frames show the same scene.
     const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
@@ -261,7 +261,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         report.depth_pixels = count_valid(depth.disparity_px);
         report.image_pixels = static_cast<std::int64_t>(depth.disparity_px.size());
     } else if (rated_at_m_ != map_.geometry().origin_m) {
-        rate();  // the window moved: the ratings are those of other cells
+        rate();  // the window moved: the old ratings belong to other cells
         timer.finished(Stage::traversability);
     }
     hide_mirrored_ground();
@@ -274,7 +274,7 @@ FrameReport Pipeline::check(const StereoFrame& frame, Work wanted) {
     FrameReport report;
     report.time_ns = frame.time_ns;
     report.index = frame.index;
-    report.frame_status = watch_.look(frame);
+    report.frame_status = watch_.check(frame);
     const ExposureState exposure = exposure_state_of(frame);
     camera_monitor_.add(report.frame_status, exposure);
     report.camera = camera_state();
@@ -335,13 +335,14 @@ const DepthImage& Pipeline::measure_depth(const StereoFrame& frame,
     return depth_;
 }
 
-/// The matcher's errors are correlated over more pixels than this.
+/// Step between the sampled pixels. The errors of the matcher are correlated over more pixels.
 constexpr int kGroundStep_px = 6;
 
 ground::GroundSighting Pipeline::observe_ground(const DepthImage& depth,
                                                 const Pose& T_level_body,
                                                 const Eigen::Vector3d& up_level) {
-    // The plane is searched in base_link, because its height is that of the machine, not of odom.
+    // The plane is searched in base_link, because the height of base_link is known, not the height
+    // of odom.
     ground::sample_points(rectifier_->rig(), depth, kGroundStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);

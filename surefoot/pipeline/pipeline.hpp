@@ -33,41 +33,41 @@
 
 namespace surefoot::pipeline {
 
-/// Clock for stage times [ns]; the library has no own clock. Null leaves the times at zero.
+/// Clock for stage times [ns]; the library has no clock of its own. Null leaves the times at 0.
 using Clock = std::int64_t (*)();
 
 /// Turns stereo frames into a rated map of the ground; one frame is one call of `process`. Frames
-/// that bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep
-/// them. Frames with a repeated or torn image (camera::FrameIntegrityCheck) are only reported: the
-/// odometry would mistake a frozen picture for a machine at rest. Then the snapshot keeps the
-/// stamps of the last good frame, so that the gate notices its age. After several bad frames in a
-/// row, it also names the problem of the camera.
+/// that bring depth or motion (`known_depth`, on a rectified rig, `known_motion`) keep them. Frames
+/// with a repeated or torn image (camera::FrameIntegrityCheck) are only reported: the odometry
+/// would read a frozen picture as a machine at rest. Then the snapshot keeps the stamps of the last
+/// good frame, so that the gate notices the age. After several bad frames in a row, the snapshot
+/// also names the problem of the camera.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
-/// A frame whose depth updates no map cell leaves the stamp of the last frame that did.
+/// If the depth of a frame updates no map cell, the snapshot keeps the older stamp.
 ///
-/// Order of calls: `make`, then `align` with the first frames (start.hpp says which). If it finds
-/// no ground, `align` may be called with later frames. Then `process` for every frame in time
-/// order, the aligned frames included. One thread at a time.
+/// Order of calls: first `make`, then `align` with the first frames (start.hpp says which). If
+/// `align` finds no ground, it may be called with later frames. Then call `process` for every frame
+/// in time order, including the aligned frames. Use one thread at a time.
 class Pipeline {
   public:
-    /// Fails with the first problem of the rig or the configuration.
+    /// Returns the first problem of the rig or the configuration as an error.
     [[nodiscard]] static Result<Pipeline> make(const PipelineConfig& config,
                                                const camera::StereoRig& rig,
                                                Executor& executor,
                                                Clock clock = nullptr);
 
-    /// Largest number of frames that `align` uses; callers buffer no more.
+    /// Largest number of frames that `align` uses; callers need not buffer more.
     static constexpr std::size_t kAlignmentFrames = 10;
 
-    /// Corrects the right eye's calibration by the rows of the first frames (pair_trim.hpp), finds
-    /// gravity and the ground in them and places odom (alignment.hpp). `rig()` is final afterwards.
-    /// `T_odom_first_body`: where the first frame was taken, for a source that knows; odom is then
-    /// placed by it alone.
+    /// Corrects the right camera's calibration by the rows of the first frames, finds gravity and
+    /// the ground in them and places odom (alignment.hpp). `rig()` is final afterwards.
+    /// `T_odom_first_body`: pose of the first frame, if the source knows it; only this pose then
+    /// places odom.
     const Alignment& align(std::span<const StereoFrame> first_frames,
                            const std::optional<Pose>& T_odom_first_body = {});
 
-    /// The whole frame: motion, and with Work::full depth, map and rating.
+    /// Processes a whole frame: motion, and with Work::full depth, map and rating.
     FrameReport process(const StereoFrame& frame, Work work);
 
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
@@ -75,7 +75,7 @@ class Pipeline {
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
     /// True if neither the rig nor the settings state the mounting of the camera.
     [[nodiscard]] bool is_mount_unknown() const;
-    /// The applied correction; empty if no significant error of the calibration was found.
+    /// Returns the correction; empty if no significant error of the calibration was found.
     [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
         const noexcept {
         return self_calibration_;
@@ -84,29 +84,29 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
-    /// What is rated and to be shown: the highest surface of each cell in odom, somebody who
-    /// stepped onto mapped ground included (`ElevationMap::surface`). Allocates.
+    /// Returns the surface to rate and to show: the highest surface of each cell in odom, including
+    /// a person who stepped onto mapped ground (`ElevationMap::surface`). Allocates.
     [[nodiscard]] grid::Layer surface_m() const;
-    /// Edges, drops and stairs, tracked over time, as of the last full frame.
+    /// Returns edges, drops and stairs, tracked over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
-    /// Upright planes that are suspected to be mirrors or glass, in odom. The map knows what is
-    /// seen in them; the snapshot hides it from the gate.
+    /// Returns upright planes that are suspected to be mirrors or glass, in odom. The map keeps the
+    /// surfaces that are seen in them; the snapshot hides these surfaces from the gate.
     [[nodiscard]] std::span<const specular::SuspectedPane> panes() const noexcept {
         return mirror_watch_.panes();
     }
-    /// View of the camera at the last frame.
+    /// Returns the view of the camera at the last frame.
     [[nodiscard]] stairs::View view() const;
-    /// Rectified pair (empty without images) and depth of the last full frame.
+    /// Return the rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const DepthImage& depth() const noexcept { return depth_; }
 
-    /// base_link at the last frame.
+    /// Returns the pose of base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
-    /// Ground that the machine can reach from its stance, see Reachability. Allocates.
+    /// Returns the ground that the machine can reach from its stance, see Reachability. Allocates.
     [[nodiscard]] grid::Layer reach_step_m() const;
-    /// Ground class of each cell of the map, from the features. Allocates.
+    /// Returns the ground class of each cell of the map, from the features. Allocates.
     [[nodiscard]] stairs::GroundClasses ground_classes() const;
-    /// Present footholds. Allocates and takes milliseconds: do not call it for every frame.
+    /// Returns the present footholds. Allocates and takes milliseconds: not for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 
     /// Writes the gate's input, as of the last frame. After an error, `out` is not intact.
@@ -120,34 +120,34 @@ class Pipeline {
              Clock clock);
 
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
-    /// Returns false without changes if the rig cannot be rectified.
+    /// Changes to another rig. Returns false without changes if the rig cannot be rectified.
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// The frame's own motion, or the odometry's estimate; `T_odom_first`: the first base_link.
+    /// Returns the frame's own motion, or the odometry's; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);
-    /// Tests the frame and decides how much work it can get.
+    /// Tests the frame and decides how much of the work is done for it.
     [[nodiscard]] FrameReport check(const StereoFrame& frame, Work wanted);
-    /// Report of a repeated or torn frame: the map and the ratings stay.
+    /// Returns the report of a repeated or torn frame. The map and the ratings stay.
     [[nodiscard]] FrameReport skip(const StereoFrame& frame, FrameReport report);
-    /// Motion up to this frame. The map window and its remembered cells move with it.
+    /// Returns the motion up to this frame. Moves the map window and its remembered cells.
     MotionEstimate move(const StereoFrame& frame);
-    /// The result is kept until the next call; empty if the frame brings its own depth.
+    /// Rectifies the images. The result is kept until the next call; empty if depth is given.
     const camera::RectifiedPair& rectify(const StereoFrame& frame);
-    /// The result is kept until the next call.
+    /// Measures the depth image. The result is kept until the next call.
     const DepthImage& measure_depth(const StereoFrame& frame, const camera::RectifiedPair& pair);
     [[nodiscard]] ground::GroundSighting observe_ground(const DepthImage& depth,
                                                         const Pose& T_level_body,
                                                         const Eigen::Vector3d& up_level);
-    /// Finds the ground without a hint of how the camera is mounted.
+    /// Finds the ground if the mounting of the camera is unknown.
     [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
-    /// Passes the plane to the tilt drift correction and, if a machine carries the camera and the
-    /// height of base_link is known, to the mount monitor.
+    /// Passes the plane to the tilt drift correction. Also passes it to the mount monitor if a
+    /// machine carries the camera and the height of base_link is known.
     void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
     [[nodiscard]] CameraState camera_state() const noexcept;
-    /// Compares the floor with its own mirror images, where a level floor is in view.
+    /// Compares the floor with its own mirror images, if a level floor is in view.
     void watch_mirrors(const camera::RectifiedPair& pair,
                        const DepthImage& depth,
                        const MotionEstimate& motion,
@@ -164,22 +164,22 @@ class Pipeline {
     Clock clock_;
     camera::StereoRig nominal_rig_;
     std::optional<stereo::RigSelfCalibration> self_calibration_;
-    std::unique_ptr<camera::Rectifier> rectifier_;  // the odometry refers to it: address must stay
+    std::unique_ptr<camera::Rectifier> rectifier_;  // address stays: the odometry refers to it
     camera::FrameIntegrityCheck watch_;
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;
     elevation::ElevationMap map_;
     specular::MirrorWatch mirror_watch_;
-    Image<std::uint8_t> hidden_;  ///< cells of the map at and behind a suspected pane; may be empty
+    Image<std::uint8_t> hidden_;  ///< map cells at or behind a suspected pane; may be empty
     traversability::Traversability rater_;
     grid::Layer surface_m_;  ///< surface of the map at the last rating
     traversability::TraversabilityLayers rating_;
     stairs::FeatureFinder feature_finder_;
     stairs::FeatureTracker feature_tracker_;
-    stairs::TerrainFeatures found_features_;  ///< features of the last observation only
+    stairs::TerrainFeatures found_features_;  ///< features of the last observation
     stairs::TerrainFeatures features_;
-    stairs::Drift feature_drift_;                           ///< body drift since `found_features_`
-    Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the window rated last
+    stairs::Drift feature_drift_;  ///< drift of the body since `found_features_`
+    Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the last rated window
     Alignment alignment_;
 
     std::optional<camera::ImuMount> imu_mount_;
@@ -191,7 +191,7 @@ class Pipeline {
     MountMonitor mount_monitor_;
     TiltDriftCorrection tilt_drift_correction_;
     std::int64_t last_fused_ns_ = 0;
-    std::uint64_t version_ = 0;  ///< counts fused frames
+    std::uint64_t version_ = 0;  ///< number of fused frames
 };
 
 }  // namespace surefoot::pipeline

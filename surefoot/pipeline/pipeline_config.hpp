@@ -20,7 +20,7 @@
 
 namespace surefoot::pipeline {
 
-/// Every setting of the chain, nested by module. The modules' structs hold the defaults.
+/// All settings of the pipeline, nested by module. The modules' structs hold the defaults.
 struct PipelineConfig {
     AlignmentConfig mount;
     LevelConfig level;
@@ -36,7 +36,7 @@ struct PipelineConfig {
     stairs::StairsConfig stairs;
 
     void describe(ConfigVisitor& visitor);
-    /// Returns the first contradiction between values that are each in range, or nothing.
+    /// Returns the first contradiction between values that are in range, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

@@ -16,7 +16,7 @@ void depth_from_rgbd(const camera::Rectifier& rectifier,
     const double fb_px_m = rectifier.rig().depth_to_disparity_px_m();
     out.resize(rectifier.rig().width, rectifier.rig().height);
     rectifier.rectify_depth(depth_m,
-                            out.disparity_px);  // depths here, converted to disparities below
+                            out.disparity_px);  // holds depths here; converted to disparities below
     for (std::size_t i = 0; i < out.disparity_px.size(); ++i) {
         const auto z_m = static_cast<double>(out.disparity_px.data()[i]);
         const bool known = z_m > 0.0 && std::isfinite(z_m);

@@ -8,8 +8,8 @@
 namespace surefoot::pipeline {
 
 /// Converts a measured depth image (raw left camera, z in m, NaN = unknown) into the DepthImage of
-/// the rectified rig. It takes the nearest raw pixel, disparity = f b / z of the virtual baseline,
-/// and sigma from the Kinect model of `sensor`. Depth outside the model's range (0.35-3 m) is kept;
+/// the rectified rig. Takes the nearest raw pixel, disparity = f b / z with the virtual baseline b,
+/// and sigma from the Kinect model of `sensor`. Keeps depth outside the model's range (0.35-3 m);
 /// the range filter of the map removes it.
 void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,

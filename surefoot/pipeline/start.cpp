@@ -23,7 +23,7 @@ StartUp::StartUp(const Pipeline& pipeline, const std::optional<Pose>& T_odom_fir
 bool StartUp::add(Pipeline& pipeline, StereoFrame frame) {
     last_ns_ = frame.time_ns;
     if (!first_ns_) first_ns_ = frame.time_ns;
-    frame.frame_status = watch_.look(frame);
+    frame.frame_status = watch_.check(frame);
     lit_in_a_row_ = exposure_state_of(frame) == ExposureState::well_exposed ? lit_in_a_row_ + 1 : 0;
     if (window().size() == Pipeline::kAlignmentFrames) let_go(1);
     frames_.push_back(std::move(frame));
@@ -39,15 +39,15 @@ Start StartUp::take() {
     return {std::exchange(frames_, {}), waited_frames_};
 }
 
-/// True if the window is full and all its frames are well exposed, or if the wait for light is
-/// over.
+/// True if the window is full and all its frames are well exposed, or if the wait for good exposure
+/// is over.
 bool StartUp::is_full() const {
     return window().size() >= Pipeline::kAlignmentFrames &&
            (lit_in_a_row_ >= Pipeline::kAlignmentFrames ||
             waited_s() >= config_.wait_for_exposure_s);
 }
 
-/// Returns true when odom is placed for good. Otherwise it moves the window on.
+/// Aligns the pipeline. Returns true when odom is placed for good. Otherwise moves the window on.
 bool StartUp::try_alignment(Pipeline& pipeline, bool more) {
     const double wait_s = ground_is_there_ ? config_.wait_for_ground_s
                           : searches_      ? config_.wait_for_search_s
@@ -58,7 +58,7 @@ bool StartUp::try_alignment(Pipeline& pipeline, bool more) {
     if (alignment.gravity_source != grid::GravitySource::assumed) return true;
     if (!more || waited_s() - *search_began_s_ >= wait_s) {
         if (searches_ && !first) {
-            kept_ = 0;  // back to the first frames
+            kept_ = 0;  // use the first frames again
             pipeline.align(window(), T_odom_first_body_);
         }
         return true;

@@ -10,8 +10,8 @@
 namespace surefoot::pipeline {
 namespace {
 
-/// A sighting has the weight of the time since the previous sighting, limited to this value. So the
-/// first sighting after a pause does not outweigh all others.
+/// Largest weight of an observation. The weight is the time since the previous observation. With
+/// this limit, the first observation after a pause does not outweigh all others.
 constexpr double kLongest_s = 1.0;
 
 }  // namespace
@@ -27,8 +27,9 @@ void LevelConfig::describe(ConfigVisitor& visitor) {
                    5.0,
                    "largest tilt of ground that is used for the tilt drift correction; steeper "
                    "ground counts as a slope");
-    visitor.number("ignored_deg", ignored_deg, 0.0, 5.0, "largest mean tilt that is not corrected");
-    visitor.number("average_s", average_s, 1.0, 600.0, "averaging time of the tilt");
+    visitor.number(
+        "ignored_deg", ignored_deg, 0.0, 5.0, "a mean tilt up to this value is not corrected");
+    visitor.number("average_s", average_s, 1.0, 600.0, "time over which the tilt is averaged");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.0,
@@ -71,7 +72,7 @@ void TiltDriftCorrection::see(const GroundObservation& ground_body) {
         seen_ns_ == 0 ? 0.0 : std::min(seconds_from_ns(time_ns_ - seen_ns_), kLongest_s);
     seen_ns_ = time_ns_;
     if (!(dt_s > 0.0)) return;
-    // The weight starts as a mean of all sightings and becomes an exponential mean.
+    // The average starts as a mean of all observations and becomes an exponential mean.
     seen_s_ = std::min(seen_s_ + dt_s, config_.average_s);
     const double share = std::min(dt_s / seen_s_, 1.0);
     const Eigen::Vector3d normal = T_odom_body_.rotation * ground_body.normal;

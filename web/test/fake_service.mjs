@@ -51,7 +51,7 @@ function serveFile(request, response) {
 /// Sentences of service/gate_process/protocol/rosbridge_session.cpp.
 const kNoRight =
   "not done: this needs the role operator, and this client is rider. Connect with ?token=TOKEN, or send " +
-  '{"op":"auth","token":"TOKEN"}; the token stands in the service\'s token file';
+  '{"op":"auth","token":"TOKEN"}; the token is in the service\'s token file';
 const kUnknownToken =
   "this token is not known here, and nothing was changed. Take a token from the service's token file";
 

@@ -14,10 +14,10 @@
 /// Encoding of the audit log's fields: little-endian, consecutive, without padding.
 namespace surefoot::gate_process {
 
-// Layers are copied row by row in memory order.
+// Map layers are copied row by row, in the byte order of the memory.
 static_assert(std::endian::native == std::endian::little);
 
-/// The number stored for a field: the value of an enum, the bits of a set of reasons.
+/// Returns the number stored for a field: the value of an enum, the bits of a set of reasons.
 template <typename T>
 [[nodiscard]] auto stored(const T& value) noexcept {
     if constexpr (std::is_same_v<T, bool>) {
@@ -64,7 +64,7 @@ class ByteWriter {
     char* at_;
 };
 
-/// Reads the bytes of ByteWriter. Not ok after too few bytes or a bool other than 0 and 1.
+/// Reads the bytes of ByteWriter. `ok` is false after too few bytes or a bool that is not 0 or 1.
 class ByteReader {
   public:
     explicit ByteReader(std::string_view bytes) noexcept : rest_(bytes) {}

@@ -75,11 +75,11 @@ class FolderDisk final : public AuditDisk {
         if (file_ >= 0) ::close(file_);
         file_ = -1;
     }
-    /// A power loss can remove a new file name unless its folder is synced too.
+    /// A power loss can remove the name of a new file, unless its folder is synced too.
     [[nodiscard]] Status sync_folder() const {
         const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder < 0) return system_error(folder_, errno);
-        // Some file systems cannot sync folders; the file exists nevertheless.
+        // Some file systems cannot sync folders. The file exists even then.
         const bool failed = ::fsync(folder) != 0 && errno != EINVAL;
         const int error = errno;
         ::close(folder);

@@ -12,8 +12,8 @@
 
 namespace surefoot::gate_process {
 
-/// A folder with one growing file at a time: the audit log's interface to a disk, so that tests can
-/// replace it by a faulty one. Every call may fail or block. Use it from one thread.
+/// A folder with one growing file at a time: the interface of the audit log to a disk. Tests can
+/// replace the disk by a faulty disk. Every call may fail or block. Use it from one thread.
 class AuditDisk {
   public:
     struct Entry {
@@ -21,7 +21,7 @@ class AuditDisk {
         std::uint64_t bytes = 0;
     };
     struct Written {
-        std::size_t bytes = 0;  ///< bytes that were written; fewer than given is not an error
+        std::size_t bytes = 0;  ///< number of written bytes; fewer than given is not an error
         int error = 0;          ///< errno; 0 = none
     };
 
@@ -36,7 +36,7 @@ class AuditDisk {
     [[nodiscard]] virtual Status create(const std::string& name) = 0;
     /// Appends to the file that was created last.
     [[nodiscard]] virtual Written write(std::string_view bytes) = 0;
-    /// Truncates that file to `bytes` bytes.
+    /// Truncates the file that was created last to `bytes` bytes.
     [[nodiscard]] virtual Status truncate(std::uint64_t bytes) = 0;
     /// Returns when the written bytes are safe against a power loss.
     [[nodiscard]] virtual Status sync() = 0;
@@ -44,11 +44,11 @@ class AuditDisk {
     [[nodiscard]] virtual Status remove(const std::string& name) = 0;
 };
 
-/// A folder in the file system.
+/// An audit disk in a folder of the file system.
 [[nodiscard]] std::unique_ptr<AuditDisk> make_folder_disk(std::string folder);
 
-/// A number that is unique among all processes and boots of the computer: made from the boot id,
-/// the steady clock and the process id.
+/// Returns a number that is unique among all processes and boots of the computer. It is made from
+/// the boot id, the steady clock and the process id.
 [[nodiscard]] std::uint64_t new_run_id();
 
 }  // namespace surefoot::gate_process

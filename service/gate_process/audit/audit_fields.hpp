@@ -5,8 +5,8 @@
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/snapshot_fields.hpp"
 
-/// The fields of the audit log in file order. One list each serves writing, reading, comparing and
-/// naming. A change here needs a new format version (docs/reference/audit_format.md).
+/// The fields of the audit log in file order. Writing, reading, comparing and naming share one
+/// list. A change here needs a new format version (docs/reference/audit_format.md).
 namespace surefoot::gate_process {
 
 template <typename Box, typename Visit>

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kCheckedBytes = kFrameHeaderBytes - 4;
 
-/// Both halves of the hash, combined: checks the header alone, so a wrong length is never used.
+/// Combines both halves of the hash. This value checks the header alone, so a wrong length is never
+/// used.
 std::uint32_t check_of(std::string_view header) noexcept {
     const std::uint64_t hash = fnv1a(header.substr(0, kCheckedBytes));
     return static_cast<std::uint32_t>(hash ^ hash >> 32U);
@@ -116,10 +117,10 @@ std::string format_file_head(const FileHead& head) {
 Status parse_file_head(std::string_view bytes, FileHead& head) {
     ByteReader reader(bytes);
     for_each_head_field(head, reader);
-    if (!reader.ok()) return input_error("the head of the file is too short");
+    if (!reader.ok()) return input_error("the head of the file is shorter than its fields");
     if (auto status = parse_machine(reader.rest(), head.machine); !status) return status;
     if (fnv1a(reader.rest()) != head.machine_hash)
-        return input_error("the hash of the machine description is wrong");
+        return input_error("the machine description does not match its hash");
     return {};
 }
 
@@ -133,7 +134,8 @@ std::string format_gap(const AuditGap& gap) {
 Status parse_gap(std::string_view bytes, AuditGap& gap) {
     ByteReader reader(bytes);
     for_each_gap_field(gap, reader);
-    if (!reader.ok() || !reader.rest().empty()) return input_error("the gap entry is invalid");
+    if (!reader.ok() || !reader.rest().empty())
+        return input_error("the gap entry does not have the length of its fields");
     return {};
 }
 
@@ -156,12 +158,14 @@ Status parse_act(std::string_view bytes, Act& act) {
     std::uint8_t text = 0;
     reader("text_bytes", text);
     if (!reader.ok() || reader.rest().size() != text || text > kMaxActText_bytes)
-        return input_error("the act entry is invalid");
+        return input_error("the act entry is cut off, or the length of its text is wrong");
     if (act.kind < ActKind::connect || act.kind > ActKind::rearm ||
         act.outcome < ActOutcome::done || act.outcome > ActOutcome::no_right ||
         act.role > Role::operator_)
         return input_error(
-            "the act has an unknown kind; read the log with the program version that wrote it");
+            "the act has an unknown kind, outcome or role; read the log with the program version "
+            "that "
+            "wrote it");
     act.text = reader.rest();
     return {};
 }

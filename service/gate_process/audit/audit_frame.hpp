@@ -29,10 +29,10 @@ struct FrameHeader {
 };
 
 inline constexpr std::uint32_t kFrameMagic = 0x00414653;  // "SFA"; the last byte is the version
-inline constexpr std::uint32_t kOldestFrameVersion = 2;   ///< the oldest readable one, without acts
+inline constexpr std::uint32_t kOldestFrameVersion = 2;   ///< oldest version that can be read
 inline constexpr std::size_t kFrameHeaderBytes = 36;
 inline constexpr std::size_t kFrameHashBytes = 8;
-/// Largest payload, packed or not.
+/// Largest size of a payload [bytes], compressed or not.
 inline constexpr std::size_t kMaxPayloadBytes = kMaxRecordBytes + 65536;
 
 /// Appends a complete frame and returns its hash. `stored`: payload in `header.encoding`.
@@ -45,7 +45,7 @@ enum class HeaderState : std::uint8_t { sound, no_frame, other_version, damaged 
 /// The content of the first frame of a file.
 struct FileHead {
     std::uint64_t run_id = 0;  ///< id of one gate process
-    std::uint64_t number = 0;  ///< index of the file in its folder
+    std::uint64_t number = 0;  ///< number of the file in its folder
     std::uint64_t machine_hash = 0;
     Machine machine;
 };
@@ -55,21 +55,21 @@ struct FileHead {
 /// Verdicts that were lost because the disk did not accept data and the memory was full.
 struct AuditGap {
     std::uint64_t verdicts = 0;
-    std::int64_t first_ns = 0;  ///< decision times of the first and the last of them
+    std::int64_t first_ns = 0;  ///< decision times of first and last lost verdict
     std::int64_t last_ns = 0;
 };
 [[nodiscard]] std::string format_gap(const AuditGap& gap);
 [[nodiscard]] Status parse_gap(std::string_view bytes, AuditGap& gap);
 
-/// Size of an act; its text is cut at kMaxActText_bytes.
+/// Returns the size of an act [bytes]; its text is cut at kMaxActText_bytes.
 [[nodiscard]] std::size_t act_bytes(const Act& act) noexcept;
 /// Writes act_bytes(act) bytes to `out`. Allocates nothing.
 void write_act(const Act& act, char* out) noexcept;
 [[nodiscard]] Status parse_act(std::string_view bytes, Act& act);
 
-/// "audit-RUN-NUMBER.log": run in 16 hexadecimal digits, number in 8 decimal digits.
+/// Returns "audit-RUN-NUMBER.log": run in 16 hexadecimal, number in 8 decimal digits.
 [[nodiscard]] std::string audit_file_name(std::uint64_t run_id, std::uint64_t number);
-/// Parses such a name. Returns false for any other name.
+/// Parses a name of this form. Returns false for any other name.
 [[nodiscard]] bool parse_audit_file_name(std::string_view name, std::uint64_t& number) noexcept;
 
 }  // namespace surefoot::gate_process

@@ -12,7 +12,7 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// The begin of a ring entry; the record follows.
+/// The start of a ring entry. The record follows.
 struct EntryHead {
     std::int64_t now_ns = 0;
     AuditGap before;  ///< verdicts dropped since the previous entry
@@ -128,7 +128,7 @@ AuditReport AuditLog::report() const {
     return {written_.load(), lost_.load(), failing_.load(), last_error_};
 }
 
-/// Waits. Returns true if the log must stop.
+/// Waits for the next poll. Returns true if the log must stop.
 bool AuditLog::wait(std::int64_t time_ns) {
     std::unique_lock lock(mutex_);
     return wake_.wait_for(lock, std::chrono::nanoseconds(time_ns), [this] { return stopping_; });
@@ -148,8 +148,8 @@ void AuditLog::run() {
 }
 
 bool AuditLog::write_all_that_waits() {
-    // Retries a failed disk even if no entry waits, so that `failing` ends with the fault. No file
-    // is open then, so this is an attempt to write.
+    // Retries a failed disk even if no entry waits, so that `failing` ends when the disk works
+    // again. No file is open then, so opening a file is an attempt to write.
     const bool idle = ring_->front().empty();
     if (idle && failing_.load(std::memory_order_relaxed) && !succeeded(writer_.open()))
         return false;
@@ -181,8 +181,8 @@ bool AuditLog::succeeded(const Status& status) {
     return status.ok();
 }
 
-/// Writes the gap after the last entry, including entries that no disk accepted. The thread has
-/// ended.
+/// Writes the gap after the last entry, including entries that no disk accepted. Call it only after
+/// the thread has ended.
 void AuditLog::write_last_gap() {
     AuditGap gap;
     const auto add = [&gap](std::uint64_t verdicts, std::int64_t first_ns, std::int64_t last_ns) {

@@ -21,9 +21,9 @@ namespace surefoot::gate_process {
 struct AuditConfig {
     AuditFiles files;
     std::size_t memory_bytes = 8U << 20U;  ///< memory for waiting entries: about 250 verdicts
-    std::int64_t behind_after_ns = 1'000'000'000;  ///< longer waiting makes the log `behind`
-    std::int64_t poll_ns = 10'000'000;     ///< the thread checks this often for waiting entries
-    std::int64_t retry_ns = 200'000'000;   ///< wait after a failure
+    std::int64_t behind_after_ns = 1'000'000'000;  ///< an entry that waits longer: `behind`
+    std::int64_t poll_ns = 10'000'000;     ///< the thread looks for entries at this interval
+    std::int64_t retry_ns = 200'000'000;   ///< pause after a failed attempt to write
     std::int64_t sync_ns = 1'000'000'000;  ///< a power loss costs at most the entries of this time
 
     [[nodiscard]] std::optional<std::string> problem() const;
@@ -31,17 +31,17 @@ struct AuditConfig {
 
 enum class AuditState : std::uint8_t {
     ok,       ///< every verdict is written to the system, or will be at once
-    behind,   ///< a verdict waits too long, or the log does not have the gap of lost verdicts yet
+    behind,   ///< a verdict waits too long, or the gap of lost verdicts is not written yet
     failing,  ///< the last attempt to write failed
 };
-/// The name of a state, for example "ok".
+/// Returns the name of a state, for example "ok".
 [[nodiscard]] const char* to_string(AuditState state) noexcept;
 
 struct AuditReport {
     std::uint64_t written = 0;  ///< verdicts and acts in the log
     std::uint64_t lost = 0;     ///< verdicts and acts that were dropped
     bool failing = false;
-    std::string last_error;  ///< empty = no error yet
+    std::string last_error;  ///< message of the last error; empty = no error yet
 };
 
 /// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate
@@ -59,11 +59,11 @@ class AuditLog {
 
     /// Allocates the memory and starts the thread. A faulty disk shows in `state`, not here.
     [[nodiscard]] Status start();
-    /// Never blocks, allocates, locks or makes a system call; the copy takes microseconds.
+    /// Copies an entry in microseconds. Never blocks, allocates, locks or makes a system call.
     void push(const AuditedVerdict& audited) noexcept;
-    /// Adds an act in order between the verdicts. It is dropped like a verdict if memory is full.
+    /// Adds an act in order between the verdicts. If the memory is full, the act is dropped.
     void push(const Act& act) noexcept;
-    /// State of the log; an assured service gives no OK without it. `now_ns` as in the verdicts.
+    /// Returns the state at `now_ns` (clock of the verdicts). An assured gate needs the state `ok`.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
     /// Writes the waiting entries, retries a failing disk once and ends the thread. Blocks until
     /// the disk returns.
@@ -84,8 +84,8 @@ class AuditLog {
     AuditConfig config_;
     AuditWriter writer_;
     std::unique_ptr<ByteRing> ring_;
-    AuditGap missed_;           ///< dropped since the last entry; used by the pushing thread
-    bool gap_written_ = false;  ///< the gap before the first waiting entry is in the log
+    AuditGap missed_;           ///< entries lost since the last entry; only for the pushing thread
+    bool gap_written_ = false;  ///< true: the log has the gap before the first waiting entry
     std::atomic<bool> failing_{false};
     std::atomic<std::uint64_t> written_{0};
     std::atomic<std::uint64_t> lost_{0};

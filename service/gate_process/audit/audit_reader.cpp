@@ -17,14 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Far above the writer's limit; a larger file is an error and must not fill the memory.
+/// Largest size of a file that is read. It is far above the writer's limit; a larger file is an
+/// error and must not fill the memory.
 constexpr std::uintmax_t kMaxFileBytes = 256ULL << 20U;
 
 bool is_zero(std::string_view bytes) noexcept {
     return bytes.find_first_not_of('\0') == bytes.npos;
 }
 
-/// True if bytes that are too short for a header begin like one.
+/// True if bytes that are too short for a frame header equal the start of a header.
 bool begins_like_a_frame(std::string_view bytes) noexcept {
     constexpr std::string_view kStart = "SFA";
     const std::size_t size = std::min(bytes.size(), kStart.size());
@@ -61,7 +62,7 @@ void AuditReader::read(std::string_view bytes, const std::string& file) {
     }
 }
 
-/// Returns nothing at the end of the file and at damage; notes the damage.
+/// Returns nothing at the end of the file or at damage, and notes the damage.
 std::optional<AuditReader::Frame> AuditReader::next_frame(std::string_view rest) {
     if (is_zero(rest)) {  // space that was allocated for the file but never written
         end_unfinished(rest.size(), "are zero");
@@ -120,7 +121,7 @@ bool AuditReader::unpack(const FrameHeader& header, std::string_view stored, Fra
     const std::size_t bytes =
         ZSTD_decompress(plain_.data(), plain_.size(), stored.data(), stored.size());
     if (ZSTD_isError(bytes) != 0 || bytes != header.plain_bytes)
-        return damaged("its payload cannot be unpacked", header.sequence);
+        return damaged("the payload of the frame cannot be unpacked", header.sequence);
     frame.payload = plain_;
     return true;
 }
@@ -149,11 +150,11 @@ bool AuditReader::follows(const FrameHeader& header, const Link& link) {
                         link.sequence),
             header.sequence);
     if (header.previous_hash != link.previous_hash)
-        return damaged("its stored hash of the previous frame is wrong", header.sequence);
+        return damaged("the frame stores a wrong hash of the previous frame", header.sequence);
     return true;
 }
 
-/// The first file may begin anywhere in the chain, because old files are removed.
+/// The first file may start anywhere in the chain, because old files are removed.
 bool AuditReader::take_file_head(const Frame& frame) {
     FileHead head;
     if (const Status status = parse_file_head(frame.payload, head); !status)
@@ -162,7 +163,7 @@ bool AuditReader::take_file_head(const Frame& frame) {
     const std::string own_name = audit_file_name(head.run_id, head.number);
     std::uint64_t number = 0;
     if (parse_audit_file_name(name, number) && name != own_name)
-        return damaged("the file has a wrong name: it is " + own_name + "; rename it back",
+        return damaged("the file was renamed: its name must be " + own_name + "; rename it back",
                        frame.header.sequence);
     if (head_ && head.number > head_->number + 1)
         return damaged(fmt::format("{} log files are missing before this file",
@@ -208,7 +209,7 @@ bool AuditReader::take_act(const Frame& frame) {
 void AuditReader::end_unfinished(std::size_t bytes, const char* how) {
     summary_.unfinished.push_back(
         fmt::format("{}: the last {} bytes {}: the writer stopped there", file_, bytes, how));
-    // A file without a head still has a number.
+    // A file without a head still has a number in its name.
     std::uint64_t number = 0;
     if (offset_ == 0 && head_ && parse_audit_file_name(fs::path(file_).filename().string(), number))
         head_->number = number;

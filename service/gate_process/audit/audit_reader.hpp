@@ -13,17 +13,17 @@
 
 namespace surefoot::gate_process {
 
-/// The first invalid position of a log. Nothing after it was read.
+/// The first invalid position of a log. Nothing after this position was read.
 struct AuditDamage {
     std::string file;
-    std::uint64_t offset = 0;               ///< begin of the frame [bytes]
+    std::uint64_t offset = 0;               ///< start of the frame in the file [bytes]
     std::optional<std::uint64_t> sequence;  ///< sequence of the frame, if its header is readable
     std::string what;
 
     [[nodiscard]] std::string text() const;
 };
 
-/// Content of a log up to its end or its first damage.
+/// Summary of a log up to its end or its first damage.
 struct AuditSummary {
     std::uint64_t files = 0;
     std::uint64_t bytes = 0;
@@ -32,8 +32,8 @@ struct AuditSummary {
     std::uint64_t gaps = 0;
     std::uint64_t lost = 0;  ///< number of verdicts in gaps
     std::uint64_t acts = 0;
-    /// Messages about files that end within a frame, for example after a power loss. This is no
-    /// damage, and no loss if the run continues in another file.
+    /// Messages about files that end within a frame, for example after a power loss. Such an end is
+    /// not damage. Nothing is lost if the run continues in another file.
     std::vector<std::string> unfinished;
     std::optional<AuditDamage> damage;
 };
@@ -64,9 +64,9 @@ class AuditReader {
         std::string_view payload;  ///< unpacked
         std::uint64_t hash = 0;
     };
-    /// State of the chain.
+    /// The link that the next frame must continue.
     struct Link {
-        std::uint64_t sequence = 0;  ///< expected in the next frame
+        std::uint64_t sequence = 0;  ///< sequence of the next frame
         std::uint64_t previous_hash = 0;
     };
 
@@ -93,9 +93,9 @@ class AuditReader {
     AuditRecord record_;
 };
 
-/// The log files of a folder in order, or the single given file.
+/// Returns the log files of a folder in order, or the single given file.
 [[nodiscard]] Result<std::vector<std::string>> audit_files_of(const std::string& path);
-/// Reads all of them. Error only if a file is unreadable; damage is in the summary.
+/// Reads all given files. Error only if a file is unreadable; the summary states any damage.
 [[nodiscard]] Result<AuditSummary> read_audit(const std::string& path,
                                               AuditReader::OnVerdict on_verdict,
                                               AuditReader::OnAct on_act = {});

@@ -170,14 +170,14 @@ TEST(AuditReader, files_that_are_missing_or_renamed_are_noticed) {
     {
         Log log;
         log.platter->files[audit_file_name(11, 99)] = log.file(0);
-        EXPECT_TRUE(contains(log.damage(), "the file has a wrong name")) << log.damage();
+        EXPECT_TRUE(contains(log.damage(), "the file was renamed")) << log.damage();
     }
     {
         Log log;
         const std::string second = log.file(1);
         log.platter->files.erase(log.names[1]);
         log.platter->files[audit_file_name(12, 1)] = second;  // another run's name
-        EXPECT_TRUE(contains(log.damage(), "the file has a wrong name")) << log.damage();
+        EXPECT_TRUE(contains(log.damage(), "the file was renamed")) << log.damage();
     }
 }
 
@@ -222,12 +222,13 @@ TEST(AuditReader, nonsense_inside_sound_frames_is_a_sentence) {
     EXPECT_TRUE(contains(read(static_cast<FrameKind>(9), plain, record, size),
                          "kind of the frame is unknown"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, "", 0), "too short"));
-    EXPECT_TRUE(contains(read(FrameKind::gap, plain, "x", 1), "gap entry is invalid"));
+    EXPECT_TRUE(
+        contains(read(FrameKind::gap, plain, "x", 1), "gap entry does not have the length"));
     EXPECT_TRUE(
         contains(read(FrameKind::file, plain, head, static_cast<std::uint32_t>(head.size())),
                  "second head"));
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, record, size, true), "its head"));
-    EXPECT_TRUE(contains(read(FrameKind::file, plain, "x", 1, true), "too short"));
+    EXPECT_TRUE(contains(read(FrameKind::file, plain, "x", 1, true), "shorter than its fields"));
     std::string other_machine = record;
     other_machine[0] = static_cast<char>(other_machine[0] ^ 1);
     EXPECT_TRUE(contains(read(FrameKind::verdict, plain, other_machine, size), "another machine"));

@@ -20,7 +20,7 @@ std::size_t edges_of(const MapSnapshot& map) noexcept {
     return sound ? static_cast<std::size_t>(map.edge_count) : 0;
 }
 
-/// Size of the edges and cells of a record.
+/// Returns the size of the edges and cells of a record.
 std::size_t bytes_of_ground(const MapSnapshot& map, const CellBox& zone) noexcept {
     std::size_t bytes = edges_of(map) * sizeof(SnapshotEdge);
     grid::for_each_snapshot_layer(map, [&](const auto& layer) {
@@ -47,7 +47,7 @@ void for_each_row(Layer& layer, const MapSnapshot& map, const CellBox& zone, Cop
 
 /// The first format version whose snapshots contain the uncertainty of the vertical.
 constexpr std::uint32_t kTiltVersion = 3;
-constexpr std::uint32_t kLayoutWithoutTilt = 4;  ///< MapSnapshot::kLayout of the older versions
+constexpr std::uint32_t kLayoutWithoutTilt = 4;  ///< MapSnapshot::kLayout of versions below 3
 
 /// Reads the fields that exist in a format version.
 class FieldReader {
@@ -93,8 +93,8 @@ struct RecordView {
     const CellBox& zone;
 };
 
-/// True if the decision read the ground and found cells that differ from the sealed ones. Only this
-/// verdict lacks the proof without having counted a cell.
+/// True if the decision read the ground and found cells that differ from the sealed cells. Only
+/// such a verdict lacks this proof and has counted no cell.
 bool found_damaged_cells(const gate::Verdict& verdict) {
     const gate::Evidence& e = verdict.evidence;
     return verdict.reasons == gate::ReasonSet(gate::Reason::internal) && e.cells == 0 &&

@@ -24,7 +24,7 @@ struct AuditedVerdict {
     const gate::Verdict& verdict;
 };
 
-/// A record that was read back: sufficient to repeat the decision.
+/// A record that was read from a log. It is sufficient to repeat the decision.
 struct AuditRecord {
     std::uint64_t machine_hash = 0;
     gate::Query query;
@@ -36,19 +36,19 @@ struct AuditRecord {
     bool snapshot_intact = false;
     bool cells_intact = false;  ///< the cells that the decision reads are intact
     CellBox zone;
-    /// Checksum of the whole snapshot: identifies the map in a recording.
+    /// Checksum of the whole snapshot. It identifies the map in a recording.
     std::uint64_t map_checksum = 0;
-    /// The snapshot: its header, its edges and the cells of the zone; all other cells are missing.
-    /// Its checksums are valid exactly if `snapshot_intact` and `cells_intact`.
+    /// The snapshot: its header, its edges and the cells of the zone. All other cells are missing.
+    /// Its checksums are valid only if both `snapshot_intact` and `cells_intact` are true.
     std::unique_ptr<grid::MapSnapshot> map = std::make_unique<grid::MapSnapshot>();
 };
 
-/// Largest size of a record.
+/// Largest size of a record [bytes].
 inline constexpr std::size_t kMaxRecordBytes =
     std::size_t{grid::MapSnapshot::kMaxCells} * 14 +
     std::size_t{grid::MapSnapshot::kMaxEdges} * sizeof(grid::SnapshotEdge) + 1024;
 
-/// Size of a record with the cells of `zone`. Precondition: `zone` lies inside the map.
+/// Returns the size of a record with the cells of `zone`, which must lie inside the map.
 [[nodiscard]] std::size_t record_bytes(const AuditedVerdict& audited, const CellBox& zone) noexcept;
 /// Writes record_bytes() bytes to `out`. Allocates nothing.
 void write_record(std::uint64_t machine_hash,
@@ -58,13 +58,13 @@ void write_record(std::uint64_t machine_hash,
 /// Format version of new logs (docs/reference/audit_format.md).
 inline constexpr std::uint32_t kFrameVersion = 3;
 /// Parses a record; accepts any bytes. After an error `record` is invalid. `version`: format
-/// version of the record. A snapshot of version 2 lacks the uncertainty of the vertical; it counts
-/// as 0, so that the gate repeats its verdict of that version.
+/// version of the record. Version 2 lacks the uncertainty of the vertical. It counts as 0 there, so
+/// that the gate repeats the verdict of that version.
 [[nodiscard]] Status parse_record(std::string_view bytes,
                                   AuditRecord& record,
                                   std::uint32_t version = kFrameVersion);
 
-/// Repeats the decision from the record and the machine of its file only.
+/// Repeats the decision. Needs only the record and the machine of its file.
 [[nodiscard]] gate::Verdict replay(const Machine& machine, const AuditRecord& record) noexcept;
 
 /// A field that differs between two verdicts, with both values.
@@ -73,14 +73,14 @@ struct FieldDifference {
     std::string recorded;
     std::string replayed;
 };
-/// Compares bit by bit; empty = the verdicts are equal.
+/// Compares two verdicts bit by bit. Returns an empty list if they are equal.
 [[nodiscard]] std::vector<FieldDifference> differences(const gate::Verdict& recorded,
                                                        const gate::Verdict& replayed);
 
-/// The whole machine in the format of a log file's head.
+/// Returns the whole machine in the format of a log file's head.
 [[nodiscard]] std::string format_machine(const Machine& machine);
 [[nodiscard]] Status parse_machine(std::string_view bytes, Machine& machine);
-/// FNV-1a hash of format_machine().
+/// Returns the FNV-1a hash of format_machine().
 [[nodiscard]] std::uint64_t hash_of(const Machine& machine);
 
 }  // namespace surefoot::gate_process

@@ -10,7 +10,8 @@
 
 namespace surefoot::gate_process {
 
-/// zstd at its fastest level: floor cells shrink tenfold, and the processor is needed elsewhere.
+/// Compresses payloads with zstd at its fastest level. Cells of a floor shrink tenfold, and other
+/// work needs the processor.
 struct AuditWriter::Packer {
     static constexpr int kLevel = 1;
     ZSTD_CCtx* context = ZSTD_createCCtx();
@@ -21,7 +22,7 @@ struct AuditWriter::Packer {
     Packer& operator=(const Packer&) = delete;
     ~Packer() { ZSTD_freeCCtx(context); }
 
-    /// The packed payload, or the plain one if it is shorter.
+    /// Returns the packed payload, or the plain payload if it is shorter.
     std::string_view pack(std::string_view plain, FrameEncoding& encoding) {
         const std::size_t bytes = ZSTD_compressCCtx(
             context, packed.data(), packed.size(), plain.data(), plain.size(), kLevel);
@@ -47,7 +48,7 @@ Status AuditWriter::open() {
 
 Status AuditWriter::write(FrameKind kind, std::string_view payload) {
     const std::uint64_t grown = logs_.empty() ? 0 : logs_.back().bytes + payload.size();
-    // Uses the plain size, so that the limit holds without packing twice.
+    // Adds the unpacked size, so that the limit holds without packing twice.
     if (is_open_ && grown > files_.file_bytes) {
         if (auto status = sync(); !status) return status;
         leave_file();
@@ -59,13 +60,14 @@ Status AuditWriter::write(FrameKind kind, std::string_view payload) {
 Status AuditWriter::sync() {
     if (!is_open_ || synced_) return {};
     Status status = disk_->sync();
-    // After a failed write the content of the file is uncertain: continue in a new file.
+    // After a failed sync the content of the file is uncertain: continue in a new file.
     if (!status) leave_file();
     synced_ = true;
     return status;
 }
 
-/// Opens the file with the number after the folder's last file, from any process.
+/// Opens a new file. Its number follows the number of the last file in the folder, from any
+/// process.
 Status AuditWriter::begin_file() {
     if (!listed_) {
         auto entries = disk_->list();
@@ -125,11 +127,11 @@ Status AuditWriter::put(std::string_view bytes) {
         const AuditDisk::Written written = disk_->write(bytes.substr(done));
         done += written.bytes;
         idle = written.bytes == 0 ? idle + 1 : 0;
-        constexpr int kMostIdle = 16;  // interrupted, or no bytes accepted
+        constexpr int kMostIdle = 16;  // most attempts that are interrupted or accept no bytes
         if (written.error == 0 && idle < kMostIdle) continue;
         const Error error =
             output_error(log.name + ": " +
-                         (written.error == 0 ? "the disk accepts no bytes"
+                         (written.error == 0 ? "the disk accepted no bytes in 16 attempts"
                                              : std::generic_category().message(written.error)));
         if (done > 0 && !disk_->truncate(log.bytes)) leave_file();
         return error;
@@ -150,7 +152,8 @@ std::uint64_t AuditWriter::folder_bytes() const noexcept {
     return bytes;
 }
 
-/// Makes room for the new file. Files that cannot be removed are retried with the next file.
+/// Makes room for the new file. If a file cannot be removed, the removal is retried with the next
+/// file.
 void AuditWriter::remove_oldest() {
     while (logs_.size() > 1 && folder_bytes() + files_.file_bytes > files_.total_bytes) {
         if (!disk_->remove(logs_.front().name)) return;

@@ -15,13 +15,13 @@ namespace surefoot::gate_process {
 struct AuditFiles {
     std::uint64_t run_id = 0;  ///< id of this process; part of the file names
     std::uint64_t file_bytes = 16ULL
-                               << 20U;  ///< a file that would grow beyond gives way to a new one
-    std::uint64_t total_bytes = 1ULL << 30U;  ///< limit for the folder; the oldest logs go first
+                               << 20U;  ///< no file grows beyond this size; a new file continues
+    std::uint64_t total_bytes = 1ULL << 30U;  ///< limit for the folder; the oldest logs are deleted
 };
 
 /// Writes frames to files, in one chain across files. A frame is written completely or removed. If
-/// it cannot be removed, the file is abandoned and the chain continues in a new one. Use it from
-/// one thread; every call may block as long as the disk does.
+/// the removal fails, the writer abandons the file and continues the chain in a new file. Use it
+/// from one thread; every call may block as long as the disk does.
 class AuditWriter {
   public:
     AuditWriter(const Machine& machine, std::unique_ptr<AuditDisk> disk, const AuditFiles& files);
@@ -31,7 +31,7 @@ class AuditWriter {
 
     /// Opens a file if none is open.
     [[nodiscard]] Status open();
-    /// Writes one frame. After an error nothing of the frame counts as written; retry it.
+    /// Writes one frame. After an error no part of the frame counts as written; retry the frame.
     [[nodiscard]] Status write(FrameKind kind, std::string_view payload);
     /// Makes the written frames safe against a power loss. After an error the file is abandoned.
     [[nodiscard]] Status sync();

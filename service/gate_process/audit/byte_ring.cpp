@@ -8,7 +8,7 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr std::uint64_t kLengthBytes = 8;
-/// Stored instead of a length: skip the rest of the memory; the entry is at the start.
+/// Stored instead of a length. It means: skip the rest of the memory; the entry is at the start.
 constexpr std::uint64_t kSkip = std::numeric_limits<std::uint64_t>::max();
 
 constexpr std::uint64_t rounded_up(std::uint64_t bytes) noexcept {

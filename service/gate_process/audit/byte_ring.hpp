@@ -14,23 +14,23 @@ namespace surefoot::gate_process {
 /// thread calls `front` and `pop`.
 class ByteRing {
   public:
-    /// Allocates and touches all memory. The largest entry takes half of it.
+    /// Allocates and touches all memory. The largest entry can take half of the memory.
     explicit ByteRing(std::size_t bytes);
 
-    /// Memory for an entry of `bytes` bytes; nullptr = no room.
+    /// Returns memory for an entry of `bytes` bytes; nullptr if there is no room.
     [[nodiscard]] char* reserve(std::size_t bytes) noexcept;
     /// Publishes the entry that was reserved last.
     void commit() noexcept;
-    /// The oldest entry, for the writing thread. The reader may be reading it, and only the next
-    /// `reserve` may overwrite it. Empty if no entry waits.
+    /// Returns the oldest entry to the writing thread, or an empty entry if none waits. The reader
+    /// may be reading it, and only the next `reserve` may overwrite it.
     [[nodiscard]] std::string_view oldest() const noexcept;
 
-    /// The oldest entry; empty if no entry waits.
+    /// Returns the oldest entry to the reading thread; empty if no entry waits.
     [[nodiscard]] std::string_view front() const noexcept;
     void pop() noexcept;
 
   private:
-    /// An entry is its length and its bytes, rounded up to 8. Positions only increase.
+    /// Layout of an entry: length and bytes, rounded up to 8 bytes. Positions only increase.
     struct Place {
         std::uint64_t position = 0;
         std::uint64_t length = 0;

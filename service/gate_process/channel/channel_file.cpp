@@ -25,7 +25,7 @@ bool is_regular(int file, struct stat& info) noexcept {
     return ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/// The lock holder for messages: "process 1234 (surefoot)".
+/// Returns the lock holder for messages: "process 1234 (surefoot)".
 std::string owner_words(const ChannelFile& file) {
     ChannelBegin begin;
     if (!file.read(&begin, sizeof(begin), 0) || begin.owner == 0) return "another process";
@@ -56,18 +56,20 @@ Result<ChannelFile> ChannelFile::open(const std::string& path) {
     ChannelFile file(::open(path.c_str(), kFlags));
     if (file.file_ < 0) return channel_error(path, "it cannot be opened: " + system_words());
     struct stat info {};
-    if (!is_regular(file.file_, info)) return channel_error(path, "it is not a regular file");
+    if (!is_regular(file.file_, info))
+        return channel_error(path, "it is not a regular file; name another file");
     return file;
 }
 
 Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t magic) {
-    // The previous owner may delete the file between open and lock: then retry.
+    // The previous owner may delete the file between open and lock. In that case, retry.
     constexpr int kAttempts = 10;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         ChannelFile file(::open(path.c_str(), kFlags | O_CREAT, 0600));
         if (file.file_ < 0) return channel_error(path, "it cannot be opened: " + system_words());
         struct stat info {};
-        if (!is_regular(file.file_, info)) return channel_error(path, "it is not a regular file");
+        if (!is_regular(file.file_, info))
+            return channel_error(path, "it is not a regular file; name another file");
         if (info.st_uid != ::geteuid())
             return channel_error(path, "it belongs to another user; name another file");
         if (::flock(file.file_, LOCK_EX | LOCK_NB) != 0) {

@@ -14,7 +14,7 @@ namespace surefoot::gate_process {
 /// The first bytes of every channel file.
 struct ChannelBegin {
     std::uint64_t magic = 0;  ///< identifies the kind of file; 0 in a new file
-    std::uint64_t owner = 0;  ///< id of the process that holds the lock, or held it last
+    std::uint64_t owner = 0;  ///< id of the process that holds the lock or held it last
 };
 
 /// The open file of a snapshot channel. Uses system calls, because a truncated file then gives a
@@ -41,9 +41,9 @@ class ChannelFile {
     /// Sets the file size and allocates its memory, so that later writes do not lack space.
     [[nodiscard]] Status resize(std::size_t bytes) const;
 
-    /// 0 if the system call fails.
+    /// Returns the size of the file [bytes], or 0 if the system call fails.
     [[nodiscard]] std::size_t size() const noexcept;
-    /// True if this path still refers to this file.
+    /// True if `path` still refers to this file.
     [[nodiscard]] bool is_at(const std::string& path) const noexcept;
 
   private:
@@ -52,7 +52,7 @@ class ChannelFile {
     int file_ = -1;
 };
 
-/// Makes an error message about a channel.
+/// Makes an error about the channel at a path.
 [[nodiscard]] Error channel_error(const std::string& path, const std::string& what);
 
 }  // namespace surefoot::gate_process

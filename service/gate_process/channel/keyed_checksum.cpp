@@ -16,7 +16,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "words are read as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the checksum reads words in the byte order of the memory and needs little-endian");
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 std::uint64_t word_at(const void* bytes) noexcept {
@@ -43,11 +44,11 @@ Error key_error(const std::string& path, const std::string& what) {
     return usage_error("key file " + path + ": " + what);
 }
 
-/// Reads at most a few bytes: a key has 32 digits, so a longer file is no key file.
+/// Reads at most 64 bytes. A key has 32 digits, so a longer file is not a key file.
 Result<std::string> read_small_file(const std::string& path) {
     constexpr std::size_t kMost_bytes = 64;
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0) return key_error(path, "it cannot be opened");
+    if (file < 0) return key_error(path, "it cannot be opened; check its path and permissions");
     struct stat info {};
     const bool known = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
     std::array<char, kMost_bytes> bytes{};
@@ -67,7 +68,7 @@ Result<ChecksumKey> new_checksum_key() {
     while (have < bytes.size()) {
         const ssize_t got = ::getrandom(bytes.data() + have, bytes.size() - have, 0);
         if (got < 0 && errno != EINTR)
-            return input_error("the system gives no random numbers (getrandom)");
+            return input_error("the operating system gives no random numbers: getrandom failed");
         if (got > 0) have += static_cast<std::size_t>(got);
     }
     return key_of({bytes.data(), bytes.size()});
@@ -124,7 +125,7 @@ void KeyedChecksum::add(std::uint64_t word) noexcept {
 }
 
 void KeyedChecksum::add(std::span<const unsigned char> bytes) noexcept {
-    KeyedChecksum state = *this;  // in registers while the loop runs
+    KeyedChecksum state = *this;  // copies that stay in registers during the loop
     const std::size_t whole = bytes.size() / kWord * kWord;
     for (std::size_t i = 0; i < whole; i += kWord) state.compress(word_at(bytes.data() + i));
     if (whole < bytes.size()) std::memcpy(&state.tail_, bytes.data() + whole, bytes.size() - whole);

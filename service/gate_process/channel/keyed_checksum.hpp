@@ -18,25 +18,25 @@ struct ChecksumKey {
     friend bool operator==(const ChecksumKey&, const ChecksumKey&) = default;
 };
 
-/// Makes a key from the random numbers of the system.
+/// Makes a key from random numbers of the operating system.
 [[nodiscard]] Result<ChecksumKey> new_checksum_key();
 /// Reads a key file: 32 hexadecimal digits, optionally with white space around them. An error names
 /// the file and the cause: not regular, readable by other users, not 32 digits.
 [[nodiscard]] Result<ChecksumKey> read_checksum_key(const std::string& path);
-/// The key as 16 bytes, for passing it between the processes.
+/// Returns the key as 16 bytes, so that one process can pass it to another.
 [[nodiscard]] std::string bytes_of(const ChecksumKey& key);
-/// The key from the first 16 of `bytes`. Precondition: `bytes` has at least 16.
+/// Makes a key from the first 16 of `bytes`. Precondition: `bytes` has at least 16 bytes.
 [[nodiscard]] ChecksumKey key_of(std::string_view bytes) noexcept;
 
 /// A checksum that cannot be forged without the key: SipHash-2-4 (Aumasson, Bernstein: "SipHash: a
-/// fast short-input PRF", INDOCRYPT 2012). 64 bits: an attempt without the key succeeds with
-/// probability 2^-64. About 1 ms for 3 MB.
+/// fast short-input PRF", INDOCRYPT 2012). It has 64 bits: an attempt without the key succeeds with
+/// probability 2^-64. Takes about 1 ms for 3 MB.
 class KeyedChecksum {
   public:
     explicit KeyedChecksum(const ChecksumKey& key) noexcept;
 
     void add(std::uint64_t word) noexcept;
-    /// Adds bytes in whole words; only the end of the message may have 1 to 7 bytes more.
+    /// Adds whole words of 8 bytes. Only the last call may end with 1 to 7 bytes more.
     void add(std::span<const unsigned char> bytes) noexcept;
     /// Returns the checksum. Call it once, at the end.
     [[nodiscard]] std::uint64_t finish() noexcept;

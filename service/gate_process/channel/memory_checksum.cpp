@@ -15,10 +15,10 @@ constexpr std::size_t kBlockWords = 128;
 constexpr std::size_t kBlockBytes = kBlockWords * kWord;
 using BlockKey = std::array<std::uint64_t, kBlockWords>;
 
-/// Use of the key: a message of one use is never valid for another use.
+/// Use of the key. A message of one use is never valid for another use.
 enum class Use : std::uint64_t { block_key = 101, memory = 102 };
 
-/// The secret numbers: KeyedChecksum in counter mode as a generator.
+/// The secret numbers. KeyedChecksum in counter mode generates them.
 BlockKey block_key(const ChecksumKey& key) noexcept {
     BlockKey numbers;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -36,8 +36,8 @@ std::uint64_t word_at(const unsigned char* bytes) noexcept {
     return word;
 }
 
-/// NH of one block: the sum of (m[2i] + k[2i]) (m[2i+1] + k[2i+1]) modulo 2^128; the sums in
-/// brackets are modulo 2^64.
+/// Returns NH of one block: the sum of (m[2i] + k[2i]) (m[2i+1] + k[2i+1]) modulo 2^128. The sums
+/// in brackets are modulo 2^64.
 Wide hash_block(const unsigned char* block, const BlockKey& key) noexcept {
     Wide sum = 0;
     for (std::size_t i = 0; i < kBlockWords; i += 2) {

@@ -26,10 +26,10 @@ struct Head {
     ChannelBegin begin;
     std::uint32_t layout = kLayout;
     std::uint32_t snapshot_bytes = sizeof(grid::MapSnapshot);
-    std::uint64_t writer = 0;          ///< number of the present writer; 0 while it starts
-    std::uint64_t published = 0;       ///< snapshots so far; the newest is in slot published % 3
+    std::uint64_t writer = 0;          ///< number of the present writer; 0 while the writer starts
+    std::uint64_t published = 0;       ///< number of snapshots; the newest is in slot published % 3
     std::uint64_t restart_wanted = 0;  ///< number of the writer that must restart
-    std::uint64_t faults = 0;          ///< of the gate, until an operator re-arms it; 0 = none
+    std::uint64_t faults = 0;  ///< faults of the gate until an operator re-arms it; 0 = none
     std::uint64_t faults_checksum = 0;
 };
 static_assert(sizeof(Head) <= kPage && std::is_trivially_copyable_v<Head>);
@@ -43,7 +43,7 @@ constexpr std::size_t slot_at(std::uint64_t published) noexcept {
     return kPage + static_cast<std::size_t>(published % kSlots) * kSlotBytes;
 }
 
-/// A random number; never 0, and practically never repeated.
+/// Returns a random number. It is never 0, and it practically never repeats.
 Result<std::uint64_t> new_number() {
     const auto random = new_checksum_key();
     if (!random) return random.error();
@@ -97,18 +97,18 @@ struct SnapshotWriter::State {
         head.published = shown;
         return head;
     }
-    /// The damage of the file, or nothing if it is intact.
+    /// Returns the damage of the file, or nothing if the file is intact.
     [[nodiscard]] std::optional<std::string> damage() const;
     /// Rewrites the file with the stored faults of the gate.
     [[nodiscard]] Status restore(const Head& kept);
 
     const ChannelAddress address;
-    std::mutex mutex;  ///< `publish` and `mend` run on two threads
+    std::mutex mutex;  ///< needed: `publish` and `mend` run on two threads
     ChannelFile file;
     std::uint64_t writer = 0;
     std::uint64_t published = 0;
-    std::uint64_t shown = 0;  ///< as in the head: `published`, or 0 if the slots are empty
-    bool failed = false;      ///< a snapshot was not written completely
+    std::uint64_t shown = 0;  ///< value of `published` in the head, or 0 if the slots are empty
+    bool failed = false;      ///< true: a snapshot was not written completely
 };
 
 std::optional<std::string> SnapshotWriter::State::damage() const {
@@ -127,7 +127,7 @@ std::optional<std::string> SnapshotWriter::State::damage() const {
 Status SnapshotWriter::State::restore(const Head& kept) {
     if (auto sized = file.resize(kFileBytes); !sized)
         return channel_error(address.path, sized.error().message);
-    shown = 0;  // data that was cut off is lost
+    shown = 0;  // truncated data is lost
     Head head = own_head();
     head.restart_wanted = kept.restart_wanted;
     head.faults = kept.faults;
@@ -159,7 +159,7 @@ void SnapshotWriter::begin_anew() noexcept {
     const std::scoped_lock lock(state_->mutex);
     State& s = *state_;
     write_number(s.file, offsetof(Head, writer), 0);  // readers reject the slots during the restart
-    // The number only needs to differ: without random numbers use the next one.
+    // The number only needs to differ. Without random numbers, use the next odd number.
     const auto number = new_number();
     s.writer = number ? *number : s.writer + 2;
     s.published = s.shown = 0;
@@ -260,8 +260,8 @@ SnapshotReader::Read SnapshotReader::read(grid::MapSnapshot& out) noexcept {
             seen_ = head.published;
             return Read::fresh;
         }
-        // The writer returns to this slot after two more publications. If the numbers are
-        // unchanged, only another process can have changed the slot.
+        // The writer uses this slot again only after two more publications. So if the numbers are
+        // unchanged, another process has changed the slot.
         std::atomic_thread_fence(std::memory_order_seq_cst);
         Head after;
         if (!is_whole() || !read_head(file_, after)) return Read::lost;

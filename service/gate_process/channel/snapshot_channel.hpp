@@ -20,11 +20,11 @@ struct ChannelAddress {
     ChecksumKey key;
 };
 
-/// Sends map snapshots from perception to the gate process through a file in shared memory
-/// (tmpfs). Three slots: no side waits for the other. The reader gets a complete snapshot or
-/// nothing. Each snapshot has a keyed checksum that also covers its writer and its number, so the
-/// reader detects a snapshot that another process writes, copies or replays. One writer, any
-/// number of readers.
+/// Sends map snapshots from perception to the gate process through a file in shared memory (tmpfs).
+/// The file has three slots, so no side waits for the other. The reader gets a complete snapshot or
+/// nothing. Each snapshot has a keyed checksum that also covers its writer and its number. So the
+/// reader detects a snapshot that another process writes, copies or replays. One writer, any number
+/// of readers.
 ///
 /// The writer takes a new number at every start. A new number tells the gate that map and odom are
 /// new.
@@ -36,10 +36,10 @@ class SnapshotWriter {
     SnapshotWriter& operator=(SnapshotWriter&&) = delete;
     ~SnapshotWriter();
 
-    /// Waits only for `mend`; allocates nothing; about 0.5 ms.
+    /// Publishes a snapshot in about 0.5 ms. Waits only for `mend`; allocates nothing.
     void publish(const grid::MapSnapshot& map) noexcept;
-    /// True if an operator re-armed the gate after a fault: map and odom must restart. Answer it
-    /// with `begin_anew`.
+    /// True if an operator re-armed the gate after a fault: map and odom must restart. Then call
+    /// `begin_anew`.
     [[nodiscard]] bool restart_wanted() const noexcept;
     /// Empties the slots and takes a new number.
     void begin_anew() noexcept;
@@ -66,23 +66,23 @@ class SnapshotReader {
         nothing,  ///< this writer has not published a snapshot
         same,     ///< no new snapshot since the last fresh one; `out` is unchanged
         fresh,    ///< `out` is the newest snapshot
-        torn,     ///< overwritten during the copy, three times; `out` is invalid
-        forged,   ///< made without the key, or older than the last one; `out` is invalid
+        torn,     ///< overwritten during all three copies; `out` is invalid
+        forged,   ///< made without the key, or older than the last snapshot; `out` is invalid
         lost      ///< the file was deleted, replaced or truncated: call `reopen`
     };
     [[nodiscard]] Read read(grid::MapSnapshot& out) noexcept;
     /// True if `read` would return a new snapshot.
     [[nodiscard]] bool has_fresh() const noexcept;
-    /// Opens the file that now has the name. Snapshots older than the last read one stay rejected.
+    /// Opens the file that now has the name. Still rejects snapshots older than the last read one.
     [[nodiscard]] Status reopen();
     /// Number of the writer at the last `read`; 0 = no writer yet.
     [[nodiscard]] std::uint64_t writer() const noexcept { return writer_; }
     /// Asks the present writer to restart map and odom (see `restart_wanted`).
     void want_restart() noexcept;
-    /// Stores bits that must survive the gate process (0 = none). Only the gate gives them a
-    /// meaning. They stay until the next call or the next start of perception.
+    /// Stores bits that must survive the gate process (0 = none). Only the gate uses their meaning.
+    /// They stay until the next call or the next start of perception.
     void keep_faults(std::uint64_t bits) noexcept;
-    /// The stored bits; only the highest bit if they were not written with the key.
+    /// Returns the stored bits, or only the highest bit if they were not written with the key.
     [[nodiscard]] std::uint64_t kept_faults() const noexcept;
 
   private:
@@ -96,7 +96,7 @@ class SnapshotReader {
     ChannelAddress address_;
     ChannelFile file_;
     std::uint64_t writer_ = 0;
-    std::uint64_t seen_ = 0;    ///< the publication that was read last
+    std::uint64_t seen_ = 0;    ///< number of the last publication that was read
     std::uint64_t forged_ = 0;  ///< a forged publication of this writer; 0 = none
 };
 

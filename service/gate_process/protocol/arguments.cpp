@@ -13,7 +13,7 @@ const Json* member(const Json& object, const char* name) {
     return found == object.end() ? nullptr : &*found;
 }
 
-/// A JSON integer from `least` to `most`.
+/// Returns a JSON integer from `least` to `most`, or nothing.
 std::optional<std::uint64_t> whole_number(const Json& value,
                                           std::uint64_t least,
                                           std::uint64_t most) {
@@ -23,7 +23,7 @@ std::optional<std::uint64_t> whole_number(const Json& value,
     return number;
 }
 
-/// The number with that name, or NaN.
+/// Returns the number with that name, or NaN.
 double number_member(const Json& object, const char* name) {
     const Json* value = member(object, name);
     if (value == nullptr || !value->is_number()) return std::nan("");
@@ -60,7 +60,7 @@ StepRequest read_step_request(const Json& args) {
         request.sequence = whole_number(*sequence, 1, kMaxExact);
         if (!request.sequence)
             return refuse(
-                request, gate::Reason::bad_number, "sequence: give a whole number from 1 on");
+                request, gate::Reason::bad_number, "sequence: give a whole number of at least 1");
     }
     const Json* direction = argument(args, "direction", 0);
     if (direction == nullptr)
@@ -75,12 +75,13 @@ StepRequest read_step_request(const Json& args) {
 
 Result<double> read_radius(const Json& args) {
     const Json* value = argument(args, "radius_m", 0);
-    if (value == nullptr || !value->is_number()) return input_error("radius_m: give a number in m");
+    if (value == nullptr || !value->is_number())
+        return input_error("radius_m: give the radius as a number, in m");
     return value->get<double>();
 }
 
 Result<GoalQuestion> read_goal(const Json& message) {
-    constexpr double kUnitTolerance = 0.01;  // of |q|^2: clients send quaternions as floats
+    constexpr double kUnitTolerance = 0.01;  // of |q|^2, because clients send quaternions as floats
     const Json* header = member(message, "header");
     const Json* pose = member(message, "pose");
     const Json* position = pose == nullptr ? nullptr : member(*pose, "position");

@@ -13,25 +13,25 @@
 /// fraction for an integer is an error.
 namespace surefoot::gate_process {
 
-/// 2^53 - 1: the largest integer that every JSON reader represents exactly.
+/// The largest integer that every JSON reader represents exactly: 2^53 - 1.
 inline constexpr std::uint64_t kMaxExact = (std::uint64_t{1} << 53U) - 1;
 
-/// An argument of a call: the member `name` of an object, or element `place` of a list (rosbridge
-/// allows both). nullptr if it is missing.
+/// Returns an argument of a call: member `name` of an object, or element `place` of a list
+/// (rosbridge allows both). Returns nullptr if the argument is missing.
 [[nodiscard]] const Json* argument(const Json& args, const char* name, std::size_t place);
-/// The first argument as text; empty if it is missing or not text.
+/// Returns the first argument as text; empty if it is missing or not text.
 [[nodiscard]] std::string text_argument(const Json& args, const char* name);
-/// A member of an object as text; empty if it is missing or not text.
+/// Returns a member of an object as text; empty if it is missing or not text.
 [[nodiscard]] std::string text_member(const Json& object, const char* name);
 
-/// A client's question about a step; `problem` is none if it is valid.
+/// A client's question about a step. It is valid if `problem` is `none`.
 struct StepRequest {
     std::uint8_t command = 0;
     std::optional<std::uint64_t> sequence;
     gate::Reason problem = gate::Reason::none;
     std::string text;  ///< message about the problem
 };
-/// {direction, sequence?} or [direction, sequence?].
+/// Reads {direction, sequence?} or [direction, sequence?].
 [[nodiscard]] StepRequest read_step_request(const Json& args);
 
 /// Reads a finite number in m.

@@ -7,7 +7,7 @@
 
 namespace surefoot::gate_process {
 
-/// Everything with a name in the protocol. A name that is not in this list is not served.
+/// All names of the protocol: topics and services. A name that is not in this list is not served.
 enum class Topic : std::uint8_t { verdict, health, diagnostics, outlook, goal_marker, goal };
 
 struct TopicEntry {
@@ -84,7 +84,7 @@ inline constexpr std::array<ServiceEntry, 23> kServices{{
     {Service::has_param, "/rosapi/has_param", "rosapi/HasParam"},
 }};
 
-/// The entry of a topic name, with or without leading slash; nullptr if unknown.
+/// Returns the entry of a topic name, with or without leading slash; nullptr if unknown.
 [[nodiscard]] const TopicEntry* find_topic(std::string_view name) noexcept;
 [[nodiscard]] const ServiceEntry* find_service(std::string_view name) noexcept;
 

@@ -9,8 +9,8 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Checks a text without storing it and stops at the first forbidden element. The function names
-/// are required by nlohmann-json.
+/// Checks a text without storing it, and stops at the first forbidden element. nlohmann-json
+/// requires the names of the functions.
 class Guard {
   public:
     explicit Guard(const JsonLimits& limits) : limits_(limits) {}
@@ -64,7 +64,7 @@ class Guard {
     }
     bool shallow_enough() {
         return keys_.size() <= static_cast<std::size_t>(limits_.max_depth) ||
-               refuse("nested deeper than " + std::to_string(limits_.max_depth));
+               refuse("the JSON is nested deeper than " + std::to_string(limits_.max_depth));
     }
 
     const JsonLimits& limits_;

@@ -20,11 +20,11 @@ struct JsonLimits {
     std::size_t max_string_bytes = 1024;
 };
 
-/// Parses one complete JSON value: valid UTF-8, within the limits, no duplicate key, finite numbers
-/// only. Else the error names the first problem.
+/// Parses one complete JSON value: valid UTF-8, within the limits, without duplicate keys, with
+/// finite numbers only. Otherwise the error names the first problem.
 [[nodiscard]] Result<Json> parse_json(std::string_view text, const JsonLimits& limits);
 
-/// The number, or null if it is infinite or NaN, because JSON has neither.
+/// Returns the number, or null if it is infinite or NaN: JSON has neither of these values.
 [[nodiscard]] Json number(double value);
 
 /// Serialises on one line. Invalid UTF-8 becomes U+FFFD, so that no answer is lost.

@@ -17,8 +17,8 @@ TEST(JsonText, DepthIsLimitedExactly) {
     const JsonLimits limits{.max_depth = 3};
     EXPECT_EQ(problem_of("[[[1]]]", limits), "");
     EXPECT_EQ(problem_of(R"({"a":[{"b":1}]})", limits), "");
-    EXPECT_EQ(problem_of("[[[[]]]]", limits), "nested deeper than 3");
-    EXPECT_EQ(problem_of(R"({"a":[{"b":{}}]})", limits), "nested deeper than 3");
+    EXPECT_EQ(problem_of("[[[[]]]]", limits), "the JSON is nested deeper than 3");
+    EXPECT_EQ(problem_of(R"({"a":[{"b":{}}]})", limits), "the JSON is nested deeper than 3");
 }
 
 TEST(JsonText, StringsAndKeysAreLimitedExactly) {
@@ -47,7 +47,7 @@ TEST(JsonText, NumbersAreFinite) {
 
 TEST(JsonText, DeepNestingIsNoStackOverflow) {
     const std::string open(60'000, '[');
-    EXPECT_EQ(problem_of(open), "nested deeper than 12");
+    EXPECT_EQ(problem_of(open), "the JSON is nested deeper than 12");
 }
 
 }  // namespace

@@ -13,12 +13,12 @@ class OutQueue {
   public:
     explicit OutQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-    /// Returns false and keeps nothing if the queue is full: the client does not read.
+    /// Adds a text. Returns false and keeps nothing if the queue is full: the client does not read.
     [[nodiscard]] bool push_reply(std::string text) { return push(replies_, std::move(text)); }
     [[nodiscard]] bool push_topic(std::string text) { return push(topics_, std::move(text)); }
 
     [[nodiscard]] bool empty() const noexcept { return replies_.empty() && topics_.empty(); }
-    /// Removes and returns the next text. Precondition: not empty.
+    /// Removes and returns the next text. Precondition: the queue is not empty.
     [[nodiscard]] std::string pop() {
         auto& from = replies_.empty() ? topics_ : replies_;
         std::string text = std::move(from.front());

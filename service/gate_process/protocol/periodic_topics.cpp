@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::int64_t kHealthNs = 400 * kNsPerMs;
-constexpr std::int64_t kChangedHealthNs = 20 * kNsPerMs;  // limits a flickering state
+// The shortest pause between two health messages, even if the state changes often.
+constexpr std::int64_t kChangedHealthNs = 20 * kNsPerMs;
 constexpr std::int64_t kDiagnosticsNs = 1000 * kNsPerMs;
 
 bool same_area(const gate::AttestedArea& a, const gate::AttestedArea& b) {

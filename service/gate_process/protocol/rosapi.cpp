@@ -26,7 +26,8 @@ Json names_of(const Entries& entries) {
     return names;
 }
 
-/// The names of the entries of a type. roslib writes a type as "pkg/Name" or "pkg/msg/Name".
+/// Returns the names of the entries of a type. roslib writes a type as "pkg/Name" or
+/// "pkg/msg/Name".
 template <typename Entries>
 Json names_of_type(const Entries& entries, std::string_view type) {
     Json names = Json::array();
@@ -36,7 +37,7 @@ Json names_of_type(const Entries& entries, std::string_view type) {
     return names;
 }
 
-/// The topics that clients publish, or all others.
+/// Returns the topics that clients publish, or all other topics.
 Json topics_from(bool from_client) {
     Json names = Json::array();
     for (const auto& entry : kTopics) {
@@ -45,7 +46,7 @@ Json topics_from(bool from_client) {
     return names;
 }
 
-/// The list of nodes: the only node if `involved`, otherwise empty.
+/// Returns the list of nodes: the only node if `involved`, otherwise empty.
 Json node_if(bool involved) {
     return involved ? Json::array({kNode}) : Json::array();
 }

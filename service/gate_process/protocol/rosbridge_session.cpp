@@ -13,24 +13,26 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// Command of `step_forward`: the joystick's outer ring, ahead (machines/rex.yaml: N).
+/// Command of `step_forward`: the outer ring of the joystick, straight ahead (machines/rex.yaml:
+/// N).
 constexpr std::uint8_t kForwardCode = 9;
 
-/// The id of a message in the form that rosbridge clients send; any other form is dropped.
+/// Returns the id of a message in the form that rosbridge clients send; any other form is dropped.
 Json id_of(const Json& message) {
     const auto id = message.find("id");
     if (id == message.end() || !(id->is_string() || id->is_number_integer())) return nullptr;
     return *id;
 }
 
-/// The arguments of a call. Clients omit them or send null if there are none.
+/// Returns the arguments of a call. Clients omit the arguments or send null if there are none.
 const Json& args_of(const Json& message) {
     static const Json empty = Json::object();
     const auto args = message.find("args");
     return args == message.end() || args->is_null() ? empty : *args;
 }
 
-/// An integer from 0 to `most`; empty if invalid. Missing or null counts as 0.
+/// Returns an integer from 0 to `most`; empty if it is invalid. A missing value or null counts as
+/// 0.
 std::optional<std::int64_t> limited_member(const Json& message, const char* name, int most) {
     const auto value = message.find(name);
     if (value == message.end() || value->is_null()) return 0;
@@ -112,7 +114,7 @@ void RosbridgeSession::handle(const Call& call) {
     if (op == "set_level") return set_level(call);
     if (op == "unadvertise" || op == "status") return;  // accepted and ignored
     if (op == "auth") return auth(call);
-    status(call, Level::error, "op '" + op + "' is not served here");
+    status(call, Level::error, "the gate does not support the op '" + op + "'");
 }
 
 void RosbridgeSession::status(const Call& call, Level level, const std::string& text) const {
@@ -150,7 +152,8 @@ void RosbridgeSession::subscribe(const Call& call) {
     const std::string type = text_member(call.message, "type");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to subscribe to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can subscribe to");
     if (!type.empty() && type != "*" && !same_type(entry->type, type)) {
         return status(
             call, Level::error, "topic '" + name + "' is of type " + std::string(entry->type));
@@ -158,11 +161,14 @@ void RosbridgeSession::subscribe(const Call& call) {
     const auto throttle_ms = limited_member(call.message, "throttle_rate", kMaxThrottleMs);
     const auto queue_length = limited_member(call.message, "queue_length", kMaxQueue);
     if (!throttle_ms || !queue_length)
-        return status(
-            call, Level::error, "throttle_rate and queue_length must be whole numbers from 0 on");
+        return status(call,
+                      Level::error,
+                      "throttle_rate and queue_length must be whole numbers of at least 0");
     const std::string compression = text_member(call.message, "compression");
     if (!compression.empty() && compression != "none")
-        status(call, Level::warning, "no compression '" + compression + "': sent as plain JSON");
+        status(call,
+               Level::warning,
+               "compression '" + compression + "' is unknown: messages are sent as plain JSON");
     const auto added =
         subscriptions_.add(entry->topic,
                            name,
@@ -183,7 +189,8 @@ void RosbridgeSession::advertise(const Call& call) {
     const std::string name = text_member(call.message, "topic");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to publish to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can publish to");
     if (!same_type(entry->type, text_member(call.message, "type"))) {
         status(call, Level::error, "topic '" + name + "' is of type " + std::string(entry->type));
     }
@@ -193,7 +200,8 @@ void RosbridgeSession::publish(const Call& call) {
     const std::string name = text_member(call.message, "topic");
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !entry->from_client)
-        return status(call, Level::error, "no topic '" + name + "' to publish to");
+        return status(
+            call, Level::error, "there is no topic '" + name + "' that a client can publish to");
     if (!has_right(call, Role::rider, ActKind::ask))
         return status(call, Level::error, no_right_text(Role::rider));
     judge_goal(call);
@@ -272,11 +280,12 @@ void RosbridgeSession::serve_step(const ServiceEntry& entry, const Call& call, c
     const Json verdict = verdict_object(answer.verdict, answer.text);
     switch (entry.service) {
         case Service::step_with_reasons: respond(call, verdict, readable); break;
-        // The type Empty has no member, so such clients read only `result`.
+        // The service type Empty has no member, so its clients read only `result`.
         case Service::step_forward: respond(call, {{"resultCode", code}}, code == 0); break;
         default: respond(call, {{"resultCode", code}}, readable);
     }
-    // Verdicts on messages that came too fast are not published: a flood would reach all clients.
+    // Verdicts on messages that came too fast are not published. Otherwise one flooding client
+    // would flood all clients.
     if (!call.overloaded) call.out.published.push_back(topic_message(Topic::verdict, verdict));
 }
 
@@ -288,8 +297,10 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
         return refusal(call, question, request.problem, request.text);
     question.sequence = request.sequence.value_or(last_sequence_ + 1);
     if (question.sequence > kMaxExact)
-        return refusal(
-            call, question, gate::Reason::seq, "all sequence numbers are used: reconnect");
+        return refusal(call,
+                       question,
+                       gate::Reason::seq,
+                       "all sequence numbers of this connection are used: reconnect");
     last_sequence_ = std::max(last_sequence_, question.sequence);
     return ask(call, question);
 }
@@ -300,8 +311,10 @@ Answer RosbridgeSession::ask(const Call& call, const StepQuestion& question) {
     const gate::Verdict& verdict = answer.verdict;
     if (verdict.connection != question.connection || verdict.sequence != question.sequence ||
         verdict.command != question.command) {
-        return refusal(
-            call, question, gate::Reason::internal, "the gate answered another question");
+        return refusal(call,
+                       question,
+                       gate::Reason::internal,
+                       "the gate answered another question; ask again");
     }
     if (verdict.decision == gate::Decision::ok && !verdict.allows_step(call.now_ns))
         return refusal(call, question, gate::Reason::expired, "the answer has expired");
@@ -356,7 +369,7 @@ bool RosbridgeSession::has_right(const Call& call, Role least, ActKind kind) {
 std::string RosbridgeSession::no_right_text(Role least) const {
     return std::string("not done: this needs the role ") + to_string(least) +
            ", and this client is " + to_string(role_) +
-           R"(. Connect with ?token=TOKEN, or send {"op":"auth","token":"TOKEN"}; the token stands )"
+           R"(. Connect with ?token=TOKEN, or send {"op":"auth","token":"TOKEN"}; the token is )"
            "in the service's token file";
 }
 

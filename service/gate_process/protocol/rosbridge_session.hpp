@@ -21,29 +21,29 @@ struct StepRequest;
 struct SessionLimits {
     JsonLimits json;
     RateLimit messages{200, 200};  ///< a question beyond this rate gets ERROR / OVERLOAD
-    RateLimit refusals{100, 400};  ///< extra messages before disconnection
-    RateLimit faults{2, 20};       ///< unreadable messages that are allowed before disconnection
+    RateLimit refusals{100, 400};  ///< messages above that rate before disconnection
+    RateLimit faults{2, 20};       ///< unreadable messages before disconnection
     std::size_t max_subscriptions = 32;
 };
 
 /// Permissions of the client of a session.
 struct SessionRights {
     Role role = Role::none;          ///< role at the start
-    const Access* access = nullptr;  ///< tokens that may change it; nullptr: none can. Lives on
+    const Access* access = nullptr;  ///< tokens of the roles, or nullptr; must outlive the session
 };
 
-/// The effects of one message.
+/// The effects of one received message.
 struct Reaction {
-    std::vector<std::string> replies;     ///< texts to this connection, before all other texts
+    std::vector<std::string> replies;     ///< texts to this connection, sent before all other texts
     std::vector<TopicMessage> published;  ///< messages to the subscribers of all connections
     bool drop = false;                    ///< disconnect: the client exceeded its limits
 };
 
-/// The server side of one rosbridge client (protocol version 2): one text in, texts out. No
-/// socket, clock or thread. Every step question is passed to the gate exactly once. Only the
-/// gate's own OK to this connection and sequence is returned as OK; unreadable or too frequent
-/// questions are ERRORs. Text that is not JSON or not a message gets a status and has no effect. A
-/// request beyond the client's role is refused with a message, noted in the audit log, and never
+/// The server side of one rosbridge client (protocol version 2). Takes one text and returns
+/// texts; has no socket, clock or thread. Every step question is passed to the gate exactly once.
+/// Only the gate's own OK to this connection and sequence is returned as OK. Unreadable or too
+/// frequent questions get ERROR. Text that is not JSON or not a message gets a status and has no
+/// effect. A request beyond the client's role is refused with a message, logged, and never
 /// reaches the gate.
 class RosbridgeSession {
   public:
@@ -58,7 +58,7 @@ class RosbridgeSession {
     ~RosbridgeSession();
 
     [[nodiscard]] Reaction on_message(std::string_view text, std::int64_t now_ns);
-    /// The texts for this client from a topic message. Cheap without a subscription.
+    /// Returns the texts for this client from a topic message. Cheap without a subscription.
     [[nodiscard]] std::vector<std::string> on_topic(const TopicMessage& message,
                                                     std::int64_t now_ns);
     /// Returns messages whose throttle time has passed. Call it every few milliseconds.
@@ -86,7 +86,7 @@ class RosbridgeSession {
     void judge_goal(const Call& call);
     void auth(const Call& call);
     [[nodiscard]] Status authenticate(const Call& call, std::string_view token);
-    /// False if the client's role is below `least`; also notes the refusal.
+    /// Returns false if the client's role is below `least`, and notes the refusal in the audit log.
     [[nodiscard]] bool has_right(const Call& call, Role least, ActKind kind);
     [[nodiscard]] std::string no_right_text(Role least) const;
 

@@ -13,7 +13,7 @@
 
 namespace surefoot::gate_process {
 
-/// A message of a topic. All connections in which it waits share the JSON of its body.
+/// A message of a topic. All connections in which the message waits share the JSON of its body.
 struct TopicMessage {
     Topic topic = Topic::health;
     std::shared_ptr<const std::string> body;
@@ -22,26 +22,26 @@ struct TopicMessage {
 /// The rate at which a client wants a topic, as in rosbridge: throttle_rate is a time in ms,
 /// queue_length is the number of messages kept during that time.
 struct SubscriptionWish {
-    std::string id;  ///< may be empty
+    std::string id;  ///< id of the wish; may be empty
     std::int64_t interval_ns = 0;
     std::size_t queue_length = 0;
 };
 
-/// The subscriptions of one connection. Several subscriptions to a topic form one stream with the
-/// shortest interval and the longest queue of them. During the interval the newest messages are
-/// kept (at least one), so a slow client receives the last state.
+/// The subscriptions of one connection. Several subscriptions to a topic form one stream, with the
+/// shortest interval and the longest queue of these subscriptions. During the interval the newest
+/// messages are kept (at least one), so a slow client receives the last state.
 class Subscriptions {
   public:
     explicit Subscriptions(std::size_t max_count) : max_count_(max_count) {}
 
-    /// `name`: in the client's spelling, which the messages repeat. A wish with the same id
-    /// replaces the earlier one. Returns an error beyond the limit.
+    /// Adds a wish. `name`: in the client's spelling, which the messages repeat. A wish with the
+    /// same id replaces the earlier wish. Returns an error above the limit of subscriptions.
     [[nodiscard]] Status add(Topic topic, std::string name, SubscriptionWish wish);
-    /// Removes one wish; with an empty id all wishes for the topic. False if there was none.
+    /// Removes one wish, or with an empty id all wishes for the topic. False if there was no wish.
     bool remove(Topic topic, const std::string& id);
-    /// The complete texts to send now; may be empty.
+    /// Returns the complete texts to send now; may be empty.
     [[nodiscard]] std::vector<std::string> offer(const TopicMessage& message, std::int64_t now_ns);
-    /// The messages whose interval has passed.
+    /// Returns the messages whose interval has passed.
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
     [[nodiscard]] bool wants(Topic topic) const noexcept;
     [[nodiscard]] std::size_t count() const noexcept;

@@ -46,7 +46,7 @@ Json age_ms(std::int64_t age_ns) {
     return age_ns < 0 ? Json(nullptr) : Json(static_cast<double>(age_ns) / kNsPerMs);
 }
 
-/// The attested area in odom; null without a valid attestation.
+/// Returns the attested area in odom; null without a valid attestation.
 Json attested_object(const gate::AttestedArea& area) {
     if (!area.active) return nullptr;
     constexpr double kTenthMm_m = 1e-4;
@@ -60,7 +60,7 @@ Json stamp_object(std::int64_t time_ns) {
     return {{"secs", time_ns / kNanosecondsPerSecond}, {"nsecs", time_ns % kNanosecondsPerSecond}};
 }
 
-/// Every member of the health as text, as DiagnosticStatus requires.
+/// Returns every member of the health as text, as DiagnosticStatus requires.
 Json key_values(const Json& health) {
     Json list = Json::array();
     for (const auto& [key, value] : health.items())
@@ -156,7 +156,7 @@ Json outlook_object(const GateReport& report,
 
 std::array<Json, 2> goal_markers(const GoalQuestion& goal, const Answer& answer) {
     constexpr int kAdd = 0;
-    constexpr double kWordsHeight_m = 0.5;  // above the arrow
+    constexpr double kWordsHeight_m = 0.5;  // the text is above the arrow
     auto markers = both_markers(kAdd);
     const std::string words = std::string(to_string(answer.verdict.decision)) + ": " + answer.text;
     for (Json& one : markers) {

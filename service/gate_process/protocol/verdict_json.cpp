@@ -11,10 +11,10 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-constexpr std::int64_t kOpenTenthMm = 0xffff;  // open value of Evidence::min_clearance_tenth_mm
+constexpr std::int64_t kOpenTenthMm = 0xffff;  // min_clearance_tenth_mm with nothing overhead
 
-// Divides instead of multiplying by 1e-4: the quotient is the double nearest to the decimal number,
-// so 0.2311 m is written as 0.2311.
+// Divides by 1e4 instead of multiplying by 1e-4. The quotient is the double nearest to the decimal
+// number, so 0.2311 m is written as 0.2311.
 double metres(std::int64_t tenth_mm) {
     return static_cast<double>(tenth_mm) / kTenthMmPerM;
 }

@@ -109,7 +109,9 @@ bool Access::has_tokens() const noexcept {
 }
 
 std::optional<std::string> Access::problem() const {
-    if (guest == Role::operator_) return "a client without a token cannot be the operator";
+    if (guest == Role::operator_)
+        return "a client without a token cannot be the operator: give --guests none, observer or "
+               "rider";
     for (const Role role : kTokenRoles) {
         if (token_of(role).empty()) continue;
         if (auto problem = problem_of_token(role, token_of(role))) return problem;

@@ -7,11 +7,11 @@
 namespace surefoot::gate_process {
 namespace {
 
-/// A client may send any number.
+/// A client may send any number as the radius.
 std::int32_t tenth_mm(double length_m) noexcept {
     constexpr double kMost_m = 100.0;
     if (std::isnan(length_m)) return 0;
-    // in range: 100 m are 1e6
+    // in range: 100 m are 1e6 units of 0.1 mm
     return static_cast<std::int32_t>(std::lround(std::clamp(length_m, -kMost_m, kMost_m) * 1e4));
 }
 

@@ -45,7 +45,7 @@ bool is_welcome_origin(std::optional<std::string_view> origin,
            std::find(origins.begin(), origins.end(), *origin) != origins.end();
 }
 
-/// The token of the request; empty optional if there is none.
+/// Returns the token of the request, or nothing if there is no token.
 std::optional<std::string_view> token_of(const Knock& knock) {
     constexpr std::string_view kScheme = "Bearer ";
     if (knock.authorization && knock.authorization->starts_with(kScheme))
@@ -54,7 +54,7 @@ std::optional<std::string_view> token_of(const Knock& knock) {
     return token.empty() ? std::nullopt : std::optional(token);
 }
 
-/// An Origin in a form that can safely be repeated to the client.
+/// Returns an Origin in a form that can safely be repeated to the client.
 std::string printable(std::string_view text) {
     constexpr std::size_t kMost = 100;
     std::string out(text.substr(0, kMost));
@@ -85,7 +85,7 @@ std::string refusal_text(const Entrance& entrance, const Knock& knock) {
     if (entrance.has_token)
         return "this token is not known here. Take a token from the service's token file";
     return "a token is needed: connect to ?token=TOKEN, or send the header 'Authorization: Bearer "
-           "TOKEN'. The token stands in the service's token file";
+           "TOKEN'. The token is in the service's token file";
 }
 
 Admission admit(const std::string& token,

@@ -6,8 +6,8 @@
 
 namespace surefoot::gate_process {
 
-/// The address of the client's computer; empty if the client runs on this computer (its address is
-/// loopback or equals the address that it connected to).
+/// Returns the address of the client's computer. Empty if the client runs on this computer: its
+/// address is loopback or equals the address that it connected to.
 [[nodiscard]] inline std::string peer_of(const boost::asio::ip::tcp::socket& socket) {
     boost::system::error_code error;
     const auto there = socket.remote_endpoint(error).address();

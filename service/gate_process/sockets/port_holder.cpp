@@ -23,8 +23,8 @@ std::optional<int> number_of(std::string_view text, int base = 10) {
     return number;
 }
 
-/// Adds the sockets that listen on the port, named like the links in /proc/PID/fd: "socket:[12345]"
-/// (proc_net_tcp: fields 1 = address:port in hexadecimal, 3 = state, 9 = inode).
+/// Adds the sockets that listen on the port, named like the links in /proc/PID/fd:
+/// "socket:[12345]". Fields of proc_net_tcp: 1 = address:port in hexadecimal, 3 = state, 9 = inode.
 void add_listeners(const char* table, std::uint16_t port, std::set<std::string>& sockets) {
     std::ifstream file(table);
     std::string line;
@@ -56,7 +56,7 @@ PortHolder describe(int number, const fs::path& process) {
     std::getline(std::ifstream(process / "comm"), holder.name);
     std::string stat;
     std::getline(std::ifstream(process / "stat"), stat);
-    // "1234 (name) S 1 ...": the name may have any characters.
+    // The text is "1234 (name) S 1 ...". The name may contain any characters.
     std::istringstream rest(
         stat.substr(stat.rfind(')') == std::string::npos ? stat.size() : stat.rfind(')') + 1));
     std::string state;

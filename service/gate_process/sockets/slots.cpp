@@ -8,10 +8,11 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kForgetHalf_ns = 1'000'000'000;
-/// A question costs 0.15 ms. A rider that asks 15 times a second reaches this decayed cost.
+/// Cost above which a client counts as too expensive. A question costs 0.15 ms, and a rider that
+/// asks 15 times a second reaches this decayed cost.
 constexpr std::int64_t kHeavy_ns = 5'000'000;
 
-/// Costs decay completely within a minute.
+/// After a minute, costs have decayed completely.
 std::int64_t remaining(std::int64_t cost_ns, std::int64_t age_ns) noexcept {
     constexpr std::int64_t kMostHalves = 62;
     return cost_ns >> std::clamp<std::int64_t>(age_ns / kForgetHalf_ns, 0, kMostHalves);
@@ -94,7 +95,7 @@ void Slots::served(Id id, std::int64_t now_ns, std::int64_t cost_ns) noexcept {
     Held& held = found->second;
     const std::int64_t age_ns = now_ns - held.cost_at_ns;
     held.cost_ns = cost_ns + remaining(held.cost_ns, age_ns);
-    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within a second are added
+    if (age_ns >= kForgetHalf_ns) held.cost_at_ns = now_ns;  // costs within 1 s add up
     held.was_served = true;
     held.since_ns = now_ns;
 }

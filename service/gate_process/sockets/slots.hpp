@@ -10,19 +10,19 @@
 
 namespace surefoot::gate_process {
 
-/// Numbers of connections that a service keeps, by rank.
+/// Limits of the connections that a service keeps, by rank.
 struct SlotLimits {
     std::size_t max_clients = 64;
     std::size_t reserved = 8;  ///< part of max_clients that is reserved for clients of high rank
-    /// Limit of connections without a complete request; beyond it one is closed. It is large, so
-    /// that many new connections do not displace a client before its request arrives.
+    /// Limit of connections without a complete request; above it, one connection is closed. The
+    /// limit is large: many new connections must not displace a client before its request arrives.
     std::size_t max_handshakes = 256;
-    std::size_t per_peer = 16;  ///< clients of low rank per other computer
+    std::size_t per_peer = 16;  ///< most clients of low rank per other computer
     /// A low-rank client served within this time is not closed for another low-rank client, unless
-    /// it is too expensive.
+    /// it needs too much processor time.
     std::int64_t useful_ns = 2'000'000'000;
 
-    /// The first problem as a message, or nullptr.
+    /// Returns the first problem as a message, or nullptr.
     [[nodiscard]] const char* problem() const noexcept;
 };
 
@@ -40,26 +40,26 @@ enum class Rank : std::uint8_t { low, high };
 /// 2. a client without subscription that was not served within `useful_ns`;
 /// 3. the most expensive client, if it costs more than a rider that asks 15 times a second;
 /// 4. a client with a subscription that was not served within `useful_ns`.
-/// Without such a client a low-rank newcomer gets no slot, and a high-rank newcomer replaces any
-/// low-rank client. A high-rank client is never closed for another client.
+/// If no client fits this list, a low-rank newcomer gets no slot, and a high-rank newcomer replaces
+/// any low-rank client. A high-rank client is never closed for another client.
 class Slots {
   public:
     using Id = std::uint64_t;
     struct Entry {
         bool granted = false;
-        bool peer_is_full = false;  ///< cause of a refusal: too many clients from this computer
-        std::optional<Id> ended;    ///< close this connection
+        bool peer_is_full = false;  ///< refused: too many clients from this computer
+        std::optional<Id> ended;    ///< connection that the caller must close
     };
 
     explicit Slots(const SlotLimits& limits) : limits_(limits) {}
 
     /// Registers a new connection. `peer`: address of the other computer; empty for this computer.
-    /// If too many connections wait, returns the one to close: the oldest of the peer with the most
-    /// waiting connections, never the new one.
+    /// If too many connections wait, returns the connection to close: the oldest of the peer with
+    /// the most waiting connections, never the new one.
     [[nodiscard]] std::optional<Id> arrive(Id id, std::string_view peer, std::int64_t now_ns);
-    /// The request is valid: makes the connection a client, if a slot exists.
+    /// Makes the connection a client if a slot exists. Call it after a valid request.
     [[nodiscard]] Entry enter(Id id, Rank rank, std::int64_t now_ns);
-    /// Raises the rank: the client sent its token later.
+    /// Raises the rank. Call it if the client sends its token later.
     void promote(Id id) noexcept;
     /// Records that the client was served with `cost_ns` of processor time.
     void served(Id id, std::int64_t now_ns, std::int64_t cost_ns) noexcept;
@@ -76,7 +76,7 @@ class Slots {
   private:
     struct Held {
         std::string peer;
-        std::int64_t since_ns = 0;  ///< time when it arrived, became a client or was served
+        std::int64_t since_ns = 0;  ///< last time it arrived, became a client or was served
         bool is_client = false;
         bool listens = false;
         bool was_served = false;

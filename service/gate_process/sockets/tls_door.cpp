@@ -34,7 +34,7 @@ using net::ip::tcp;
 using Inner = net::local::stream_protocol::socket;
 using Outer = net::ssl::stream<tcp::socket>;
 
-constexpr std::size_t kBlock_bytes = 16 * 1024;  // one TLS record
+constexpr std::size_t kBlock_bytes = 16 * 1024;  // size of one TLS record
 constexpr unsigned char kTlsHandshake = 22;      // first byte of a ClientHello (RFC 8446, 5.1)
 constexpr const char* kUseTls =
     "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
@@ -95,7 +95,7 @@ class TlsListener {
     std::thread thread_;
 };
 
-/// One client: first its TLS handshake, then bytes in both directions until one side closes.
+/// One client: first the TLS handshake, then bytes in both directions until one side closes.
 class TlsListener::Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(TlsListener& listener, tcp::socket socket, Slots::Id id, std::string peer)
@@ -203,8 +203,8 @@ class TlsListener::Connection : public std::enable_shared_from_this<Connection> 
                              self->read_inner();
                          });
     }
-    /// The service closed: sends close_notify within a second, so the client knows that no data was
-    /// cut.
+    /// Ends the connection after the service has closed it. Sends close_notify within one second,
+    /// so the client knows that no data was cut.
     void say_goodbye() {
         deadline_.expires_after(std::chrono::seconds(1));
         deadline_.async_wait([self = shared_from_this()](error_code) { self->end(); });
@@ -278,7 +278,7 @@ void TlsListener::accept() {
             take(std::move(socket));
             return accept();
         }
-        // No file handles are left: an immediate retry would keep a core busy.
+        // No file handles are left. An immediate retry would keep a core busy.
         retry_.expires_after(std::chrono::milliseconds(20));
         retry_.async_wait([this](error_code cancelled) {
             if (!cancelled) accept();
@@ -287,7 +287,7 @@ void TlsListener::accept() {
 }
 
 void TlsListener::take(tcp::socket socket) {
-    if (connections_.size() >= config.max_connections) return;  // closes its socket
+    if (connections_.size() >= config.max_connections) return;  // the destructor closes the socket
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const std::string peer = peer_of(socket);

@@ -27,8 +27,8 @@ struct TlsDoorConfig {
     std::string bind_address;
     std::uint16_t port = 0;  ///< 0 = any free port
     TlsFiles files;
-    std::size_t max_connections = 320;  ///< including unfinished handshakes
-    std::size_t max_handshakes = 64;    ///< above it, the oldest of the peer with most is closed
+    std::size_t max_connections = 320;  ///< limit, with unfinished handshakes
+    std::size_t max_handshakes = 64;    ///< above it, the peer with most loses its oldest
     int handshake_ms = 5000;
 };
 
@@ -59,11 +59,11 @@ class TlsListener;
 /// Only tls_door.cpp includes OpenSSL.
 class TlsDoor {
   public:
-    /// `socket`: the service owns and closes it. `peer`: address of the other computer, empty for
-    /// this machine. Called on the door's thread.
+    /// Called on the door's thread. `socket`: the service owns and closes it. `peer`: address of
+    /// the other computer, empty for this machine.
     using OnArrival = std::function<void(int socket, const std::string& peer)>;
 
-    /// Listens without serving yet. Returns an error with the cause if a file is unusable, if
+    /// Listens, but does not serve yet. Returns an error with the cause if a file is unusable, if
     /// others may read the key, or if the address is in use.
     [[nodiscard]] static Result<std::unique_ptr<TlsDoor>> open(const TlsDoorConfig& config,
                                                                OnArrival on_arrival);

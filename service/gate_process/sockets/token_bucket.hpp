@@ -14,8 +14,8 @@ struct RateLimit {
     std::int64_t burst = 1;
 };
 
-/// A token bucket in whole nanoseconds. It stores the time at which it will be full; every token
-/// moves that time by one interval. A refused event takes no token.
+/// A token bucket in whole nanoseconds. It stores the time at which the bucket will be full; every
+/// token moves that time by one interval. A refused event takes no token.
 class TokenBucket {
   public:
     /// Precondition: both numbers of the limit are positive.

@@ -43,7 +43,7 @@ std::string system_says() {
     return std::generic_category().message(errno);
 }
 
-/// 128 random bits as hexadecimal digits; empty if the system has no random numbers.
+/// Returns 128 random bits as hexadecimal digits; empty if the system has no random numbers.
 std::string new_token() {
     std::array<std::uint8_t, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
@@ -56,9 +56,9 @@ Status check_owner(int file, const std::string& path) {
     struct stat about {};
     if (::fstat(file, &about) != 0) return usage_error(path + ": " + system_says());
     if (!S_ISREG(about.st_mode))
-        return usage_error(path + ": the token file must be a regular file");
+        return usage_error(path + ": the token file is not a regular file; name a regular file");
     if (about.st_uid != ::geteuid())
-        return usage_error(path + ": this token file belongs to another user");
+        return usage_error(path + ": this token file belongs to another user; name your own file");
     if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0)
         return usage_error(fmt::format(
             "{}: other users may reach this token file (rights {:04o}); run chmod 600 {}, or "
@@ -128,7 +128,7 @@ Result<TokenFile> read_or_make_tokens(const std::string& path) {
         if (auto made = make_folder_of(path); !made) return made.error();
         const Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
         if (file.number() >= 0) return make_tokens(file.number(), path);
-        if (errno != EEXIST)  // another start may have created it just now
+        if (errno != EEXIST)  // another process may have created it meanwhile
             return input_error(path + ": the token file cannot be created: " + system_says());
     }
     auto access = read_tokens(path);
@@ -138,9 +138,9 @@ Result<TokenFile> read_or_make_tokens(const std::string& path) {
 
 std::string words_of_new_tokens(const Access& access, const std::string& path) {
     return fmt::format(
-        "new tokens were made in {} (rights 0600); they are shown this once:\n"
+        "new tokens were written to {} (rights 0600); the gate shows them only now:\n"
         "  observer  {}  (reads)\n"
-        "  rider     {}  (asks; keeps a slot)\n"
+        "  rider     {}  (asks for steps; slots are reserved for it)\n"
         "  operator  {}  (attests the ground, re-arms)\n",
         path,
         access.observer,
@@ -153,16 +153,19 @@ Result<LoadedAccess> load_access(const std::string& token_file,
                                  const std::string& bind_address) {
     LoadedAccess loaded;
     const std::string path = token_file.empty() ? default_token_file() : token_file;
-    auto tokens = path.empty() ? Result<TokenFile>(usage_error("HOME is not set"))
-                               : read_or_make_tokens(path);
+    auto tokens =
+        path.empty()
+            ? Result<TokenFile>(usage_error("HOME is not set, so there is no default token file"))
+            : read_or_make_tokens(path);
     if (!tokens && !token_file.empty()) return tokens.error();
     if (tokens) {
         loaded.access = tokens->access;
         if (tokens->is_new) loaded.news = words_of_new_tokens(tokens->access, path);
     } else {
-        loaded.news = "warning: " + tokens.error().message +
-                      "; without tokens nobody can attest or re-arm: name a file with "
-                      "--token-file\n";
+        loaded.news =
+            "warning: " + tokens.error().message +
+            ". Without tokens nobody can attest the ground or re-arm the gate: name a file "
+            "with --token-file\n";
     }
     loaded.access.guest = guest_role(guests, bind_address);
     return loaded;

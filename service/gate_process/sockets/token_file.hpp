@@ -8,13 +8,13 @@
 
 namespace surefoot::gate_process {
 
-/// `$XDG_STATE_HOME/surefoot/tokens`, or `~/.local/state/surefoot/tokens`. Empty if neither
+/// Returns `$XDG_STATE_HOME/surefoot/tokens` or `~/.local/state/surefoot/tokens`. Empty if neither
 /// variable is set.
 [[nodiscard]] std::string default_token_file();
 
 struct TokenFile {
     Access access;
-    bool is_new = false;  ///< created by this call: show the tokens once
+    bool is_new = false;  ///< true: this call created the file; show the tokens once
 };
 
 /// Reads the tokens of a service (parse_tokens). If the file is missing, creates it with rights
@@ -25,21 +25,21 @@ struct TokenFile {
 /// Reads the tokens of an existing file.
 [[nodiscard]] Result<Access> read_tokens(const std::string& path);
 
-/// The message shown once after the file was created.
+/// Returns the message that is shown once, after the file was created.
 [[nodiscard]] std::string words_of_new_tokens(const Access& access, const std::string& path);
 
 struct LoadedAccess {
     Access access;
-    std::string news;  ///< lines to show: new tokens, or why there are none; may be empty
+    std::string news;  ///< lines to show: new tokens, or the cause of missing tokens; may be empty
 };
-/// The access settings at the start of a service. Empty `token_file`: the default file. If that is
-/// unusable, the service runs without tokens, so nobody can attest or re-arm. `guests`: see
-/// `guest_role`.
+/// Returns the access settings at the start of a service. Empty `token_file`: the default file. If
+/// the default file is unusable, the service runs without tokens, and nobody can attest or re-arm.
+/// `guests`: see `guest_role`.
 [[nodiscard]] Result<LoadedAccess> load_access(const std::string& token_file,
                                                const std::string& guests,
                                                const std::string& bind_address);
 
-/// The role of a client without a token: `wished`, or the default of the address (rider on
+/// Returns the role of a client without a token: `wished`, or the default of the address (rider on
 /// loopback, none on any other address).
 [[nodiscard]] Role guest_role(const std::string& wished, const std::string& bind_address);
 

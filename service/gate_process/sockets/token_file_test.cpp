@@ -106,7 +106,8 @@ TEST_F(TokenFileTest, WithoutADefaultFileThereIsNoOperatorAndThatIsSaid) {
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_FALSE(loaded->access.has_tokens());
     EXPECT_EQ(loaded->access.guest, Role::rider);
-    EXPECT_NE(loaded->news.find("nobody can attest or re-arm"), std::string::npos);
+    EXPECT_NE(loaded->news.find("nobody can attest the ground or re-arm the gate"),
+              std::string::npos);
     fs::remove(folder_ / "surefoot");
     const auto made = load_access("", "", "127.0.0.1");
     ASSERT_TRUE(made);

@@ -45,7 +45,8 @@ std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// Processor time for some work between two ticks. An overdraft reduces the next allowance.
+/// Processor time for some work between two ticks. Time used above the allowance reduces the next
+/// allowance.
 class WorkBudget {
   public:
     explicit WorkBudget(int per_tick_us) : per_tick_ns_(per_tick_us * kNsPerUs) {}
@@ -53,7 +54,7 @@ class WorkBudget {
         left_ns_ = std::min(per_tick_ns_, left_ns_ + per_tick_ns_);
         ticks_spent_ = is_spent() ? ticks_spent_ + 1 : 0;
         if (ticks_spent_ < kMostTicks) return;
-        left_ns_ = 1;  // enough for one piece of work of any cost, so that no client waits forever
+        left_ns_ = 1;  // permits one piece of work of any cost, so that no client waits forever
         ticks_spent_ = 0;
     }
     void charge(std::int64_t cost_ns) noexcept {
@@ -107,7 +108,7 @@ class SocketServer {
     Slots slots;
     WorkBudget guest_work;
     WorkBudget door_work;
-    std::int64_t accounted_ns = 0;  ///< processor time since the last tick, assigned to clients
+    std::int64_t accounted_ns = 0;  ///< time [ns] since the last tick, assigned to clients
 
   private:
     void begin();
@@ -121,17 +122,17 @@ class SocketServer {
     void on_tick();
     void look_ahead(std::int64_t now_ns);
 
-    net::io_context io_{1};  // one thread, so no locks. Destroyed last, with all waiting handlers
+    net::io_context io_{1};  // one thread: no locks. Destroyed last, with all waiting handlers
     tcp::acceptor acceptor_{io_};
     net::steady_timer timer_{io_};
     WebsocketServer::Tick tick_;
     PeriodicTopics topics_;
     OutlookRounds outlook_;
-    std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
+    std::vector<std::shared_ptr<Connection>> connections_;  // also held by their handlers
     std::vector<std::shared_ptr<Connection>> waiting_;      // clients that wait for their turn
     std::unique_ptr<TlsDoor> tls_door_;
     std::int64_t tick_ended_ns_ = 0;  // processor time
-    std::int64_t poll_ended_ns_ = 0;  // processor time, if the owner has its own loop
+    std::int64_t poll_ended_ns_ = 0;  // processor time, for an owner with its own loop
     Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
@@ -153,11 +154,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
           controls_(server.config.control_frames) {}
 
     void start();
-    /// Passes a topic message to the client. Does nothing before it is a client.
+    /// Passes a topic message to the client. Does nothing before the connection is a client.
     void offer(const TopicMessage& message, std::int64_t now_ns);
-    /// Sends the messages whose time has come and checks the deadlines.
+    /// Sends the messages that are due and checks the deadlines.
     void on_tick(std::int64_t now_ns);
-    /// Closes the connection at once, whatever is in transit.
+    /// Closes the connection at once, even if data is in transit.
     void end();
     /// Closes the connection at once; sends the reason if the client reads.
     void end_for_another();
@@ -198,24 +199,24 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
     SocketServer& server_;
     const Slots::Id slot_;
-    const std::string peer_;  // address of the other computer, empty for this one
+    const std::string peer_;  // address of the other computer; empty for this computer
     websocket::stream<Stream> ws_;
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
-    std::optional<Entrance> entrance_;  // entrance of a WebSocket that waits for its turn
+    std::optional<Entrance> entrance_;  // set while a WebSocket waits for its turn
     Role role_ = Role::none;
     bool has_token_ = false;  // the request had a valid token
     std::optional<RosbridgeSession> session_;
     OutQueue out_;
     TokenBucket controls_;
-    std::string writing_;                           // must live until it is written
-    std::optional<std::int64_t> write_since_ns_;    // set while a text is being sent
-    std::optional<std::int64_t> message_since_ns_;  // set while a message is being received
-    bool has_message_ = false;                      // the buffer holds a complete message
-    bool dismissed_ = false;                        // gets the queued texts, then is disconnected
-    std::optional<std::int64_t> leaves_at_ns_;      // time limit after the close message
-    bool flooded_ = false;                          // sent too many control frames
+    std::string writing_;                           // text being sent; must live until then
+    std::optional<std::int64_t> write_since_ns_;    // start of sending a text
+    std::optional<std::int64_t> message_since_ns_;  // start of receiving a message
+    bool has_message_ = false;                      // true: the buffer holds a complete message
+    bool dismissed_ = false;                        // true: gets the queued texts, then is closed
+    std::optional<std::int64_t> leaves_at_ns_;      // deadline after the close message
+    bool flooded_ = false;                          // true: sent too many control frames
     bool ended_ = false;
 };
 
@@ -223,7 +224,8 @@ void Connection::start() {
     error_code ignored;
     auto& socket = beast::get_lowest_layer(ws_).socket();
     socket.set_option(tcp::no_delay(true), ignored);
-    // A client that does not read must fill our queue, where its bytes are counted.
+    // The socket buffer is small. So a client that does not read fills our queue, where its bytes
+    // are counted.
     socket.set_option(net::socket_base::send_buffer_size(64 * 1024), ignored);
     auto& stream = ws_.next_layer();
     stream.rate_policy().read_limit(server_.config.max_read_bytes_per_s);
@@ -385,8 +387,8 @@ void Connection::on_read(error_code error) {
     go_on();
 }
 
-/// Handles the message that was read and continues to read, now or in this client's turn. Until
-/// then the client's data stays in its socket.
+/// Handles the message that was read and continues to read: now, or in this client's turn. Until
+/// its turn, the client's data stays in its socket.
 void Connection::go_on() {
     const bool high = entrance_ ? is_high(*entrance_) : server_.slots.is_high(slot_);
     if (!high && server_.guest_work.is_spent()) return server_.wait_for_turn(shared_from_this());
@@ -430,7 +432,7 @@ void Connection::on_message(std::int64_t now_ns) {
     bool room = true;
     for (auto& reply : reaction.replies) room = out_.push_reply(std::move(reply)) && room;
     if (!room) return drop();
-    write();  // sends the answer before other clients get the topic message
+    write();  // sends the answer before the topic message goes to other clients
     server_.publish(reaction.published, now_ns);
     if (reaction.drop && !ended_) dismiss();
 }
@@ -491,8 +493,8 @@ void Connection::dismiss() {
     if (!write_since_ns_) close_politely();
 }
 
-/// Sends the reason and disconnects soon. Reads nothing more, because waiting for the client's
-/// close frame would mean reading all data before it.
+/// Sends the reason and disconnects soon. Reads no more data: to wait for the client's close frame,
+/// the server would have to read all data before it.
 void Connection::close_politely() {
     if (leaves_at_ns_) return;
     constexpr std::int64_t kLinger_ns = 100'000'000;
@@ -515,7 +517,7 @@ void Connection::drop() {
     end();
 }
 
-/// Closes a client that loses its slot without waiting for it.
+/// Closes a client that loses its slot. Does not wait for the client.
 void Connection::end_for_another() {
     if (session_) ++server_.totals.dropped;
     if (session_ && !write_since_ns_) say_goodbye("\x88\x1f\x03\xf0the slot went to a new client");
@@ -573,7 +575,7 @@ void SocketServer::run() {
 void SocketServer::poll() {
     begin();
     const std::int64_t start_ns = thread_ns();
-    accounted_ns += start_ns - poll_ended_ns_;  // time of the owner's own loop
+    accounted_ns += start_ns - poll_ended_ns_;  // processor time of the owner's own loop
     if (io_.poll() == 0) accounted_ns += thread_ns() - start_ns;
     poll_ended_ns_ = thread_ns();
 }
@@ -605,7 +607,7 @@ void SocketServer::accept() {
     --accepts_left_;
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
-        if (error) return;  // no file handles left, or already closed: the next tick retries
+        if (error) return;  // no file handles left, or already closed; the next tick retries
         const std::int64_t start_ns = thread_ns();
         const std::string peer = peer_of(socket);
         admit_to_door(std::move(socket), peer);
@@ -637,8 +639,8 @@ void SocketServer::wait_for_turn(std::shared_ptr<Connection> connection) {
     waiting_.push_back(std::move(connection));
 }
 
-/// Serves waiting connections. Clients with little use come first; newcomers and clients take
-/// turns, so that neither group blocks the other.
+/// Serves waiting connections. Clients with the least use come first. New connections and clients
+/// take turns, so that neither group blocks the other.
 void SocketServer::take_turns(std::int64_t now_ns) {
     guest_work.refill();
     door_work.refill();
@@ -650,10 +652,10 @@ void SocketServer::take_turns(std::int64_t now_ns) {
     });
     auto newcomer = turns.begin();
     auto client = clients;
-    newcomers_first_ = !newcomers_first_;  // alternates who is first if there is time for one only
+    newcomers_first_ = !newcomers_first_;  // each group is first in every second tick
     for (bool newcomers_turn = newcomers_first_; newcomer != clients || client != turns.end();
          newcomers_turn = !newcomers_turn) {
-        // Connections that arrive when no time is left wait again.
+        // If no time is left, the connections wait again.
         if (newcomers_turn && newcomer != clients) (*newcomer++)->take_turn();
         if (!newcomers_turn && client != turns.end()) (*client++)->take_turn();
     }
@@ -664,14 +666,14 @@ void SocketServer::wait_for_tick() {
         if (error) return;
         on_tick();
         const auto period = std::chrono::milliseconds(config.tick_ms);
-        // After a long pause missed ticks are not repeated.
+        // After a long pause, missed ticks are not repeated.
         timer_.expires_at(std::max(timer_.expiry() + period, net::steady_timer::clock_type::now()));
         wait_for_tick();
     });
 }
 
-/// Processor time since the last tick that belongs to no client (pongs, writing, closing) is
-/// subtracted from the guests' budget, because guests cause nearly all of it.
+/// Runs one tick. Some processor time since the last tick belongs to no client (pongs, writing,
+/// closing). It is subtracted from the guests' budget, because guests cause nearly all of it.
 void SocketServer::on_tick() {
     guest_work.charge(thread_ns() - tick_ended_ns_ - accounted_ns);
     do_tick(steady_ns());

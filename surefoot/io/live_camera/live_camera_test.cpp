@@ -222,7 +222,7 @@ TEST(LiveCamera, RepeatedAndTornImagesAreFoundOut) {
     camera::FrameIntegrityCheck watch;
     for (int i = 0; i < 4; ++i) {
         StereoFrame frame = next_of(*live);
-        const FrameStatus frame_status = watch.look(frame);
+        const FrameStatus frame_status = watch.check(frame);
         EXPECT_EQ(frame_status.repeated, i == 1 ? 1 : 0) << i;
         EXPECT_EQ(frame_status.torn, i == 2) << i;
     }
