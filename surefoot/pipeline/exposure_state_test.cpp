@@ -50,7 +50,7 @@ TEST(ExposureState, TheWorseEyeDecides) {
 TEST(ExposureState, FramesWithoutImagesAreLit) {
     EXPECT_EQ(exposure_state_of(StereoFrame{}), ExposureState::well_exposed);
     EXPECT_EQ(exposure_state_of(frame_of(striped(0.0, 0), {})), ExposureState::well_exposed)
-        << "RGB-D has one eye";
+        << "RGB-D has one camera";
 }
 
 }  // namespace

@@ -356,7 +356,7 @@ TEST(RigRos, BadValuesNameFileAndKey) {
         {"410., ", "", "camera_matrix: 8 numbers; at least 9"},
         {"410.", "'410,5'", "'410,5' is not a number"},
         {"plumb_bob", "thin_prism", "'thin_prism' is not one of plumb_bob"},
-        {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 5"},
+        {"-0.002, 0.]", "-0.002, 0., 7e-3]", "6 numbers; plumb_bob has 4 or 5"},
         {"distortion_model: plumb_bob\n",
          "distortion_model: ''\n",
          "the coefficients are not 0, but distortion_model is"},

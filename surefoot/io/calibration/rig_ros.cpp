@@ -80,7 +80,11 @@ camera::CameraModel read_lens(YamlReader& yaml, const RosKeys& keys, RosCamera& 
     const auto expect = [&](std::size_t min, std::size_t max) {
         drop_zero_tail(D, max);
         if (D.size() >= min && D.size() <= max) return;
-        yaml.fail(list, keys.D, fmt::format("{} numbers; {} has {}", D.size(), model, max));
+        yaml.fail(list,
+                  keys.D,
+                  min == max
+                      ? fmt::format("{} numbers; {} has {}", D.size(), model, max)
+                      : fmt::format("{} numbers; {} has {} or {}", D.size(), model, min, max));
     };
     if (model == "none") return make_pinhole(k, {});
     if (model == "equidistant" || model == "fisheye") {

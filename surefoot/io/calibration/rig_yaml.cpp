@@ -232,7 +232,7 @@ std::string format_rig_yaml(const camera::StereoRig& rig) {
     std::string out;
     if (!rig.name.empty()) out += fmt::format("name: {}\n", quoted_scalar(rig.name));
     out += fmt::format(
-        "layout: {}\nresolution: [{}, {}]   # px, one eye\nrate_hz: {}\nreadout_s: {}   # rolling "
+        "layout: {}\nresolution: [{}, {}]   # px, one camera\nrate_hz: {}\nreadout_s: {}   # rolling "
         "shutter, 0 = global\nrectified: {}\n",
         rig.right ? "separate" : "rgbd",
         rig.left.width,

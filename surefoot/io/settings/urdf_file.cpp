@@ -73,7 +73,7 @@ std::string joint_text(const ModelJoint& joint) {
 std::string urdf_text(const MachineModel& model) {
     std::string text = fmt::format(
         "<?xml version=\"1.0\"?>\n"
-        "<!-- Made by `surefoot urdf` from the model \"{0}\": change that, not this.\n"
+        "<!-- Made by `surefoot urdf` from the model \"{0}\": change the model, not this file.\n"
         "     Lengths in m, angles in rad. Effort and velocity are not known: 0. -->\n"
         "<robot name=\"{0}\">\n",
         model.name);

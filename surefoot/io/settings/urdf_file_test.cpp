@@ -21,7 +21,7 @@ joints:
                                    "m.yaml");
     ASSERT_TRUE(model.ok()) << model.error().message;
     EXPECT_EQ(urdf_text(*model), R"(<?xml version="1.0"?>
-<!-- Made by `surefoot urdf` from the model "small": change that, not this.
+<!-- Made by `surefoot urdf` from the model "small": change the model, not this file.
      Lengths in m, angles in rad. Effort and velocity are not known: 0. -->
 <robot name="small">
   <material name="blue">

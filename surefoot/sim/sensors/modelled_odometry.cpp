@@ -7,7 +7,6 @@
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
-namespace {}  // namespace
 
 void DriftConfig::describe(ConfigVisitor& visitor) {
     visitor.number("position_m_sqrt_m",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/stairs/classes/planar_patches.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -58,7 +60,10 @@ void PatchConfig::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> PatchConfig::problem() const {
     if (tolerance_m <= max_tolerance_m) return std::nullopt;
-    return "stairs.patches.tolerance_m must not be above stairs.patches.max_tolerance_m";
+    return fmt::format(
+        "stairs.patches.tolerance_m {} must not be above stairs.patches.max_tolerance_m {}",
+        tolerance_m,
+        max_tolerance_m);
 }
 
 void PatchFinder::Sums::add(const Sums& other) {
