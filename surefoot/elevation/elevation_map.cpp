@@ -130,7 +130,7 @@ Result<std::int64_t> ElevationMap::insert(const grid::MapRegion& region,
     if (region.resolution_m != geometry().resolution_m) {
         return input_error(
             fmt::format("a remembered map of {} m cells cannot fill cells of {} m: set "
-                        "elevation.resolution_m to that of the map",
+                        "elevation.resolution_m to the cell size of the remembered map",
                         region.resolution_m,
                         geometry().resolution_m));
     }

@@ -53,24 +53,25 @@ bool agrees(const HeightResidual& residual, double offset_m) {
 void HeightDriftConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
         "enabled", enabled, "true: correct old parts of the map by the drift of the body's height");
-    visitor.integer("min_motions",
-                    min_motions,
-                    1,
-                    100000,
-                    "smallest number of uncertain motions since the last alignment of a cell that "
-                    "make the cell old; min_drift_m must be met too");
+    visitor.integer(
+        "min_motions",
+        min_motions,
+        1,
+        100000,
+        "a cell is old after this number of uncertain motions since its last alignment, "
+        "if its height error also reaches min_drift_m");
     visitor.number("min_drift_m",
                    min_drift_m,
                    0.0,
                    1.0,
-                   "smallest height error (1 sigma) of the motions since the last alignment of a "
-                   "cell that makes the cell old");
+                   "a cell is old only if the motions since its last alignment cause at least this "
+                   "height error (1 sigma)");
     visitor.number("level_m",
                    level_m,
                    0.0,
                    1.0,
-                   "largest height difference between a cell and the map two cells beside it; "
-                   "cells with a larger difference are not used");
+                   "largest height difference between a cell and the map two cells beside it; the "
+                   "drift check skips cells with a larger difference");
     visitor.integer("kept_motions",
                     kept_motions,
                     0,
@@ -80,32 +81,37 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                     min_cells,
                     1,
                     4096,
-                    "smallest number of old cells that an offset needs; one cell of four is used");
-    visitor.integer("min_tiles",
-                    min_tiles,
-                    4,
-                    1000000,
-                    "smallest number of squares of 8 x 8 cells that an offset needs");
-    visitor.number("min_spread_m",
-                   min_spread_m,
-                   0.0,
-                   100.0,
-                   "smallest standard deviation of the cell positions along the longer axis");
-    visitor.number("agreeing_share",
-                   agreeing_share,
-                   0.5,
-                   1.0,
-                   "smallest share of the old cells that agree with the offset within their noise");
+                    "smallest number of old cells that a height correction needs; only one cell of "
+                    "four is counted");
+    visitor.integer(
+        "min_tiles",
+        min_tiles,
+        4,
+        1000000,
+        "smallest number of squares of 8 x 8 cells with old cells that a height correction needs");
+    visitor.number(
+        "min_spread_m",
+        min_spread_m,
+        0.0,
+        100.0,
+        "smallest standard deviation of the positions of the old cells, along their longer axis");
+    visitor.number(
+        "agreeing_share",
+        agreeing_share,
+        0.5,
+        1.0,
+        "smallest share of the old cells that must show the same height offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,
                    0.1,
                    100.0,
-                   "smallest offset that corrects the map [sigma of the offset]");
-    visitor.number("motion_sigmas",
-                   motion_sigmas,
-                   0.0,
-                   100.0,
-                   "largest offset that counts as drift [sigma of the motion since the alignment]");
+                   "smallest height offset that corrects the map [sigma of the offset]");
+    visitor.number(
+        "motion_sigmas",
+        motion_sigmas,
+        0.0,
+        100.0,
+        "largest height offset that counts as drift [sigma of the motion since the alignment]");
     visitor.number("depth_scale_sigma",
                    depth_scale_sigma,
                    0.0,

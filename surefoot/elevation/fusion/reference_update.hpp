@@ -35,7 +35,7 @@ struct AncestorPoint {
     float z_m = 0.0F;
     float variance_m2 = 0.0F;
 };
-static_assert(sizeof(AncestorPoint) == 16, "read from files of four float32 per point");
+static_assert(sizeof(AncestorPoint) == 16, "the files hold four float32 per point");
 
 /// Elevation update of the reference implementation, for comparison only; the live chain does not
 /// use it. It differs from ElevationMap. Every point updates its cell in file order and in

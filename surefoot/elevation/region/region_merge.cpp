@@ -157,8 +157,9 @@ std::optional<std::string> problem_of(const MapRegion& into,
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(
-            "the maps come from two runs, whose frames {0} were placed at {1} and at "
-            "{2} ns: each run places its own {0}",
+            "the maps come from two runs: their frames {0} started at {1} ns and at {2} ns. Give "
+            "maps of one run, or merge them as independent maps if both frames are at the same "
+            "place",
             into.frame,
             into.frame_since_ns,
             from.frame_since_ns);

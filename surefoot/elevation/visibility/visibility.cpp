@@ -20,24 +20,25 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean("cleanup", cleanup, "true: remove surfaces that lines of sight pass through");
     visitor.boolean("drops",
                     drops,
-                    "true: lines of sight over unknown cells bound the depth of the ground there");
+                    "true: lines of sight over an unknown cell give an upper limit for the height "
+                    "of its ground");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
                    10.0,
-                   "smallest distance of a line of sight below a cell height that contradicts the "
-                   "cell; sigmas of the height are added");
+                   "a line of sight contradicts a cell if it passes more than this distance below "
+                   "the cell height; the value of sigmas is added");
     visitor.number("sigmas",
                    sigmas,
                    0.0,
                    100.0,
-                   "sigmas of the height that are added to the contradiction limit margin_m");
-    visitor.number("neighbour_s",
-                   neighbour_s,
-                   0.0,
-                   60.0,
-                   "time since the last confirmation of a neighbour of equal height within which a "
-                   "cell is not removed");
+                   "number of sigmas of the cell height that are added to margin_m");
+    visitor.number(
+        "neighbour_s",
+        neighbour_s,
+        0.0,
+        60.0,
+        "a cell is not removed if a neighbour of equal height was confirmed within this time");
     visitor.integer("frames",
                     frames,
                     1,
