@@ -19,7 +19,7 @@ struct PrefilterConfig {
     double min_range_m = 0.3;
     double max_range_m = 20.0;
     bool height = true;
-    /// Relative to base_link; the floor lies near -1. Ground below the limit has no height in the
+    /// Relative to base_link; the floor lies near -1 m. Ground below the limit has no height in the
     /// map, but is evidence of a drop (`free_above_m`).
     double min_height_m = -3.0;
     double max_height_m = 1.0;   ///< excludes lintels and ceilings
@@ -70,7 +70,7 @@ class CloudFilter {
 
     [[nodiscard]] static Cube cube_of(const GridPoint& point, double edge_m);
     void reset_table(std::size_t points);
-    /// Returns the slot of a cube in the open-addressing table: an empty one or its own.
+    /// Returns the slot of the open-addressing table that holds a cube, or else an empty slot.
     [[nodiscard]] std::size_t slot_of(const Cube& cube) const;
     void link(std::span<const GridPoint> points, double edge_m);
     [[nodiscard]] int count_neighbours(std::span<const GridPoint> points,

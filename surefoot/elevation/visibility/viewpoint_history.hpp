@@ -25,13 +25,13 @@ struct ViewpointConfig {
 class ViewpointHistory {
   public:
     using Id = std::uint32_t;
-    /// No viewpoint: differs from every pose.
+    /// Id that stands for no viewpoint. Every pose differs from it.
     static constexpr Id kNever = 0;
 
     explicit ViewpointHistory(const ViewpointConfig& config);
     /// Sets the pose as the present viewpoint and returns its id. Ids increase.
     Id look_from(const Pose& T_odom_body);
-    /// True if the present viewpoint is farther from viewpoint `id` than the limits allow.
+    /// True if the present viewpoint is farther from viewpoint `id` than a limit of the config.
     [[nodiscard]] bool is_new_since(Id id) const;
 
   private:
@@ -39,7 +39,7 @@ class ViewpointHistory {
 
     ViewpointConfig config_;
     std::vector<Pose> poses_;            ///< ring, entry of id at id % size
-    std::vector<std::uint8_t> is_near_;  ///< by ring position: too close to the present view
+    std::vector<std::uint8_t> is_near_;  ///< by ring position: 1 = too close to the present view
     Id newest_ = kNever;
 };
 
