@@ -98,8 +98,7 @@ class ElevationMap {
                        Executor& executor);
     void reduce_block(int block);
     void reduce_row(int iy, CellMeasurement* measured) const;
-    /// Memory for the measurements of a row: its own if heights are aligned, else its block's
-    /// memory.
+    /// Memory for the measurements of a row. Rows of a block share it unless heights are aligned.
     CellMeasurement* measurements_of_row(int iy);
     void fuse_block(int block, const ExpectedPoints* expected, const FrameObservation& look);
 

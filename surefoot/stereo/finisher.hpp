@@ -14,7 +14,7 @@ class Finisher {
     explicit Finisher(const RefineConfig& refinement = {}) : refiner_(refinement) {}
 
     /// Fills all of `depth` from the disparities `found_px` (NaN = unknown). Without a filter,
-    /// `found_px` may be `depth.disparity_px`. Jumps and holes are found before the filter.
+    /// `found_px` may be `depth.disparity_px`. Finds jumps and holes before it filters.
     void finish(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,

@@ -25,8 +25,7 @@ class CellSamples {
     /// Number of elements that a register store may write beyond the last sample of a block.
     static constexpr std::size_t kSlack = 64;
 
-    /// Deletes all samples. Makes room for `blocks` blocks of `most` samples. Allocates only to
-    /// grow.
+    /// Deletes all samples. Makes room for `blocks` blocks of `most` samples. Allocates to grow.
     void reset(int blocks, std::size_t most);
     [[nodiscard]] int blocks() const noexcept { return static_cast<int>(counts_.size()); }
 

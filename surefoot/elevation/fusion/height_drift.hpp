@@ -117,8 +117,7 @@ class HeightDrift {
     /// Common offset of the older half of the old cells.
     struct Evidence {
         std::int64_t asked = 0;
-        std::int64_t agreeing =
-            0;  ///< cells with the offset within noise; basis of the fields below
+        std::int64_t agreeing = 0;  ///< cells with the offset within noise; base of fields below
         Eigen::Vector2d ground_slope = Eigen::Vector2d::Zero();
         double drift_m = 0.0;  ///< horizontal drift (1 sigma)
         double motion_var_m2 = 0.0;

@@ -24,8 +24,7 @@ class VisibilityCleanup {
 
     /// Starts a frame with the camera at `camera_m` in odom.
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);
-    /// Notes that lines of sight ended in a cell, see `RayEndpoints::set`. `var_m2` belongs to
-    /// `z_m`.
+    /// Notes ray endpoints in a cell, see `RayEndpoints::set`. `var_m2`: variance of `z_m`.
     void ended(std::size_t cell, float z_m, float var_m2, float bottom_m) noexcept {
         ends_.set(cell, z_m, bottom_m);
         of_cell_[cell] = not_above_m(z_m, var_m2);
