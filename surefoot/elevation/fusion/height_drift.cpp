@@ -10,16 +10,17 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Larger offsets are other surfaces, whatever the motion.
+/// Largest offset [m] that counts as drift. Larger offsets belong to other surfaces, whatever the
+/// motion.
 constexpr double kMost_m = 0.1;
-constexpr double kBin_m = 1e-4;  ///< a tenth of the snapshot's resolution
+constexpr double kBin_m = 1e-4;  ///< bin width of the histogram [m]
 constexpr int kBins = 2 * 1000 + 1;
 constexpr int kTileCells = 8;
-constexpr int kLeastOfTile = 4;          ///< least number of the sixteen used cells of a tile
+constexpr int kLeastOfTile = 4;  ///< smallest number of agreeing cells in a tile, of sixteen
 constexpr double kAgreeingSigmas = 2.5;  ///< same factor as the gate of the fusion
 /// Variance of a median divided by that of a mean, for normal noise: pi / 2.
 constexpr double kMedianLoss = 1.5708;
-constexpr double kSlopeChi2 = 13.8;  ///< 2 degrees of freedom, 0.1 %
+constexpr double kSlopeChi2 = 13.8;  ///< exceeded by chance in 0.1 % of cases, 2 degrees of freedom
 /// A camera tilt that explains this share of the offset at the cells makes the offset unusable.
 constexpr double kTiltShare = 0.25;
 constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
@@ -34,8 +35,8 @@ int tiles_along(int cells) {
     return (cells + kTileCells - 1) / kTileCells;
 }
 
-/// Returns the height variance that the motion added since the residual was observed, at the rate
-/// before.
+/// Returns the height variance that the motion added since the residual was observed. Assumes the
+/// same variance per motion as before the observation.
 double later_variance_m2(const HeightResidual& residual, std::uint32_t motions) {
     const auto before = static_cast<double>(residual.seen_step - residual.step);
     const auto since = static_cast<double>(motions - residual.seen_step);

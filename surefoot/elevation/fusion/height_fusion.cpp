@@ -18,8 +18,8 @@ FusionResult disagree(const FusionConfig& config,
     if (same_scan && measured.z_m < cell.z_m) return {cell, FusionOutcome::ignored};
     // A measurement slightly beyond the gate comes from the tail of the noise, not from another
     // surface. So the variance grows only as far as the measurement needs, and at most by the step
-    // for one contradiction. One wrong match weakens a certain cell little; a second one in a row
-    // weakens it much more, because the step grows with the variance.
+    // for one contradiction. One wrong match raises a small variance little. A second wrong match
+    // in a row raises the variance much more, because the step grows with the variance.
     const double innovation_m = measured.z_m - cell.z_m;
     const double explained_m2 =
         innovation_m * innovation_m / (config.gate_sigma * config.gate_sigma) - measured.var_m2;
