@@ -32,7 +32,7 @@ int jump_penalty(const SemiGlobalConfig& config, int grey, int grey_before) {
     return std::max(config.min_jump_penalty, config.jump_penalty - contrast);
 }
 
-/// L(p, d) = C(p, d) + min(L(p-r, d), L(p-r, d +- 1) + P1, min L(p-r) + P2) - min L(p-r)
+/// Computes L(p, d) = C(p, d) + min(L(p-r, d), L(p-r, d +- 1) + P1, min L(p-r) + P2) - min L(p-r).
 PathCosts step(const PathCosts& before, const PathCosts& match_costs, int slope, int jump) {
     const int least = *std::min_element(before.begin(), before.end());
     PathCosts costs(before.size());

@@ -96,7 +96,7 @@ void AncestorMap::add(std::span<const AncestorPoint> cloud, double time_s) {
 }
 
 void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
-    // The reference implementation counts cells down from the corner of largest x and y. So a point
+    // The reference implementation numbers cells from the corner of largest x and y. So a point
     // on a border between two cells belongs to the cell with the smaller coordinates.
     const double length_m = geometry_.nx * geometry_.resolution_m;
     const Eigen::Vector2d down_m =

@@ -9,7 +9,8 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr std::size_t kCapacity = 1024;
-constexpr double kSharedEntry = 0.25;  ///< share of the limits within which poses share an entry
+/// Poses closer than this share of the limits have one entry.
+constexpr double kSharedEntry = 0.25;
 
 double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
     return 2.0 * std::acos(std::min(1.0, std::abs(a.dot(b))));
