@@ -65,16 +65,16 @@ class ElevationCells {
                 FusionCounts& counts);
     /// True if the height of the cell is clearly above a line of sight over the cell.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
-    /// Counts one frame whose line of sight passes through the surface of the cell. Returns true if
-    /// the surface is gone: enough such frames without an agreeing observation. Call only for cells
-    /// without an agreeing observation in this frame.
+    /// Counts one frame whose line of sight passes through the surface of the cell. Returns true
+    /// after enough such frames without an agreeing observation: the surface is gone. Call only for
+    /// cells without an agreeing observation in this frame.
     bool see_through(std::size_t cell);
     /// Notes a line of sight over an unknown cell: the ground there is lower.
     void see_over(std::size_t cell, float line_z_m);
     /// Lower end of the remembered surface of a cell, see `CellObservation`.
     [[nodiscard]] float bottom_m(std::size_t cell) const noexcept { return bottom_m_.data()[cell]; }
     /// Lowest object observed above the height of a cell, or the lower end of a surface that was
-    /// removed from the cell; NaN if there is none.
+    /// removed from the cell; NaN if there is no such object.
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }

@@ -15,11 +15,11 @@ struct FeatureMatch {
 };
 
 struct MatchConfig {
-    int max_distance = 64;  ///< largest distance of a match; half of the mean by chance
+    int max_distance = 64;  ///< largest distance of a match; random descriptors have about 128
     /// Largest ratio of the best distance to the best distance elsewhere in the image. It holds in
     /// both images. A corner that occurs twice in an image is not unique.
     double ratio = 0.85;
-    double elsewhere_px = 12.0;  ///< distance of "elsewhere": nearer ones may show the same corner
+    double elsewhere_px = 12.0;  ///< nearer features are not "elsewhere": they may show one corner
 };
 
 /// Matches features that are each other's best match, wherever they are in the image. Compares all

@@ -5,7 +5,7 @@
 
 namespace surefoot::place_recognition {
 
-/// Why a view was not recognised as a stored place; the first reason that applies.
+/// First reason why a view was not recognised as a stored place, in the order of the checks.
 enum class Refusal : std::uint8_t {
     none,          ///< recognised
     few_features,  ///< the image has too little structure with depth

@@ -15,7 +15,7 @@ struct ComparisonConfig {
     double sigma_px = 1.0;  ///< sigma of a matched corner; higher pyramid levels are coarse
     int ransac_rounds = 300;
     double ransac_threshold_px = 4.0;
-    // Check at the known pose: each feature is searched in the other view and must agree.
+    // Settings of the check at the known pose, which searches each feature in the other view.
     double search_px = 6.0;     ///< largest distance of a corner from its expected position
     double disparity_px = 1.5;  ///< largest error of the corner's disparity
     int max_distance = 72;      ///< largest distance of the corner's descriptor

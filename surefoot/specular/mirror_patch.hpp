@@ -17,7 +17,7 @@ namespace surefoot::specular {
 /// row of cells parallel to the mirror lines of the search. Memory holds one line after the other.
 struct PatchDetail {
     static constexpr int kUnit = 40;    ///< about one standard deviation
-    static constexpr int kBlocks = 12;  ///< number of parts of a line with a sum of their own
+    static constexpr int kBlocks = 12;  ///< number of blocks of a line; each block has its own sum
 
     int lines = 0;
     int line_cells = 0;

@@ -15,7 +15,7 @@ struct SpecularConfig {
     double cell_m = 0.01;              ///< cell size of the floor picture
     double range_m = 3.2;              ///< distance of the farthest usable floor from the camera
     double mirror_correlation = 0.35;  ///< smallest correlation of floor and mirror image
-    double mirror_score = 7.0;         ///< smallest score of a line with such a correlation
+    double mirror_score = 7.0;         ///< smallest score of a mirror line (see mirror_correlation)
     double glass_score = 11.0;  ///< smallest score of any other line: glass reflects 5 to 15 %
     double keep_score = 3.5;    ///< `forget_looks` observations with a lower score delete a pane
     int forget_looks = 4;
@@ -26,7 +26,7 @@ struct SpecularConfig {
     /// number of the 180 directions all around. A search takes about 0.5 ms.
     int directions_per_frame = 1;
     double margin_m = 0.02;       ///< cells this far before the line also become unknown
-    double side_margin_m = 0.15;  ///< cells this far beside the observed part do too
+    double side_margin_m = 0.15;  ///< cells this far beside the observed part become unknown too
 
     void describe(ConfigVisitor& visitor);
     /// Returns the first contradiction between settings that are each in range, or nothing.

@@ -24,7 +24,7 @@ class Finisher {
 
   private:
     SubpixelRefiner refiner_;
-    // Kept between frames, so that a frame of the same size allocates nothing.
+    // These images stay between frames, so that a frame of the same size allocates nothing.
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
     UnknownCounts unknown_;

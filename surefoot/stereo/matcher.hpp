@@ -32,7 +32,7 @@ struct MatcherConfig {
     int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images need 96-128
     int block_size = 3;    ///< side of the matching window [px], odd; for sgbm only
     SgbmMode sgbm_mode = SgbmMode::three_way;
-    /// Window side [px], odd; for bm only. OpenCV's fast loops need at most 21, and caps up to 31.
+    /// Window side [px], odd; bm only. OpenCV is fast up to a side of 21 and a prefilter cap of 31.
     int bm_block_size = 15;
     int bm_prefilter_cap = 31;
     int uniqueness_percent = 5;

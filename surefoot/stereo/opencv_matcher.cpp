@@ -79,7 +79,7 @@ class OpenCvMatcher final : public Matcher {
     cv::Ptr<cv::StereoMatcher> search_;
     ClippedFilter clipped_;
     Finisher finisher_;
-    // Kept between frames, so that a frame of the same size allocates nothing.
+    // These images stay between frames, so that a frame of the same size allocates nothing.
     cv::Mat padded_left_;
     cv::Mat padded_right_;
     cv::Mat steps_;

@@ -199,7 +199,7 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     for_row_blocks(executor, height, [&](int first, int last) {
         smooth_block(first, last, found_px, filter);
     });
-    // Resized only here, because `disparity_px` may be the image `found_px`.
+    // The resize comes only here, because `disparity_px` may be the image `found_px`.
     disparity_px.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
         warp_block(first, last, left, right, jump_distance_px, disparity_px);

@@ -16,7 +16,7 @@ struct RefineConfig {
     /// found in a row therefore belongs to the row this many rows farther up.
     int lag_rows = 0;
     int window_radius_px = 12;    ///< 25x25 pixels share one correction; the radius is at most 16
-    double prior_sigma_px = 0.2;  ///< trust in the smoothed value, 1 sigma
+    double prior_sigma_px = 0.2;  ///< prior standard deviation of the smoothed disparity
     int jump_margin_px = 2;       ///< skips pixels this near to a jump: they show mixed surfaces
     double max_step_px = 1.0;     ///< largest correction
     /// Lower limit of the grey-level noise of a window (1 sigma, after smoothing of the image). The

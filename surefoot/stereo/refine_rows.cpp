@@ -287,7 +287,7 @@ void solve_row(const SolveRow& row) {
         const float step = -ge / (gg + row.correlation * variance * prior_weight);
         const float shift = std::min(std::max(step, -row.max_step_px), row.max_step_px);
         const bool known = disparity_px[u] == disparity_px[u];
-        const float unknown = disparity_px[u];  // NaN where it is used
+        const float unknown = disparity_px[u];  // NaN in the pixels that use this value
         const float kept_shift = solvable ? shift : 0.0F;
         const float noise = solvable ? std::sqrt(variance) : kMaxError / kScale;
         const float slope = solvable ? std::sqrt(gg * per_pixel) : 0.0F;

@@ -47,7 +47,7 @@ class RowRuns {
     }
 
   private:
-    // Bit u % 64 of word u / 64 for column u.
+    // Column u has bit u % 64 of word u / 64.
     std::vector<std::uint64_t> known_;
     std::vector<std::uint64_t> linked_;  ///< pixel pairs that are known and within the limit
 };

@@ -39,7 +39,7 @@ class SpeckleFilter {
     };
     static constexpr int kBandRows = 32;
     static constexpr int kPlaceBits = 20;
-    static constexpr int kMaxSide_px = 65000;  ///< 2047 bands of 32 rows of half as many runs fit
+    static constexpr int kMaxSide_px = 65000;  ///< run numbers hold 2047 bands of at most 2^20 runs
 
     Run& at(int number);
     [[nodiscard]] Band& band_of(int v);

@@ -41,8 +41,8 @@ struct CellMeasurement {
 };
 
 /// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of
-/// the heights, so single outliers above do not count, and climbs to the centre of the points
-/// around it (mean shift). If too few points share that height, it tries the next lower one. The
+/// the heights, so single outliers do not count. It climbs to the centre of the points around the
+/// start (mean shift). If too few points share that height, it tries the next lower start. The
 /// variance is the larger of the mean variance and the scatter of the points, divided by the number
 /// of independent errors, plus the systematic part. Many points without a common height are a
 /// vertical face (a wall, a person) with the height of the upper quantile; few such points give no
@@ -55,7 +55,7 @@ struct CellMeasurement {
 
 // Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< steps; 3 come within a few percent of the window
+inline constexpr int kClimbs = 3;    ///< number of steps; 3 end within a few percent of the window
 inline constexpr int kMaxTries = 4;  ///< start heights tried before a cell counts as pure scatter
 
 /// Returns the number of points that a surface needs in a cell of `n` points.

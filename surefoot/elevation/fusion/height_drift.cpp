@@ -24,7 +24,8 @@ constexpr double kSlopeChi2 = 13.8;  ///< exceeded by chance in 0.1 % of cases, 
 /// A camera tilt that explains this share of the offset at the cells makes the offset unusable.
 constexpr double kTiltShare = 0.25;
 constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
-constexpr double kFrameShare = 0.5;  ///< like kTiltShare, for the offset of recently aligned ground
+/// If recently aligned ground shows this share of the offset, the offset is unusable.
+constexpr double kFrameShare = 0.5;
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);

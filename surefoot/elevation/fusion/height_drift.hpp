@@ -26,8 +26,8 @@ struct HeightDriftConfig {
     double min_spread_m = 0.3;         ///< smallest standard deviation of positions, longer axis
     double agreeing_share = 0.8;       ///< smallest share of old cells with the offset within noise
     double significance_sigmas = 3.0;  ///< smallest significant offset [sigma]
-    double motion_sigmas = 3.0;        ///< a larger offset is no drift [sigma of the motion]
-    double depth_scale_sigma = 0.002;  ///< of one frame; looks like an offset on level ground
+    double motion_sigmas = 3.0;        ///< a larger offset is not a drift [sigma of the motion]
+    double depth_scale_sigma = 0.002;  ///< depth error of one frame; looks like a height offset
 
     void describe(ConfigVisitor& visitor);
 };

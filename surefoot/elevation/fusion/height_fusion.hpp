@@ -18,13 +18,13 @@ enum class GateVariance : std::uint8_t {
 
 /// Settings for the fusion of heights (Fankhauser 2014, section 4; Lange 2016, equation 6.1).
 struct FusionConfig {
-    double gate_sigma = 2.5;            ///< Mahalanobis gate on the innovation [sigma]
+    double gate_sigma = 2.5;            ///< largest innovation that passes the gate [sigma]
     double min_height_var_m2 = 9e-6;    ///< lower limit, (3 mm)^2: averaging leaves some errors
     double max_height_var_m2 = 2.5e-3;  ///< (50 mm)^2: a contradicted cell beyond this is replaced
     /// Largest addition for a rejected measurement, (10 mm)^2. Adds less if less explains it.
     double multi_height_var_m2 = 1e-4;
-    /// One rejected measurement multiplies the cell's sigma by at most this factor. It raises the
-    /// errors of such cells from 2.5 to 4 mm (docs/lab/gate_scenes.md).
+    /// One rejected measurement multiplies the cell's sigma by at most this factor. The errors of
+    /// cells that have just rejected a measurement grow from 2.5 to 4 mm (docs/lab/gate_scenes.md).
     double contradiction_growth = 2.0;
     double scan_duration_s = 0.0;  ///< duration for `same_scan` of `fuse`; 0 = rule is off
     GateVariance gate_variance = GateVariance::cell_and_measurement;

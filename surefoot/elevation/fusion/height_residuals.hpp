@@ -56,9 +56,9 @@ class HeightResiduals {
         double min_drift_m = 0.0;
     };
     /// Collects residuals from every second cell of every second row. Skips cells that are not
-    /// level (the map two cells aside, along x and y, is unknown or differs by more than
-    /// `level_m`), and cells that are not finite or have no variance. Returns the number of old
-    /// cells with a residual. Allocates only to grow.
+    /// level: the map two cells aside, along x or y, is unknown or differs by more than `level_m`.
+    /// Also skips cells that are not finite or have no variance. Returns the number of old cells
+    /// with a residual. Allocates only to grow.
     std::size_t gather(const Input& input);
     /// Deletes the residuals of old cells after their use.
     void forget() { old_.clear(); }

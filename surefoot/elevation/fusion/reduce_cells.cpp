@@ -164,7 +164,7 @@ struct RanksOfMany {
         const V flip = hn::Set(D(), from_below ? -0.0F : 0.0F);
         const float value = rank <= kFewRanks ? by_extremes(samples, flip, rank)
                                               : by_bits(samples, from_below, rank);
-        return (from_below ? -value : value) + 0.0F;  // zero has no sign
+        return (from_below ? -value : value) + 0.0F;  // removes the sign of zero
     }
 };
 
@@ -206,7 +206,7 @@ struct RanksOfFew {
             best = from_below ? hn::Min(best, value) : hn::Max(best, value);
         }
         const V extreme = from_below ? hn::MinOfLanes(D(), best) : hn::MaxOfLanes(D(), best);
-        return hn::GetLane(extreme) + 0.0F;  // zero has no sign
+        return hn::GetLane(extreme) + 0.0F;  // removes the sign of zero
     }
 };
 

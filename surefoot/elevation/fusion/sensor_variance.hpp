@@ -103,7 +103,7 @@ struct RayVariance {
             std::max(free.lateral_m2, config.min_var_m2)};
 }
 
-/// Height variance of a point through the Jacobians of the sensor and of its pose,
+/// Returns the height variance of a point, from the Jacobians of the sensor and of its pose:
 ///   var h = along n^2 + lateral (1 - n^2) + J Sigma J^T,  n = up . p/|p|,  J = [up^T, (p x up)^T]
 /// p_sensor_m: the point; up_sensor: unit vector against gravity; both in the frame that the pose
 /// covariance (translation, rotation; right perturbation; see pose.hpp) belongs to, |p| > 0.

@@ -14,8 +14,8 @@ namespace surefoot::elevation {
 ///   dx = dp_x + theta_y z - theta_z y,  dy = dp_y + theta_z x - theta_x z      (yaw leverage)
 class MotionNoise {
   public:
-    /// `relative_covariance` of the motion since the previous update: (translation, rotation),
-    /// right perturbation, in the present body frame; see pose.hpp.
+    /// `relative_covariance`: covariance (translation, rotation) of the motion since the previous
+    /// update. It is a right perturbation in the present body frame; see pose.hpp.
     MotionNoise(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
 
     /// True if all entries are finite. Otherwise the position of the cells is unknown.

@@ -12,7 +12,7 @@ namespace surefoot::elevation {
 /// Common errors of the heights of two regions.
 enum class RegionErrors : std::uint8_t {
     shared,       ///< one run: both may share observations, matcher errors and drift
-    independent,  ///< two runs over the same ground, one placed in the frame of the other
+    independent,  ///< two runs over the same ground; one is placed in the other's frame
 };
 
 struct MergeCounts {

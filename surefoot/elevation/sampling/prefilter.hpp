@@ -48,9 +48,9 @@ struct PrefilterConfig {
     return !config.height || over_body_m <= config.max_height_m;
 }
 
-/// The two filters that need the whole cloud. Points count from the corner of a grid and lie over
-/// or near it; all are finite. The order of the points stays. Does not allocate once its tables
-/// have grown.
+/// The two filters that need the whole cloud. The positions of the points count from the corner of
+/// a grid; all points are finite and lie over or near the grid. The order of the points stays. Does
+/// not allocate once its tables have grown.
 class CloudFilter {
   public:
     /// Keeps one point per cube of `sampling_m`: the point nearest to the centre of the cube, the
@@ -78,7 +78,7 @@ class CloudFilter {
                                        double radius_m,
                                        int enough) const;
 
-    std::vector<std::uint32_t> first_;  ///< hash table: point that stands for a cube
+    std::vector<std::uint32_t> first_;  ///< hash table: the point that represents a cube
     std::vector<Cube> cubes_;           ///< one cube per point
     std::vector<std::uint32_t> next_;   ///< per point: the next point in the same cube
     std::vector<std::uint8_t> keep_;

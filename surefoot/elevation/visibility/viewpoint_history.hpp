@@ -19,7 +19,7 @@ struct ViewpointConfig {
 
 /// Remembers the viewpoints from which the ground was observed, so that a standing camera does not
 /// count the same error many times as independent evidence. Poses closer than a quarter of the
-/// limits share an entry; this bounds the accuracy of the limits. Beyond 1024 entries (at least 1.2
+/// limits share an entry, so the limits are not exact. Beyond 1024 entries (at least 1.2
 /// m of travel with the defaults) the oldest entries are dropped and count as far away. No
 /// allocation after construction.
 class ViewpointHistory {
@@ -38,7 +38,7 @@ class ViewpointHistory {
     [[nodiscard]] bool apart(const Pose& a, const Pose& b, double share) const;
 
     ViewpointConfig config_;
-    std::vector<Pose> poses_;            ///< ring, entry of id at id % size
+    std::vector<Pose> poses_;            ///< ring buffer; index of an id: id % size
     std::vector<std::uint8_t> is_near_;  ///< by ring position: 1 = too close to the present view
     Id newest_ = kNever;
 };
