@@ -12,9 +12,9 @@
 namespace surefoot::specular {
 
 /// Detail of a piece of floor, prepared for comparison with its own mirror image. Detail is the
-/// difference of a cell from its neighbours, normalised to the same strength everywhere, without
-/// structure that is constant along a row or a column (joints of tiles and boards). A "line" is a
-/// row of cells parallel to the mirror lines of the search. Memory holds one line after the other.
+/// difference of a cell from its neighbours, normalised to the same strength everywhere. Structure
+/// that is constant along a row or a column (joints of tiles) is removed. A "line" is a row of
+/// cells parallel to the mirror lines of the search. Memory holds one line after the other.
 struct PatchDetail {
     static constexpr int kUnit = 40;    ///< about one standard deviation
     static constexpr int kBlocks = 12;  ///< number of blocks of a line; each block has its own sum

@@ -12,9 +12,9 @@ struct SelectionConfig {
     int left_right_px = 1;       ///< largest difference to the cheapest claim on its right pixel
 };
 
-/// Converts winners into disparities [px]. The result is NaN if the match is not unique, is outside
-/// the right image or has disparity 0 (infinitely far), or if another left pixel has the same match
-/// at lower cost. A parabola through three costs gives the fraction of a pixel.
+/// Converts winners into disparities [px]. NaN if the match is not unique, lies outside the right
+/// image or has disparity 0 (infinitely far). NaN too if another left pixel has the same match at
+/// lower cost. A parabola through three costs gives the fraction of a pixel.
 void select_disparities(const SelectionConfig& config,
                         const Winners& winners,
                         Executor& executor,

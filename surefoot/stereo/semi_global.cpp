@@ -288,8 +288,8 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(const Strip& s, int blo
     return rows;
 }
 
-/// Runs the paths from the left once and stores only their state at each block, because the costs
-/// of a whole strip would not fit into a cache.
+/// Runs the paths from the left once and stores only their state at each block. The costs of a
+/// whole strip would not fit into a cache.
 void SemiGlobalSearch::Workspace::pass_strip(const Strip& s) {
     take_census(s.index);
     turn_strip(s);

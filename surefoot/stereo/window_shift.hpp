@@ -22,10 +22,10 @@ inline constexpr int kShiftHalf_px = 7;
 ///
 /// Method: Gauss-Newton on the grey values (Lucas and Kanade 1981); steps use only gradients of the
 /// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the slant of the
-/// columns along both sides of the window (ground seen from above shifts by most of a pixel within
-/// the window). A parabola through a correlation prefers whole pixels: with texture of two pixels
-/// it loses a tenth of every fraction. Here only the interpolation over six pixels could do so.
-/// Noise adds no bias: the noise of the left gradients is independent of the right image's noise.
+/// columns along both sides of the window (most of a pixel per window for ground seen from above).
+/// A parabola through a correlation prefers whole pixels: with texture of two pixels it loses a
+/// tenth of every fraction. Here only the interpolation could do so, and it uses six pixels. Noise
+/// adds no bias: the noise of the left gradients is independent of the right image's noise.
 ///
 /// Returns nothing if the window leaves an image, has no texture in some direction, or ends
 /// farther than one pixel from `start`.

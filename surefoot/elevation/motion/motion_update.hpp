@@ -8,7 +8,7 @@
 namespace surefoot::elevation {
 
 /// Effect of an uncertain body motion on remembered ground (Fankhauser 2014, section 5; here as a
-/// closed form per cell). With r = (x, y, z) from the body to a cell in odom axes, an error (dp,
+/// closed form per cell). r = (x, y, z) points from the body to a cell in odom axes. An error (dp,
 /// theta) of the relative motion displaces the cell relative to the body by dp + theta x r:
 ///   dz = dp_z + theta_x y - theta_y x         (translation and tilt leverage)
 ///   dx = dp_x + theta_y z - theta_z y,  dy = dp_y + theta_z x - theta_x z      (yaw leverage)

@@ -27,8 +27,8 @@ struct MergeCounts {
 /// * known in both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`): with shared
 ///   errors the height of smaller variance stays unchanged (covariance intersection in one
 ///   dimension, Julier and Uhlmann 1997). With independent errors, equation 6.1 (Lange 2016) fuses
-///   both. The cell takes time, drift and confidence of the later observation, and the more
-///   cautious of the extremes, clearances and densities;
+///   both. The cell takes time, drift and confidence of the later observation. Of the extremes,
+///   clearances and densities it takes the more cautious values;
 /// * known in both, and they disagree: the later observed cell stays, and its variance grows by the
 ///   squared difference of the heights.
 ///
