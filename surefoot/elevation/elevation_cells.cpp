@@ -11,8 +11,9 @@ namespace surefoot::elevation {
 namespace {
 
 /// Trust in an overhead object: an observation adds two, a line of sight through the object
-/// subtracts one. Two observations are believed; a single one may be a wrong match. A former height
-/// of the cell with more than one observation gets the largest trust. ASSUMPTION, all three.
+/// subtracts one. Two observations are enough; a single observation may be a wrong match. A former
+/// height of the cell with more than one observation gets the largest trust. All three values are
+/// an ASSUMPTION.
 constexpr int kOverheadSeen = 2;
 constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
@@ -116,7 +117,7 @@ void ElevationCells::update(std::size_t cell,
     }
     if (result.outcome == FusionOutcome::inflated) {
         const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
-        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not the motion's
+        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not from motion
         var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
             see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
@@ -194,8 +195,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
     bottom_m_.data()[cell] = height_m;
     seen_through_.data()[cell] = 0;
-    // As for a new height: an overhead object observed in this run stays, unless it is this
-    // surface.
+    // An overhead object observed in this run stays, unless it is the recalled surface.
     forget_overhead_near(cell);
     const float clearance_m = region.clearance_m.data()[from];
     if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost, true);
@@ -218,8 +218,8 @@ void ElevationCells::forget(std::size_t cell) {
     layers_.density_ratio.data()[cell] = kNanF;
     forget_overhead(cell);
     seen_through_.data()[cell] = 0;
-    // The removed surface may have hung over the ground. It bounds the clearance until lines of
-    // sight have passed through it a few times.
+    // The removed surface may hang over the ground. So the surface limits the clearance until a few
+    // lines of sight have passed through it.
     see_above(cell, before_m, trust, true);
 }
 
@@ -295,7 +295,7 @@ void ElevationCells::start(std::size_t cell,
     viewpoint_.data()[cell] = look.view;
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
-    // An overhead object of an unknown cell stays, unless it is this surface.
+    // An overhead object of an unknown cell stays, unless it is the new surface.
     forget_overhead_near(cell);
     set_clearance(cell);
 }
@@ -326,14 +326,15 @@ void ElevationCells::agree(std::size_t cell,
     remember_density(cell, seen.density_ratio);
     bottom_m_.data()[cell] = std::min(bottom_m_.data()[cell], seen.bottom_m);
     seen_through_.data()[cell] = 0;
-    // A camera observes ground under a table top, but not through a person.
+    // A camera observes ground under a table top, but not through a person. So observed ground is
+    // evidence against an object that stands on the ground.
     if (overhead_hangs_.data()[cell] == 0) see_no_more_above(cell);
     set_clearance(cell);
 }
 
 void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
-    // Rounds to the nearest sixteenth, halves away from zero.
+    // Rounds to the nearest sixteenth; half a sixteenth rounds up.
     const float share = kGone * confidence;
     // in range: confidence is in [0, 1]: recall() checks it, observations mix it with 1
     const int whole = static_cast<int>(share);
@@ -352,8 +353,7 @@ void ElevationCells::repeat(std::size_t cell,
                             const CellMeasurement& measured,
                             const FrameObservation& look) {
     // The cell and the measurement share an unknown part of their errors. Covariance intersection
-    // (Julier and Uhlmann 1997) in one dimension: keep the estimate of smaller variance, gain
-    // nothing.
+    // (Julier and Uhlmann 1997) in one dimension keeps the estimate of smaller variance unchanged.
     float& var_m2 = layers_.height_var_m2.data()[cell];
     float& settled_m2 = settled_var_m2_.data()[cell];
     const float measured_m2 = std::max(measured.var_m2, settled_m2);

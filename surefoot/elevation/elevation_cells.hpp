@@ -24,7 +24,7 @@ struct FrameObservation {
 /// Observation of one cell by one frame.
 struct CellObservation {
     CellMeasurement measured;
-    float density_ratio = 0.0F;  ///< see ElevationLayers; NaN = not known
+    float density_ratio = 0.0F;  ///< see ElevationLayers::density_ratio; NaN = unknown
     /// Lower end of the observed surface. A face seen from the side reaches down to its lowest
     /// points; every other surface begins at its height.
     float bottom_m = 0.0F;
@@ -65,16 +65,16 @@ class ElevationCells {
                 FusionCounts& counts);
     /// True if the height of the cell is clearly above a line of sight over the cell.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
-    /// Counts one frame whose line of sight passes through the surface of the cell. Returns true if
-    /// the surface is gone: enough such frames without an agreeing observation. Call only for cells
-    /// without an agreeing observation in this frame.
+    /// Counts one frame whose line of sight passes through the surface of the cell. Returns true
+    /// after enough such frames without an agreeing observation: the surface is gone. Call only for
+    /// cells without an agreeing observation in this frame.
     bool see_through(std::size_t cell);
     /// Notes a line of sight over an unknown cell: the ground there is lower.
     void see_over(std::size_t cell, float line_z_m);
     /// Lower end of the remembered surface of a cell, see `CellObservation`.
     [[nodiscard]] float bottom_m(std::size_t cell) const noexcept { return bottom_m_.data()[cell]; }
     /// Lowest object observed above the height of a cell, or the lower end of a surface that was
-    /// removed from the cell; NaN if there is none.
+    /// removed from the cell; NaN if there is no such object.
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
@@ -92,10 +92,10 @@ class ElevationCells {
     void recall(std::size_t cell, const grid::MapRegion& region, std::size_t from);
 
   private:
-    /// Calls f(layer, value of unknown cells) for layers that are also read in unknown cells ...
+    /// Calls f(layer, value of unknown cells) for each layer that is also read in unknown cells.
     template <typename F>
     void for_each_layer(const F& f);
-    /// ... and for the layers that are written when a cell becomes known, and not read before.
+    /// Calls f(layer, value) for each layer that is first written when a cell becomes known.
     template <typename F>
     void for_each_layer_of_known(const F& f);
 
@@ -108,7 +108,7 @@ class ElevationCells {
     void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
-    /// Initial trust in the present height if it turns out to hang over ground.
+    /// Returns the first trust in the present height, if this height turns out to hang over ground.
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     [[nodiscard]] bool is_sure_of_overhead(std::size_t cell) const;
@@ -122,24 +122,24 @@ class ElevationCells {
     ElevationConfig config_;
     ElevationLayers layers_;
     /// Variance after the last fusion that brought new information; repeated views of the same
-    /// errors never lower a cell's variance below it.
+    /// errors never lower a cell's variance below this value.
     ElevationLayers::Layer settled_var_m2_;
     // See CellAlignment; empty unless height drift is corrected.
     ElevationLayers::Layer aligned_var_m2_;
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
-    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< viewpoint of the last such fusion
+    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< last viewpoint with new information
     /// Lowest surface observed above the height, and the trust in it.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
-    grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
-    /// Known cell: see `CellObservation`. Unknown cell: lowest line of sight over it.
+    grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: the object stands on the ground
+    /// Known cell: lower end of its surface. Unknown cell: lowest line of sight over the cell.
     ElevationLayers::Layer bottom_m_;
-    /// A surface that a share s of the observations shows is missed n times by chance with (1 -
-    /// s)^n. So it needs 1/s times as many frames before it counts as gone.
-    grid::SlidingLayer<std::uint8_t> steady_;         ///< s at the last agreement, in 1/16
-    grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` over frames since then
+    /// If a share s of the observations shows a surface, n misses in a row have the probability
+    /// (1 - s)^n. So such a surface counts as gone only after 1/s times as many frames.
+    grid::SlidingLayer<std::uint8_t> steady_;         ///< share s at the last agreement [1/16]
+    grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` in contradicting frames
 };
 
 }  // namespace surefoot::elevation

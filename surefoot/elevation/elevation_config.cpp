@@ -6,7 +6,7 @@
 namespace surefoot::elevation {
 namespace {
 
-constexpr double kMaxSideCells = 4096.0;  ///< 16 million cells, about 0.7 GB of layers
+constexpr double kMaxSideCells = 4096.0;  ///< gives 16 million cells, about 0.7 GB
 
 }  // namespace
 
@@ -14,12 +14,13 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
     visitor.number("resolution_m", resolution_m, 0.001, 10.0, "side length of a map cell");
     visitor.number(
         "length_m", length_m, 0.1, 1000.0, "side length of the square map around the machine");
-    visitor.number("camera_tilt_sigma_rad",
-                   camera_tilt_sigma_rad,
-                   0.0,
-                   1.0,
-                   "one sigma of the error of the camera's roll and pitch in one frame, from "
-                   "mounting and vibration");
+    visitor.number(
+        "camera_tilt_sigma_rad",
+        camera_tilt_sigma_rad,
+        0.0,
+        1.0,
+        "standard deviation of the camera's roll and pitch error in one frame, caused by "
+        "mounting and vibration");
     visitor.number("min_overhead_m",
                    min_overhead_m,
                    0.05,
@@ -39,7 +40,8 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> ElevationConfig::problem() const {
     if (!(resolution_m > 0.0 && length_m >= resolution_m)) {
         return fmt::format(
-            "elevation.length_m = {} must be at least one cell, elevation.resolution_m = {}",
+            "elevation.length_m = {} must be at least elevation.resolution_m = {}: choose a longer "
+            "map or smaller cells",
             length_m,
             resolution_m);
     }
@@ -54,14 +56,18 @@ std::optional<std::string> ElevationConfig::problem() const {
             kMaxSideCells);
     }
     if (prefilter.range && !(prefilter.min_range_m < prefilter.max_range_m)) {
-        return fmt::format("elevation.prefilter.min_range_m = {} must be below max_range_m = {}",
-                           prefilter.min_range_m,
-                           prefilter.max_range_m);
+        return fmt::format(
+            "elevation.prefilter.min_range_m = {} must be below elevation.prefilter.max_range_m = "
+            "{}",
+            prefilter.min_range_m,
+            prefilter.max_range_m);
     }
     if (prefilter.height && !(prefilter.min_height_m < prefilter.max_height_m)) {
-        return fmt::format("elevation.prefilter.min_height_m = {} must be below max_height_m = {}",
-                           prefilter.min_height_m,
-                           prefilter.max_height_m);
+        return fmt::format(
+            "elevation.prefilter.min_height_m = {} must be below elevation.prefilter.max_height_m "
+            "= {}",
+            prefilter.min_height_m,
+            prefilter.max_height_m);
     }
     return fusion.problem();
 }

@@ -15,8 +15,8 @@
 
 namespace surefoot::elevation {
 
-/// Everything that shapes the elevation map. The keys of `fusion` stand beside `resolution_m`
-/// (`elevation.gate_sigma`), the other parts are groups of their own (`elevation.sensor.model`).
+/// Settings of the elevation map. The keys of `fusion` have no group (`elevation.gate_sigma`).
+/// Every other part has its own group of keys (`elevation.sensor.model`).
 struct ElevationConfig {
     double resolution_m = 0.025;
     double length_m = 6.0;

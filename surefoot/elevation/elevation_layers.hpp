@@ -14,23 +14,23 @@ struct ElevationLayers {
     using Layer = grid::SlidingLayer<float>;
 
     Layer height_m;                           ///< highest observed surface, in odom
-    Layer height_var_m2;                      ///< variance relative to the present body
+    Layer height_var_m2;                      ///< height variance relative to the present body
     grid::SlidingLayer<std::uint32_t> count;  ///< measurements fused since the height was set
     grid::SlidingLayer<std::int64_t>
         seen_ns;               ///< last time that a measurement agreed with the height; 0 = never
-    Layer horizontal_drift_m;  ///< 1 sigma of the body's horizontal drift since then
-    Layer highest_m;           ///< robust extremes of all points in the cell since the height
-    Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
-    Layer clearance_m;         ///< from the height to the lowest object above; NaN = none
-    /// Unknown cells only: lines of sight passed here in at least two frames, because one may hold
-    /// a wrong match. The ground is lower than this height. This is evidence of drops that the
-    /// camera never observes directly. NaN = no line of sight passed.
+    Layer horizontal_drift_m;  ///< 1 sigma of the body's horizontal drift since `seen_ns`
+    Layer highest_m;           ///< robust highest point in the cell since the height was first set
+    Layer lowest_m;            ///< robust lowest point: a wall or an edge spans more than a floor
+    Layer clearance_m;         ///< distance from height to lowest object above; NaN = no object
+    /// Unknown cells only: the ground is lower than this height. Lines of sight passed here in at
+    /// least two frames, because a single frame may hold a wrong match. The layer is evidence of
+    /// drops that the camera never observes directly. NaN = no line of sight passed.
     Layer free_above_m;
     /// Share of agreeing observations among about the last four of the cell; 1/2 right after the
     /// height was set.
     Layer confidence;
-    /// Measured points over those of level ground (Oniga and Nedevschi 2010), in the same
-    /// observations. A wall gives many times 1. NaN = measured without a camera.
+    /// Measured points divided by the points that level ground would give in the same observations
+    /// (Oniga and Nedevschi 2010). A wall gives many times 1. NaN = measured without a camera.
     Layer density_ratio;
 };
 

@@ -27,8 +27,8 @@ Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
     return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
 }
 
-/// False for a measurement whose sums left the range of a float: it is no height and no ray
-/// endpoint.
+/// False for a measurement whose sums left the range of a float. Such a measurement is neither a
+/// height nor a ray endpoint.
 bool says_something(const CellMeasurement& measured) {
     return measured.points > 0 && std::isfinite(measured.z_m) && std::isfinite(measured.var_m2);
 }
@@ -130,7 +130,7 @@ Result<std::int64_t> ElevationMap::insert(const grid::MapRegion& region,
     if (region.resolution_m != geometry().resolution_m) {
         return input_error(
             fmt::format("a remembered map of {} m cells cannot fill cells of {} m: set "
-                        "elevation.resolution_m to that of the map",
+                        "elevation.resolution_m to the cell size of the remembered map",
                         region.resolution_m,
                         geometry().resolution_m));
     }
@@ -185,7 +185,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
         const ExpectedPoints* expected = nullptr;
         FrameObservation look;
     } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
-    // A single reference, so std::function needs no memory for the closure.
+    // The closure holds one reference only, so std::function allocates no memory.
     executor.parallel_for(rows.count(),
                           [&job](int block) { job.map.fuse_block(block, job.expected, job.look); });
     for (const FusionCounts& block : block_counts_) counts += block;
@@ -228,7 +228,7 @@ void ElevationMap::align_heights(const Pose& T_odom_body,
             continue;
         const float motion_m2 =
             motion_variance(layers().height_var_m2.data()[cell], alignment.var_m2[cell]);
-        // False for values that are not finite.
+        // `allows` returns false for values that are not finite.
         if (!drift_.allows(report.offset_m, static_cast<double>(motion_m2))) continue;
         cells_.lift(cell, report.offset_m, report.sigma_m * report.sigma_m);
         ++height_drift_.moved_cells;

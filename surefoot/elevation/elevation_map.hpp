@@ -39,9 +39,9 @@ class ElevationMap {
     explicit ElevationMap(const ElevationConfig& config);
 
     /// Moves the window with the body and adds the uncertainty of the motion to every remembered
-    /// cell. `relative_covariance`: of the motion since the last call, see `MotionEstimate`. If it
-    /// is not bounded (`MotionNoise::is_bounded`), the position of the cells is unknown and the map
-    /// is cleared. A pose that is not finite clears the map too.
+    /// cell. `relative_covariance` describes the motion since the last call, see `MotionEstimate`.
+    /// Clears the map if the covariance is not bounded (`MotionNoise::is_bounded`) or the pose is
+    /// not finite, because the position of the cells is then unknown.
     void follow(const Pose& T_odom_body, const Matrix6& relative_covariance);
 
     /// Fuses a depth image taken at the pose of the last `follow`. Each cell takes at most one
@@ -51,7 +51,7 @@ class ElevationMap {
                      const DepthImage& depth,
                      std::int64_t time_ns,
                      Executor& executor = serial());
-    /// Fuses a cloud in the same way. Points that are not finite are not counted.
+    /// Fuses a cloud, as `add` fuses an image. Does not count points that are not finite.
     FusionCounts add_points(std::span<const MeasuredPoint> points,
                             const Pose& T_body_sensor,
                             const Pose& T_odom_body,
@@ -62,9 +62,9 @@ class ElevationMap {
     ///
     /// A remembered map is as accurate as its placement. `placement_covariance` belongs to the body
     /// at `T_odom_body` in the region's frame (right perturbation, see pose.hpp). It blurs every
-    /// cell like a motion does. The floor of the height variance and the horizontal variance of
-    /// rounding to a cell (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells
-    /// becomes 0, because clocks differ. Allocates; do not call it for every frame.
+    /// cell like a motion does. `min_height_var_m2` and the horizontal variance of rounding to a
+    /// cell (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells becomes 0,
+    /// because clocks differ. Allocates; do not call it for every frame.
     [[nodiscard]] Result<std::int64_t> insert(const grid::MapRegion& region,
                                               const Pose& T_odom_body,
                                               const Matrix6& placement_covariance);
@@ -73,10 +73,10 @@ class ElevationMap {
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
-    /// Writes the highest surface of each cell in odom, for display and rating: `height_m`, or the
-    /// top of an object that stands on known ground and was observed in two frames. `height_m`
-    /// stays the ground below the object until enough frames contradict it; `clearance_m` tells how
-    /// low the object begins. NaN = unknown. Does not allocate if `out_m` has the size of the map.
+    /// Writes the highest surface of each cell in odom, for display and rating. The surface is
+    /// `height_m`, or the top of an object that two frames observed on known ground. `height_m`
+    /// then stays the ground until enough frames contradict it; `clearance_m` tells how low the
+    /// object begins. NaN = unknown. Does not allocate if `out_m` has the size of the map.
     void surface(grid::Layer& out_m) const { cells_.surface(out_m); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;
@@ -98,7 +98,7 @@ class ElevationMap {
                        Executor& executor);
     void reduce_block(int block);
     void reduce_row(int iy, CellMeasurement* measured) const;
-    /// Output of the reduction of a row: its own cells if heights are aligned, else its block's.
+    /// Memory for the measurements of a row. Rows of a block share it unless heights are aligned.
     CellMeasurement* measurements_of_row(int iy);
     void fuse_block(int block, const ExpectedPoints* expected, const FrameObservation& look);
 
@@ -114,7 +114,7 @@ class ElevationMap {
     /// One row of cells per block, or all cells if heights are aligned.
     std::vector<CellMeasurement> measured_;
     VisibilityCleanup sight_;
-    float lowest_z_m_ = 0.0F;                 ///< lower height cut of this frame, in odom
+    float lowest_z_m_ = 0.0F;                 ///< lower height limit of this frame, in odom
     std::vector<FusionCounts> block_counts_;  ///< one count per block
     HeightResiduals residuals_;
     HeightDrift drift_;

@@ -15,14 +15,15 @@ constexpr std::size_t kTables = 8;
 constexpr std::size_t kChunk = 14;
 constexpr std::size_t kKeyBits = 16;
 constexpr std::size_t kBuckets = std::size_t{1} << kKeyBits;
-constexpr std::uint16_t kCrowded = 200;     ///< from this many entries on, a bucket is ignored
-constexpr std::int64_t kVoteScale = 50400;  ///< divided by a bucket's size; gives whole numbers
+constexpr std::uint16_t kCrowded = 200;  ///< number of entries from which a bucket is ignored
+/// A vote is this number divided by the size of the bucket.
+constexpr std::int64_t kVoteScale = 50400;
 constexpr std::uint64_t kBitSeed = 256;
 
 using Key = std::array<std::uint8_t, kKeyBits>;  ///< indices of the chosen bits of a descriptor
 
-/// Chosen bits of each table, no bit twice in a table. Drawn with a fixed seed: the same on every
-/// machine.
+/// Draws the bits of each table; a table has no bit twice. The seed is fixed, so every machine gets
+/// the same bits.
 std::array<Key, kTables> draw_keys() {
     std::array<Key, kTables> keys{};
     Rng rng(kBitSeed);
@@ -37,7 +38,7 @@ std::array<Key, kTables> draw_keys() {
     return keys;
 }
 
-/// Bucket number of a descriptor, counted through all tables.
+/// Returns the bucket number of a descriptor, counted through all tables.
 std::size_t bucket_of(std::size_t table, const Descriptor& descriptor) {
     static const std::array<Key, kTables> keys = draw_keys();
     std::size_t bucket = 0;

@@ -12,11 +12,11 @@
 namespace surefoot::place_recognition {
 namespace {
 
-constexpr double kScale = 1.2;  ///< between two levels of the pyramid
-constexpr int kBorder_px = 31;  ///< half the area that a descriptor and its blur use
+constexpr double kScale = 1.2;  ///< ratio of the image sizes of two levels of the pyramid
+constexpr int kBorder_px = 31;  ///< half the side of the area that a descriptor and its blur use
 constexpr int kPatch_px = 31;
 
-/// Disparity of a corner; NaN where it is unknown or unreliable.
+/// Returns the disparity of a corner, or NaN if the disparity is unknown or unreliable.
 float disparity_at(const DescribeConfig& config, const DepthImage& depth, float u, float v) {
     const Image<float>& disparity_px = depth.disparity_px;
     const auto nearest = nearest_pixel(static_cast<double>(u),
@@ -31,7 +31,7 @@ float disparity_at(const DescribeConfig& config, const DepthImage& depth, float 
     return sure ? d : std::nanf("");
 }
 
-/// Order: the strongest first, equal ones in image order.
+/// Order of corners: the strongest first, equally strong corners in image order.
 bool stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
     if (a.response != b.response) return a.response > b.response;
     if (a.octave != b.octave) return a.octave < b.octave;
@@ -60,7 +60,7 @@ std::vector<Feature> describe(const DescribeConfig& config,
     SUREFOOT_ASSERT(depth.disparity_px.width() == left.width &&
                     depth.disparity_px.height() == left.height);
     if (left.width <= 2 * kBorder_px || left.height <= 2 * kBorder_px) return {};
-    // OpenCV has no view of constant pixels; detect and compute only read them.
+    // OpenCV has no view of constant pixels. `detect` and `compute` only read the pixels.
     const cv::Mat image(left.height,
                         left.width,
                         CV_8UC1,

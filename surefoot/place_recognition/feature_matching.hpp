@@ -15,15 +15,15 @@ struct FeatureMatch {
 };
 
 struct MatchConfig {
-    int max_distance = 64;  ///< for two descriptors of one corner; half of the mean by chance
-    /// Largest ratio of the best distance to the best distance elsewhere in the image, in both
-    /// images. A corner that occurs twice in an image is not unique.
+    int max_distance = 64;  ///< largest distance of a match; random descriptors have about 128
+    /// Largest ratio of the best distance to the best distance elsewhere in the image. It holds in
+    /// both images. A corner that occurs twice in an image is not unique.
     double ratio = 0.85;
-    double elsewhere_px = 12.0;  ///< nearer features may show the same corner
+    double elsewhere_px = 12.0;  ///< nearer features are not "elsewhere": they may show one corner
 };
 
-/// Matches features that are each other's best, wherever they are in the image. Compares every
-/// pair. The result depends on the order of the features only where distances are equal.
+/// Matches features that are each other's best match, wherever they are in the image. Compares all
+/// pairs. The result depends on the order of the features only where distances are equal.
 [[nodiscard]] std::vector<FeatureMatch> match_features(const MatchConfig& config,
                                                        std::span<const Feature> candidate,
                                                        std::span<const Feature> query);

@@ -32,7 +32,8 @@ std::optional<std::string> rig_problem(const camera::RectifiedRig& rig) {
                            rig.cy_px);
     if (!in(rig.baseline_m, 10.0))
         return fmt::format("a baseline of {} m; it must be above 0 and at most 10", rig.baseline_m);
-    if (!is_rigid(rig.T_body_camera)) return "a camera pose in base_link that is not valid";
+    if (!is_rigid(rig.T_body_camera))
+        return "a camera pose in base_link that is not finite, not rigid or too far from base_link";
     return std::nullopt;
 }
 
@@ -64,7 +65,9 @@ std::optional<std::string> Place::problem() const {
     for (std::size_t i = 0; i < keyframes.size(); ++i) {
         auto problem = view_problem(keyframes[i].view);
         if (!problem && !is_rigid(keyframes[i].T_map_body))
-            problem = "a pose in the map that is not valid";
+            problem =
+                "a pose in the map that is not valid: not finite, not rigid or too far from the "
+                "origin";
         if (problem) return fmt::format("keyframe {} has {}", i, *problem);
     }
     return std::nullopt;

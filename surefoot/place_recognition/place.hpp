@@ -27,7 +27,7 @@ struct Descriptor {
     constexpr std::uint64_t kNibbles = 0x3333333333333333ULL;
     constexpr std::uint64_t kBytes = 0x0f0f0f0f0f0f0f0fULL;
     constexpr std::uint64_t kWords = 0x00ff00ff00ff00ffULL;
-    std::uint64_t bytes = 0;  // at most 32 in each
+    std::uint64_t bytes = 0;  // eight sums, one per byte, at most 32 each
     for (std::size_t i = 0; i < 4; ++i) {
         std::uint64_t x = a.bits[i] ^ b.bits[i];
         x -= x >> 1U & kPairs;
@@ -40,7 +40,7 @@ struct Descriptor {
 
 /// A corner with depth.
 struct Feature {
-    /// (u_left, v, u_right) in rectified pixels, as `odometry::StereoPixel`.
+    /// Position (u_left, v, u_right) in rectified pixels, as in `odometry::StereoPixel`.
     Eigen::Vector3f pixel_px = Eigen::Vector3f::Zero();
     Descriptor descriptor;
 };
@@ -62,7 +62,7 @@ struct Keyframe {
 struct Place {
     std::vector<Keyframe> keyframes;
 
-    /// The first reason why the place is invalid, with the value in words; or nothing.
+    /// Returns the first reason why the place is invalid, with the value; or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 

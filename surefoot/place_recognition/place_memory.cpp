@@ -9,14 +9,15 @@
 namespace surefoot::place_recognition {
 namespace {
 
-/// Result for one keyframe: pose of the view in the map, and the number of corners that support it.
+/// Result for one keyframe: the pose of the view in the map, and the comparison that supports it.
 struct Opinion {
     int keyframe = 0;
     Pose T_map_query;
     Comparison comparison;
 };
 
-/// More inliers are better; a refused result is worse than any accepted one.
+/// True if `a` is better than `b`. More inliers are better; a refused result is worse than any
+/// accepted result.
 bool better(const Opinion& a, const Opinion& b) {
     const bool a_good = a.comparison.refusal == Refusal::none;
     const bool b_good = b.comparison.refusal == Refusal::none;
@@ -86,7 +87,7 @@ Answer PlaceMemory::recognise(const View& view, const Eigen::Vector3d& up_body, 
     answer.refusal = best.comparison.refusal;
     if (answer.refusal != Refusal::none) return answer;
     for (const Opinion& other : opinions) {
-        // Without a pose the inliers mean nothing, and without inliers there is no rival.
+        // A result near the best pose names the same place. A result without inliers is no rival.
         if (is_near(
                 best.T_map_query, other.T_map_query, config_.same_m, config_.same_deg * kRadPerDeg))
             continue;

@@ -11,23 +11,23 @@ namespace surefoot::place_recognition {
 struct MemoryConfig {
     ComparisonConfig comparison;
     int min_features = 60;
-    int candidates = 5;  ///< keyframes that are compared; this takes nearly all of a query's time
-    /// Keyframes within this distance of a compared one are skipped, because they add nothing new.
+    int candidates = 5;  ///< compared keyframes; comparing takes nearly all of a query's time
+    /// Keyframes within this distance and angle of a compared keyframe are skipped: nothing new.
     double near_m = 0.4;
     double near_deg = 20.0;
-    /// Two answers farther apart than this count as two places.
+    /// Two answers farther apart than this distance or angle count as two places.
     double same_m = 0.3;
     double same_deg = 6.0;
-    /// A view is ambiguous if another place has more than this share of the best's inliers.
+    /// A view is ambiguous if another place has more than this share of the best place's inliers.
     double max_rival = 0.5;
 };
 
 /// Result of comparing one view with all keyframes.
 struct Answer {
     Refusal refusal = Refusal::no_candidate;
-    int keyframe = -1;  ///< the one that explains the view best, even if refused
+    int keyframe = -1;  ///< keyframe that explains the view best, even if refused
     Comparison comparison;
-    double rival = 0.0;  ///< inliers of the second best place over those of the best
+    double rival = 0.0;  ///< inliers of the second best place divided by those of the best
 };
 
 /// Keyframes with an index of their descriptors.
@@ -36,7 +36,7 @@ class PlaceMemory {
     explicit PlaceMemory(const MemoryConfig& config = {}) : config_(config) {}
 
     void add(Keyframe keyframe);
-    /// Sets a better pose of a keyframe, which the pose graph has computed.
+    /// Replaces the pose of a keyframe by a better pose from the pose graph.
     void move(int keyframe, const Pose& T_map_body);
     /// Returns true if a stored keyframe lies within the given distance and angle of a pose.
     [[nodiscard]] bool covers(const Pose& T_map_body, double near_m, double near_deg) const;
@@ -54,7 +54,7 @@ class PlaceMemory {
     CandidateIndex index_;
 };
 
-/// Whether distance [m] and angle [rad] between two poses are both within the limits.
+/// True if the distance [m] and the angle [rad] between two poses are both within the limits.
 [[nodiscard]] bool is_near(const Pose& a, const Pose& b, double limit_m, double limit_rad);
 
 }  // namespace surefoot::place_recognition

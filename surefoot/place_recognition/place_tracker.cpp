@@ -10,7 +10,8 @@
 namespace surefoot::place_recognition {
 namespace {
 
-/// While odometry is lost, its motion is a guess, which must not constrain the pose graph.
+/// Sigmas of the motion while odometry is lost. This motion is a guess and must not constrain the
+/// pose graph.
 constexpr double kLostSigma_m = 2.0;
 constexpr double kLostSigma_rad = 1.0;
 
@@ -122,8 +123,8 @@ Refusal PlaceTracker::confirm(const Answer& answer, int node) {
                 {}};
     add_sigmas(now.covariance, config_.extra_sigma_m, config_.extra_sigma_deg * kRadPerDeg);
     now.T_map_odom = keyframe.T_map_body * now.T_keyframe_node * last_.T_odom_body.inverse();
-    // Compared at the machine's position. Far from the origin of odom, a rotation would look like a
-    // translation.
+    // Compares the poses at the machine's position. At the origin of odom, which may be far away, a
+    // rotation would look like a translation.
     const auto agrees = [&](const Pending& other) {
         return is_near(other.T_map_odom * last_.T_odom_body,
                        now.T_map_odom * last_.T_odom_body,
@@ -182,7 +183,7 @@ void PlaceTracker::remember(View view, int node) {
 
 std::optional<Pose> PlaceTracker::T_map_odom() const {
     if (!located_) return std::nullopt;
-    // Exactly the identity, because nothing was corrected.
+    // Returns exactly the identity, because no recognition has corrected a pose.
     if (graph_.recognitions() == 0) return Pose{};
     return graph_.T_map_body(graph_.nodes() - 1) * T_odom_keyframe_.inverse();
 }

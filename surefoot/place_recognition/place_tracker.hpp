@@ -16,17 +16,17 @@ namespace surefoot::place_recognition {
 struct TrackerConfig {
     DescribeConfig describe;
     MemoryConfig memory;
-    /// A new keyframe is made after this distance or rotation.
+    /// A new keyframe is made after this distance or this rotation.
     double keyframe_m = 0.25;
     double keyframe_deg = 12.0;
-    /// The last keyframes show the same as the present one and are therefore not recognised.
+    /// This many last keyframes are not compared, because they show the same as the present one.
     int recent_keyframes = 10;
-    /// Successive keyframes that must agree on T_map_odom before it is accepted.
+    /// Number of successive keyframes that must agree on T_map_odom before it is accepted.
     int confirmations = 2;
-    int max_misses = 1;  ///< keyframes without a result allowed in a row in between
+    int max_misses = 1;  ///< keyframes without a result that are allowed in between
     double agree_m = 0.15;
     double agree_deg = 2.5;
-    /// Error of a recognition beyond its covariance: landmarks of one view share their errors.
+    /// Error that is added to a recognition's covariance: landmarks of one view share their errors.
     double extra_sigma_m = 0.01;
     double extra_sigma_deg = 0.2;
     double max_chi2 = 40.0;  ///< largest chi^2 of a recognition in the graph, 6 degrees of freedom
@@ -57,19 +57,19 @@ class PlaceTracker {
     explicit PlaceTracker(const TrackerConfig& config, Place saved = {});
 
     void follow(const MotionEstimate& motion);
-    /// Recognises rectified images as a new keyframe, if one is due; otherwise nothing.
+    /// If a new keyframe is due, makes it of these rectified images and tries to recognise it.
     std::optional<Sighting> see(const camera::RectifiedRig& rig,
                                 ImageView<const std::uint8_t> left,
                                 const DepthImage& depth);
 
-    /// T_map_odom of the last frame; nothing until the saved place is recognised.
+    /// Returns T_map_odom of the last frame; nothing until the saved place is recognised.
     [[nodiscard]] std::optional<Pose> T_map_odom() const;
     [[nodiscard]] bool located() const noexcept { return located_; }
     /// Number of keyframes of this run.
     [[nodiscard]] int keyframes() const noexcept { return graph_.nodes(); }
     [[nodiscard]] const std::vector<Sighting>& sightings() const noexcept { return sightings_; }
-    /// The saved place plus the keyframes of this run that add to it. Without a saved place: all
-    /// keyframes of this run. If the saved place was not recognised: that place, unchanged.
+    /// Returns the saved place plus the new keyframes of this run. Without a saved place, returns
+    /// all keyframes of this run. If the saved place was not recognised, returns it unchanged.
     [[nodiscard]] Place place() const;
 
   private:
@@ -104,13 +104,13 @@ class PlaceTracker {
     PoseGraph graph_;
     bool located_ = false;
     std::vector<Pending> pending_;
-    std::size_t committed_ = 0;  ///< number of pending ones already in the graph
-    int misses_ = 0;             ///< keyframes in a row since the last pending one
+    std::size_t committed_ = 0;  ///< number of pending recognitions already in the graph
+    int misses_ = 0;             ///< number of keyframes in a row without a recognition
     std::vector<Sighting> sightings_;
 
     MotionEstimate last_;
-    Pose T_odom_keyframe_;                  ///< the last keyframe
-    Pose T_keyframe_body_;                  ///< motion since then
+    Pose T_odom_keyframe_;                  ///< pose of the last keyframe
+    Pose T_keyframe_body_;                  ///< motion since the last keyframe
     Matrix6 covariance_ = Matrix6::Zero();  ///< covariance of T_keyframe_body_
     bool lost_ = false;                     ///< odometry was lost since the last keyframe
 };

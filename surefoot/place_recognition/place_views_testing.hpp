@@ -29,7 +29,7 @@ inline Descriptor random_descriptor(Rng& rng) {
     return descriptor;
 }
 
-/// Simulates noise: flips `flips` bits at random places, some of them twice.
+/// Simulates noise: flips `flips` bits at random positions, some of them twice.
 inline Descriptor with_flips(Descriptor descriptor, int flips, Rng& rng) {
     for (int i = 0; i < flips; ++i) {
         const std::uint64_t bit = rng.below(256);

@@ -12,9 +12,10 @@ namespace surefoot::place_recognition {
 namespace {
 
 constexpr int kIterations = 20;
-constexpr double kConverged = 1e-7;   ///< largest step [m, rad]
-constexpr double kCauchy2 = 16.0;     ///< chi2 at which a recognition counts half; the mean is 6
-constexpr double kLeastSigma = 1e-5;  ///< [m, rad]: even a standing machine has an uncertainty
+constexpr double kConverged = 1e-7;  ///< largest step of a converged graph [m, rad]
+constexpr double kCauchy2 = 16.0;  ///< chi^2 at which a recognition has half weight; the mean is 6
+/// Smallest sigma [m, rad], because even the motion of a standing machine is uncertain.
+constexpr double kLeastSigma = 1e-5;
 
 Matrix6 information_of(const Matrix6& covariance) {
     Matrix6 known = covariance;
@@ -22,8 +23,8 @@ Matrix6 information_of(const Matrix6& covariance) {
     return known.ldlt().solve(Matrix6::Identity());
 }
 
-/// Inverse of the right Jacobian of SO(3) to first order. This is enough, because rotation errors
-/// are at most a few degrees.
+/// Returns the inverse of the right Jacobian of SO(3) to first order. The first order is enough,
+/// because rotation errors are at most a few degrees.
 Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& theta_rad) {
     return Eigen::Matrix3d::Identity() + 0.5 * skew(theta_rad);
 }

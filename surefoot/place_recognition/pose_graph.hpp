@@ -7,10 +7,10 @@
 
 namespace surefoot::place_recognition {
 
-/// Estimates the poses of a run's keyframes in the map. Edges: odometry between neighbours, and
-/// recognitions between two nodes or of a place with fixed keyframes. Gauss-Newton over all poses
-/// (Grisetti et al. 2010) with sparse Cholesky. Recognitions have Cauchy weights, so that correct
-/// ones outvote a wrong one. Pose and covariance conventions: see pose.hpp.
+/// Estimates the poses of a run's keyframes in the map. An edge is the odometry between neighbours,
+/// or a recognition of another node or of a fixed keyframe. Method: Gauss-Newton over all poses
+/// (Grisetti et al. 2010) with sparse Cholesky. Recognitions have Cauchy weights, so correct
+/// recognitions outvote a wrong one. Pose and covariance conventions: see pose.hpp.
 class PoseGraph {
   public:
     /// Adds the first node. Without `hold_first` or `recognise_fixed` nothing fixes the graph, and
@@ -18,7 +18,7 @@ class PoseGraph {
     int add_first(const Pose& T_map_body);
     /// Adds a node after the last one.
     int add_next(const Pose& T_previous_body, const Matrix6& covariance);
-    /// Fixes the first node at its pose: the map is that run's odom.
+    /// Fixes the first node at its pose. The map frame is then the odom of this run.
     void hold_first() { first_held_ = true; }
     /// Adds a recognition of a node from a fixed pose. Returns the number of the recognition.
     int recognise_fixed(int node, const Pose& T_map_body, const Matrix6& covariance);
@@ -26,8 +26,8 @@ class PoseGraph {
     int recognise(int from, int to, const Pose& T_from_to, const Matrix6& covariance);
     /// Removes the recognitions from this number on.
     void forget_from(int recognition);
-    /// Moves all poses rigidly so that the pose of one node becomes `T_map_body`. It is the start
-    /// value of `solve` as long as the pose in the map is unknown.
+    /// Moves all poses rigidly so that the pose of one node becomes `T_map_body`. Gives `solve` its
+    /// start value as long as the pose in the map is unknown.
     void place(int node, const Pose& T_map_body);
     /// Computes the best poses of all nodes. Returns false, with unchanged poses, when nothing
     /// fixes the graph or the equations cannot be solved.
@@ -40,7 +40,7 @@ class PoseGraph {
     [[nodiscard]] const Pose& T_map_body(int node) const {
         return poses_[static_cast<std::size_t>(node)];
     }
-    /// Squared Mahalanobis distance of a recognition from the present poses; its mean is 6.
+    /// Returns the squared Mahalanobis distance of a recognition from the present poses (mean 6).
     [[nodiscard]] double chi2(int recognition) const;
 
   private:

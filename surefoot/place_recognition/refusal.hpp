@@ -5,16 +5,16 @@
 
 namespace surefoot::place_recognition {
 
-/// Why a view was not recognised as a stored place; the first reason that applies.
+/// First reason why a view was not recognised as a stored place, in the order of the checks.
 enum class Refusal : std::uint8_t {
     none,          ///< recognised
     few_features,  ///< the image has too little structure with depth
     no_candidate,  ///< no keyframe has similar descriptors
-    few_matches,   ///< too few descriptors are each other's best
+    few_matches,   ///< too few descriptors are each other's best match
     few_inliers,   ///< too few of the matches agree on one pose
     poor_spread,   ///< the inliers cover too little of the image
     imprecise,     ///< the inliers do not determine the pose well enough
-    tilted,        ///< gravity would have another direction
+    tilted,        ///< the up directions of the view and the keyframe differ
     contradicted,  ///< parts of the image show something other than the stored place
     floor_only,    ///< the inliers lie on one level surface; a printed floor may repeat
     ambiguous,     ///< another place explains the view nearly as well

@@ -17,7 +17,7 @@ using odometry::PoseSolution;
 using odometry::StereoPixel;
 
 constexpr std::uint64_t kSeed = 1;  ///< fixed, so that the same views always give the same pose
-constexpr int kBorder_px = 32;      ///< no features exist nearer to the border
+constexpr int kBorder_px = 32;      ///< there are no features nearer to the border
 
 StereoPixel pixel_of(const Feature& feature) {
     return feature.pixel_px.cast<double>();
@@ -55,7 +55,7 @@ struct Answers {
     std::vector<int> found;
 };
 
-/// The feature with the most similar descriptor near `pixel`, or -1.
+/// Returns the index of the feature with the most similar descriptor near `pixel`, or -1.
 int find_at(const ComparisonConfig& config,
             const std::vector<Feature>& features,
             const StereoPixel& pixel,
@@ -128,20 +128,20 @@ void judge_parts(const ComparisonConfig& config, const Answers& answers, Compari
 /// A level surface in the candidate's camera frame.
 struct Level {
     Eigen::Vector3d up;     ///< unit vector
-    double height_m = 0.0;  ///< above the camera
+    double height_m = 0.0;  ///< height above the camera
 
-    /// Whether a point of this view can lie on it, within the uncertainty of its disparity.
+    /// True if a point can lie on this surface, within the uncertainty of the point's disparity.
     [[nodiscard]] bool holds(const ComparisonConfig& config,
                              const Eigen::Vector3d& p_m,
                              double point_disparity_px) const {
         const double off_m = up.dot(p_m) - height_m;
-        // Along its ray a point moves by its range times this share.
+        // An error of `disparity_px` moves a point along its ray by this share of its range.
         const double share = config.disparity_px / point_disparity_px;
         return std::abs(off_m) <= share * std::abs(up.dot(p_m)) + config.level_m;
     }
 };
 
-/// The level surface that contains the most inliers of the pose.
+/// Returns the level surface that contains the most inliers of the pose.
 Level floor_of(const ComparisonConfig& config,
                const camera::RectifiedRig& rig,
                const std::vector<PointMatch>& points,
@@ -186,7 +186,7 @@ void judge_off_floor(const ComparisonConfig& config,
         }));
 }
 
-/// Objects that stand on the floor must agree; features that are not visible do not count.
+/// True if enough features off the floor agree. Features that are not visible do not count.
 bool more_than_a_floor(const ComparisonConfig& config, const Comparison& found) {
     return found.asked_off_floor >= config.min_asked_off_floor &&
            found.agreeing_off_floor >= config.min_agreeing_off_floor * found.asked_off_floor;
@@ -234,8 +234,8 @@ Comparison compare(const ComparisonConfig& config,
         out.inliers = solution.inliers;
         return out;
     }
-    // The pose predicts where each corner should be. This finds far more corners than descriptors
-    // alone.
+    // The pose predicts where each corner should be. A search there finds far more corners than the
+    // descriptors alone.
     const auto guided = ask(config, candidate, query, solution.T_world_camera.inverse()).agreeing;
     points = point_matches(config, candidate, query, guided);
     solution = odometry::refine_pose(query.rig, solver, points, solution.T_world_camera);

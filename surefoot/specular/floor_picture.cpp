@@ -10,18 +10,19 @@ namespace surefoot::specular {
 namespace {
 
 constexpr double kWindow_m = 5.12;
-constexpr double kAhead_m = 1.0;     ///< from the body to the middle of the window
-constexpr double kSlack_m = 0.25;    ///< the window moves when its centre is off by more
-constexpr double kNearest_m = 0.25;  ///< depth along the optical axis
+constexpr double kAhead_m = 1.0;     ///< distance from the body to the middle of the window
+constexpr double kSlack_m = 0.25;    ///< the window moves if its centre is off by more than this
+constexpr double kNearest_m = 0.25;  ///< smallest depth along the optical axis
 constexpr unsigned kRowPhases = 4;
-/// A measured point farther than this above or below the plane does not belong to it.
+/// Largest distance of a measured point above or below the plane to which the point belongs.
 constexpr double kHeightTolerance_m = 0.06;
-/// A cell's mean follows a change of the floor within this many frames, at one metre.
+/// Largest weight of a cell's mean. A frame at one metre adds a weight of 1, so the mean follows a
+/// change of the floor within about this many frames.
 constexpr float kMostWeight = 8.0F;
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
-/// Sample position in a cell, different in each frame: the mean over frames is the mean over the
-/// cell.
+/// Sample position in a cell. The position differs from frame to frame, so the mean over frames is
+/// the mean over the cell.
 struct InCell {
     double x;
     double y;
@@ -37,7 +38,7 @@ struct FloorPicture::View {
     ImageView<const std::uint8_t> left;
     ImageView<const float> disparity_px;
     Eigen::Matrix3d R_camera_odom;
-    Eigen::Vector3d camera_m;  ///< in odom
+    Eigen::Vector3d camera_m;  ///< position in odom
     InCell in_cell;
     double floor_z_m = 0.0;
     double range_m = 0.0;
@@ -104,7 +105,8 @@ void FloorPicture::add(const camera::RectifiedRig& rig,
                     cell(low.x(), g.nx),
                     cell(high.x(), g.nx)};
     for (int iy = cell(low.y(), g.ny); iy <= cell(high.y(), g.ny); ++iy) {
-        // Rows take turns by their number in odom, which does not change when the window moves.
+        // Rows take turns by their number in odom. This number does not change when the window
+        // moves.
         const auto row = static_cast<std::uint64_t>(window_.first_iy() + iy);
         if (row % kRowPhases != phase) continue;
         add_row(view, iy, g.origin_m.y() + g.resolution_m * (iy + in_cell.y));
@@ -134,7 +136,8 @@ void FloorPicture::add_row(const View& view, int iy, double y_m) {
         const int top = static_cast<int>(v);   // in range: inside the image
         const double disparity_px = static_cast<double>(
             view.disparity_px.row(top + (v - top > 0.5))[left + (u - left > 0.5)]);
-        // Above the plane the ray ends earlier, with a larger disparity. NaN fails the comparison.
+        // A ray that ends above the plane ends earlier, with a larger disparity. NaN fails the
+        // comparison.
         const double above_m = height_m * (1.0 - fb_px_m / (disparity_px * z_m));
         if (!(std::abs(above_m) < kHeightTolerance_m)) continue;
         const std::uint8_t* upper = view.left.row(top) + left;

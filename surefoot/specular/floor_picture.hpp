@@ -21,7 +21,7 @@ class FloorPicture {
   public:
     explicit FloorPicture(const SpecularConfig& config);
 
-    /// Moves the window ahead of the body when the body has left its place in it.
+    /// Moves the window if the body has moved too far inside it. The window lies ahead of the body.
     void follow(const Pose& T_odom_body);
     /// Adds the part of a rectified left image that shows the plane z = `floor_z_m` (odom). Each
     /// frame uses a quarter of the rows. Pixels whose disparity contradicts the plane do not count.
@@ -34,7 +34,7 @@ class FloorPicture {
     void clear();
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
-    /// Mean grey value; NaN = not observed.
+    /// Returns the mean grey value of each cell; NaN = not observed.
     [[nodiscard]] ImageView<const float> brightness() const noexcept { return grey_.view(); }
 
   private:

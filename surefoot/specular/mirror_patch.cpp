@@ -10,18 +10,19 @@
 namespace surefoot::specular {
 namespace {
 
-constexpr float kCut = 2.5F;  ///< standard deviations
+constexpr float kCut = 2.5F;  ///< limit of outliers [standard deviations]
 /// Ratio of the standard deviation to the mean absolute value of a normal distribution.
 constexpr float kSigmaOfMean = 1.2533F;
-/// Cells of a tile, in both directions. Patches are whole tiles.
+/// Side of a tile [cells]. A patch consists of whole tiles.
 constexpr int kTile = 16;
-constexpr float kLeastInTile = 24.0F;  ///< known cells
+constexpr float kLeastInTile = 24.0F;  ///< smallest number of known cells in a tile
 
 bool is_known(float value) {
     return value == value;
 }
 
-/// Laplacian of the inner cells with four known neighbours; other cells become unknown.
+/// Computes the Laplacian of the inner cells with four known neighbours. Other cells become
+/// unknown.
 void laplacian(const Image<float>& grey, Image<float>& out) {
     std::fill_n(out.row(0), grey.width(), kNanF);
     std::fill_n(out.row(grey.height() - 1), grey.width(), kNanF);
@@ -40,14 +41,14 @@ struct Strength {
     float sum = 0.0F;  ///< sum of absolute values
     float known = 0.0F;
 
-    /// One standard deviation; NaN if too few cells are known.
+    /// Returns one standard deviation, or NaN if too few cells are known.
     [[nodiscard]] float sigma() const {
         return known >= kLeastInTile && sum > 0.0F ? kSigmaOfMean * sum / known : kNanF;
     }
 };
 
-/// Sums over the cells of lines, separated by their place in a tile, so that lanes are added at
-/// once.
+/// Sums over the cells of lines, one sum per column of a tile, so that one register operation adds
+/// many cells.
 struct Lanes {
     std::array<float, kTile> sum{};
     std::array<float, kTile> known{};
@@ -71,8 +72,8 @@ struct Lanes {
 
 constexpr int kMostTiles = MirrorPatch::kLines * MirrorPatch::kLineCells / (kTile * kTile);
 
-/// Normalises the strength of the tiles, of weak ones less because they contain mostly noise.
-/// Limits outliers.
+/// Normalises the strength of the tiles. Weak tiles are raised less, because they contain mostly
+/// noise. Limits outliers.
 void level(Image<float>& detail) {
     std::array<Strength, kMostTiles> tiles;
     Strength all;
@@ -142,7 +143,8 @@ void write_detail(const Image<float>& detail, PatchDetail& out) {
             for (int c = b * block_cells; c < (b + 1) * block_cells; ++c) {
                 constexpr auto kUnit = static_cast<float>(PatchDetail::kUnit);
                 const float value = is_known(from[c]) ? from[c] * kUnit : 0.0F;
-                const int rounded = static_cast<int>(value);  // in range: some times the cut
+                // in range: at most kCut * kUnit, plus the removed means
+                const int rounded = static_cast<int>(value);
                 to[c] = static_cast<std::int16_t>(rounded);
                 in_block += is_known(from[c]) ? 1 : 0;
                 in_squares += rounded * rounded;

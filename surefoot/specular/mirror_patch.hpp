@@ -11,13 +11,13 @@
 
 namespace surefoot::specular {
 
-/// Detail of a piece of floor, prepared for comparison with its own mirror image. It is the
+/// Detail of a piece of floor, prepared for comparison with its own mirror image. Detail is the
 /// difference of a cell from its neighbours, normalised to the same strength everywhere. Structure
-/// that is constant along a line or across all lines (joints of tiles and boards) is removed. Lines
-/// are parallel to the mirror lines of the search and lie one behind the other in memory.
+/// that is constant along a row or a column (joints of tiles) is removed. A "line" is a row of
+/// cells parallel to the mirror lines of the search. Memory holds one line after the other.
 struct PatchDetail {
     static constexpr int kUnit = 40;    ///< about one standard deviation
-    static constexpr int kBlocks = 12;  ///< number of parts in which a line is summed
+    static constexpr int kBlocks = 12;  ///< number of blocks of a line; each block has its own sum
 
     int lines = 0;
     int line_cells = 0;
@@ -51,7 +51,7 @@ class MirrorPatch {
                 double angle_rad);
 
     [[nodiscard]] const PatchDetail& fine() const noexcept { return fine_; }      ///< full detail
-    [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half of it
+    [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half detail
 
   private:
     void halve();
@@ -64,9 +64,9 @@ class MirrorPatch {
     PatchDetail coarse_;
 };
 
-/// Computes the detail of a brightness image (NaN = unknown; a row is a line): the Laplacian over
-/// the mean of its absolute values in a tile, limited, minus the means along and across the lines.
-/// `work`: scratch memory of the same size.
+/// Computes the detail of a brightness image (NaN = unknown; a row is a line). Divides the
+/// Laplacian by the mean of its absolute values in a tile, limits the result, and subtracts the
+/// means along and across the lines. `work`: scratch memory of the same size.
 void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
 
 }  // namespace surefoot::specular

@@ -14,20 +14,21 @@ namespace surefoot::specular {
 namespace {
 
 constexpr int kBlocks = PatchDetail::kBlocks;
-constexpr int kMostApart = 160;  ///< fine cells
+constexpr int kMostApart = 160;  ///< largest distance of mirrored lines [fine cells]
 constexpr int kBorder = 24;      ///< fine lines beside the first and the last mirror line
 constexpr std::size_t kCandidates = 3;
-constexpr int kAround = 4;  ///< half cells around a candidate that contain the best line
-/// Distance in half cells of the lines from which a line's noise is measured.
+constexpr int kAround = 4;  ///< half cells around a candidate in which the best line lies
+/// Smallest and largest distance [half cells] of the lines on which the noise of a line is
+/// measured.
 constexpr int kBesideFrom = 10;
 constexpr int kBesideTo = 40;
 constexpr int kBesideStep = 2;
 constexpr int kLeastPairs = 2000;
-/// This many cells before and behind the line must be known along its whole observed part.
+/// Smallest mean number of known cells before (and behind) the observed part of a line.
 constexpr int kLeastDepth = 35;
 constexpr std::size_t kLeastBeside = 16;
-/// Lower limit of the noise. Independent cells would have 1; neighbours are correlated, so a
-/// smaller value is chance.
+/// Lower limit of the noise. Independent cells would have a noise of 1. Neighbouring cells are
+/// correlated, so a value below the limit comes from chance.
 constexpr double kLeastSpread = 1.3;
 /// Ratio of the standard deviation to the mean absolute deviation of a normal distribution.
 constexpr double kSigmaOfMean = 1.2533;
@@ -36,7 +37,7 @@ constexpr int kLeanSteps = 2;
 constexpr int kMostShift = 3;  ///< half cells from the middle to the outermost block
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-/// Parts of a line that are tried at half the resolution: all, halves, thirds.
+/// Part of a line that is tried at half the resolution: the whole line, a half or a third.
 struct Part {
     int first;
     int last;
@@ -58,15 +59,16 @@ Total total(const PairSums& sums, int first, int last) {
     return out;
 }
 
-/// Sum in standard deviations, if all cells were independent; kNone with too few known pairs.
+/// Returns the sum in standard deviations, as if all cells were independent. Returns kNone if too
+/// few pairs are known.
 double raw_score(const Total& total, double mean_square, int least_pairs) {
     if (total.pairs < least_pairs) return kNone;
     return static_cast<double>(total.sum) /
            (mean_square * std::sqrt(static_cast<double>(total.pairs)));
 }
 
-/// Excess of each score over the mean of the lines 3 to 10 away; keeps the larger of this excess
-/// and the present entry.
+/// Computes the excess of each score over the mean score of the lines 3 to 10 away. Keeps the
+/// larger of this excess and the present entry.
 void raise_to_excess(const std::vector<double>& scores, std::vector<double>& stands_out) {
     constexpr int kFrom = 3;
     constexpr int kTo = 10;

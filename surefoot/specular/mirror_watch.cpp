@@ -12,24 +12,27 @@
 namespace surefoot::specular {
 namespace {
 
-constexpr double kAhead_m = 0.8;      ///< from the body to the middle of the patches
-constexpr int kAheadDirections = 41;  ///< within 20 deg of the heading
-/// Every direction is searched once in 180 turns; neighbouring directions are far apart in time.
+constexpr double kAhead_m = 0.8;      ///< distance from the body to the middle of the patches
+constexpr int kAheadDirections = 41;  ///< directions within 20 deg of the heading
+/// Step between the directions of two turns. Every direction gets one of 180 turns, and
+/// neighbouring directions are far apart in time.
 constexpr unsigned kStride = 67;
-constexpr double kFloorStep_m = 0.015;  ///< beyond this it is another floor: restart the picture
-constexpr double kFloorShare = 0.1;     ///< weight of one frame in the mean height of the floor
+/// A larger height step means another floor: the picture restarts.
+constexpr double kFloorStep_m = 0.015;
+constexpr double kFloorShare = 0.1;  ///< weight of one frame in the mean height of the floor
 constexpr double kSameAngle_rad = 2.0 * kRadPerDeg;
 constexpr double kSameOffset_m = 0.06;
 constexpr double kFarthest_m = 4.0;     ///< a pane farther from the body is removed
 constexpr double kFarthestNew_m = 2.0;  ///< a new pane farther ahead is not accepted yet
-constexpr double kNearestNew_m = 0.2;   ///< the body occupies the space up to here
+constexpr double kNearestNew_m = 0.2;   ///< the body occupies the space up to this distance
 constexpr int kTurns = 2;
-constexpr double kWorthTurning = 4.0;  ///< score from which a turned search is worth its time
+constexpr double kWorthTurning = 4.0;  ///< smallest score that justifies a turned search
 constexpr double kStraight_rad = 0.1 * kRadPerDeg;
 constexpr double kWayStep_m = 0.1;
 constexpr std::size_t kMostWay = 64;
 constexpr double kWayMargin_m = 0.3;
-constexpr double kWiden = 0.5;  ///< the hidden strip grows to each side, per metre behind
+/// Growth of the hidden strip to each side, per metre behind the pane.
+constexpr double kWiden = 0.5;
 
 int wrapped(int direction) {
     const int rest = direction % MirrorWatch::kDirections;
@@ -146,7 +149,8 @@ void MirrorWatch::look(int direction) {
     double angle_rad = direction * kRadPerDeg;
     patch_.sample(picture_.geometry(), picture_.brightness(), middle_m_, angle_rad);
     auto line = scan_.find(patch_);
-    // A line that is oblique in its patch is sharper in a patch turned to its direction.
+    // A line that is oblique in its patch is sharper in a patch that is turned to the direction of
+    // the line.
     for (int turn = 0; turn < kTurns && line; ++turn) {
         const bool is_worth_it =
             line->score >= kWorthTurning || line->correlation >= config_.mirror_correlation;
@@ -164,8 +168,8 @@ void MirrorWatch::look(int direction) {
     if (!is_impossible(pane)) suspect(pane);
 }
 
-/// Position where the pane crosses the middle of a patch with this angle, in cells across its
-/// lines.
+/// Returns the position at which the pane crosses the middle of a patch with this angle, in cells
+/// across the lines of the patch.
 double MirrorWatch::place_of(const SuspectedPane& pane, double angle_rad) const {
     const Eigen::Vector2d across(std::cos(angle_rad), std::sin(angle_rad));
     const double away_m = (pane.offset_m - pane.normal.dot(middle_m_)) / pane.normal.dot(across);
@@ -213,7 +217,7 @@ void hide_behind(std::span<const SuspectedPane> panes,
                  const SpecularConfig& config,
                  const grid::GridGeometry& geometry,
                  ImageView<std::uint8_t> hidden) {
-    // A cell is hidden if any part of it is hidden: adds half of its diagonal.
+    // A cell is hidden if any part of it is hidden, so half of its diagonal is added.
     const double reach_m = std::numbers::sqrt2 / 2.0 * geometry.resolution_m;
     for (const SuspectedPane& pane : panes) {
         const Eigen::Vector2d left = pane.left();

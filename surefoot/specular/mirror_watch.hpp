@@ -24,11 +24,11 @@ namespace surefoot::specular {
 struct SuspectedPane {
     Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
     double offset_m = 0.0;
-    double from_m = 0.0;  ///< start of the observed part, along the left of the normal
+    double from_m = 0.0;  ///< start of the observed part, counted along `left()`
     double to_m = 0.0;
     double score = 0.0;        ///< score of the last observation; see PatchLine
-    double correlation = 0.0;  ///< last observation: near 1 for a mirror, near 0.1 for glass
-    int low_looks = 0;         ///< consecutive observations below the score that keeps the pane
+    double correlation = 0.0;  ///< of the last observation: near 1 for a mirror, near 0.1 for glass
+    int low_looks = 0;         ///< consecutive observations with a score below `keep_score`
 
     [[nodiscard]] Eigen::Vector2d left() const { return {-normal.y(), normal.x()}; }
 };
@@ -36,8 +36,8 @@ struct SuspectedPane {
 /// Detects mirrors and panes of glass that stand on the floor, frame by frame. Keeps them as long
 /// as the floor picture shows them.
 ///
-/// Each frame searches a few of 180 directions: all in turn, those ahead more often. Each frame
-/// also checks one known pane again.
+/// Each frame searches a few of 180 directions. All directions take turns; directions ahead get
+/// more turns. Each frame also checks one known pane again.
 ///
 /// Not thread-safe. Frames must come in time order. Allocates only to add a pane.
 class MirrorWatch {
@@ -69,7 +69,7 @@ class MirrorWatch {
     [[nodiscard]] double place_of(const SuspectedPane& pane, double angle_rad) const;
     [[nodiscard]] int next_direction(int slot);
     void remember_way();
-    /// Whether the body went through the pane, or the pane is too near or too far to be detected.
+    /// True if the body went through the pane, or if the pane is too near or too far for detection.
     [[nodiscard]] bool is_impossible(const SuspectedPane& pane) const;
 
     SpecularConfig config_;
@@ -81,20 +81,20 @@ class MirrorWatch {
     std::vector<Eigen::Vector2d> way_m_;                  ///< path of the body, newest last
     Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();  ///< middle of the patches of this frame
     double heading_rad_ = 0.0;
-    std::optional<double> floor_z_m_;  ///< mean of the last frames
+    std::optional<double> floor_z_m_;  ///< mean height of the floor in the last frames
     double picture_z_m_ = 0.0;
     unsigned frame_ = 0;
     unsigned ahead_turn_ = 0;
     unsigned other_turn_ = 0;
 };
 
-/// Height in odom of a floor that is level within 1.5 deg, at the place of the patches. Nothing if
-/// `ground_body` (in base_link) is not accepted or tilted more.
+/// Returns the height in odom of a floor that is level within 1.5 deg, at the middle of the
+/// patches. Returns nothing if `ground_body` (in base_link) is not accepted or is tilted more.
 [[nodiscard]] std::optional<double> level_floor_z_m(const GroundObservation& ground_body,
                                                     const Pose& T_odom_body);
 
-/// Sets to 1 the cells at and behind the panes, seen from the body; the body is in front of all
-/// panes. Other cells stay unchanged. `hidden` has the size of `geometry`.
+/// Sets the cells at the panes and behind the panes to 1. The body is in front of all panes. Other
+/// cells stay unchanged. `hidden` has the size of `geometry`.
 void hide_behind(std::span<const SuspectedPane> panes,
                  const SpecularConfig& config,
                  const grid::GridGeometry& geometry,

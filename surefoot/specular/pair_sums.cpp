@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Values = hn::CappedTag<std::int16_t, 8>;
 using Sums = hn::RepartitionToWide<Values>;
 
-/// Adds the products of two lines per block to sums of 4 lanes each.
+/// Adds the products of two lines to the sums of the blocks. Each block has 4 lanes of sums.
 template <int kBlockCells>
 HWY_INLINE void add_line(const std::int16_t* near, const std::int16_t* far, std::int32_t* lanes) {
     const Values values;
@@ -59,13 +59,13 @@ namespace {
 
 HWY_EXPORT(add_lines);
 
-/// The lines with a partner inside the patch, on the first side of the mirror line.
+/// Lines on the first side of the mirror line that have a partner inside the patch.
 struct Lines {
     int first = 0;
     int last = -1;
 };
 
-/// `twice` must not be negative.
+/// Returns the lines with a partner for mirror line `twice`, which must not be negative.
 Lines paired_lines(const PatchDetail& detail, int twice, int most_apart) {
     return {std::max({0, twice - detail.lines + 1, (twice - most_apart + 1) / 2}),
             std::min((twice - kLeastApart) / 2, detail.lines - 1)};

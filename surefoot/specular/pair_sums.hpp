@@ -8,8 +8,8 @@
 
 namespace surefoot::specular {
 
-/// Sums of products of the cells that mirror each other about one line, per block. `pairs` counts
-/// cells known on both sides: the smaller count of each pair of blocks.
+/// Sums of products of the cells that mirror each other about one line, per block. `pairs`: smaller
+/// number of known cells of the two mirrored blocks, summed over the lines.
 struct PairSums {
     std::array<std::int32_t, PatchDetail::kBlocks> sum{};
     std::array<std::int32_t, PatchDetail::kBlocks> pairs{};

@@ -8,9 +8,16 @@ namespace surefoot::specular {
 void SpecularConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
         "enabled", enabled, "true: search for mirrors and glass that stand on the floor");
-    visitor.number("cell_m", cell_m, 0.005, 0.02, "cell size of the floor picture");
-    visitor.number(
-        "range_m", range_m, 1.0, 5.0, "largest distance of the floor in the floor picture");
+    visitor.number("cell_m",
+                   cell_m,
+                   0.005,
+                   0.02,
+                   "side length of a cell of the floor picture, which is a top view of the floor");
+    visitor.number("range_m",
+                   range_m,
+                   1.0,
+                   5.0,
+                   "largest distance from the camera at which floor enters the floor picture");
     visitor.number("mirror_correlation",
                    mirror_correlation,
                    0.1,
@@ -18,11 +25,21 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    "smallest correlation between the floor and its image in a mirror; a line with "
                    "less is not a mirror");
     visitor.number(
-        "mirror_score", mirror_score, 4.0, 50.0, "smallest score at which a mirror is suspected");
-    visitor.number(
-        "glass_score", glass_score, 4.0, 50.0, "smallest score at which glass is suspected");
-    visitor.number(
-        "keep_score", keep_score, 0.0, 50.0, "smallest score at which a suspected line is kept");
+        "mirror_score",
+        mirror_score,
+        4.0,
+        50.0,
+        "smallest score at which a line is suspected to be a mirror [sigma of the noise]");
+    visitor.number("glass_score",
+                   glass_score,
+                   4.0,
+                   50.0,
+                   "smallest score at which a line is suspected to be glass [sigma of the noise]");
+    visitor.number("keep_score",
+                   keep_score,
+                   0.0,
+                   50.0,
+                   "smallest score at which a suspected line is kept [sigma of the noise]");
     visitor.integer("forget_observations",
                     forget_looks,
                     1,
@@ -32,29 +49,32 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    unique_ratio,
                    1.0,
                    10.0,
-                   "smallest ratio of the best score to the second best score");
+                   "smallest ratio of the best line's score to the second best line's score at "
+                   "which the best line is suspected");
     visitor.integer("directions_per_frame",
                     directions_per_frame,
                     1,
                     180,
                     "number of directions searched ahead in each frame; the same number is "
                     "searched all around");
-    visitor.number("margin_m",
-                   margin_m,
-                   0.0,
-                   0.5,
-                   "distance before the line within which cells become unknown");
-    visitor.number("side_margin_m",
-                   side_margin_m,
-                   0.0,
-                   1.0,
-                   "distance beside the line within which cells become unknown");
+    visitor.number(
+        "margin_m",
+        margin_m,
+        0.0,
+        0.5,
+        "distance before a suspected mirror or pane within which map cells become unknown");
+    visitor.number(
+        "side_margin_m",
+        side_margin_m,
+        0.0,
+        1.0,
+        "distance beside a suspected mirror or pane within which map cells become unknown");
 }
 
 std::optional<std::string> SpecularConfig::problem() const {
     if (keep_score <= mirror_score && keep_score <= glass_score) return std::nullopt;
     return fmt::format(
-        "specular.keep_score = {}: must exceed neither specular.mirror_score = {} nor "
+        "specular.keep_score = {} must be at most specular.mirror_score = {} and at most "
         "specular.glass_score = {}",
         keep_score,
         mirror_score,

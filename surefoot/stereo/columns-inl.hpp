@@ -14,7 +14,7 @@ namespace surefoot::stereo::rows::HWY_NAMESPACE {
 namespace {
 
 /// Calls here(tag, u) for the columns first ... last - 1, one full register at a time. The last
-/// register may repeat some columns. Fewer columns than one register has are done one by one.
+/// register may repeat some columns. If there are fewer columns than lanes, calls one by one.
 template <class Here>
 HWY_INLINE void for_columns(int first, int last, const Here& here) {
     const hwy::HWY_NAMESPACE::ScalableTag<float> whole;

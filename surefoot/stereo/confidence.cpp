@@ -9,7 +9,8 @@
 namespace surefoot::stereo {
 namespace {
 
-/// Ratio of noise to texture slope: the error [px] that a single pixel would have.
+/// Returns the ratio of noise to texture slope. It is the error [px] that a single pixel would
+/// have.
 float noise_per_pixel(const MatchEvidence& evidence) noexcept {
     if (!(evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px))
         return kMaxNoisePerPixel_px;

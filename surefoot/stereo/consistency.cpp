@@ -37,7 +37,7 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
     }
     for (int u = 0; u < width; ++u) {
         if (std::isnan(d[u])) continue;
-        // in range: the loop above has made NaN of all others
+        // in range: the loop above has set all others to NaN
         if (claim[static_cast<std::size_t>(right_pixel(u, d[u]))] > d[u] + tolerance_px)
             d[u] = kNanF;
     }
@@ -112,8 +112,9 @@ void distance_to_marks(Executor& executor,
     const int width = marks.width();
     const int height = marks.height();
     distance_px.resize(width, height);
-    // First along each row, then from row to row, straight or diagonally. A path that is longer
-    // along the row than down the column takes its first part along the row of the mark.
+    // Spreads along each row first, then from row to row, straight or diagonally. These paths are
+    // enough: if a path is longer along the row than down the column, its extra part can lie on the
+    // row of the mark.
     for_row_blocks(executor, height, [&](int first, int last) {
         std::vector<std::uint8_t> scratch(
             2 * static_cast<std::size_t>(width + 2 * rows::kSpreadMargin));

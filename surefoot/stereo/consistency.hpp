@@ -10,14 +10,14 @@ namespace surefoot::stereo {
 
 /// Left-right check with the left disparities alone. Every left pixel claims the right pixel that
 /// it matches, and the claim with the largest disparity (the nearest) wins. A left pixel becomes
-/// NaN when a claim nearer by more than `tolerance_px` holds its right pixel, because it is hidden
-/// there. Matches outside the right image become NaN too. This replaces a second matching pass.
+/// NaN when the winning claim on its right pixel is larger by more than `tolerance_px`, because it
+/// is hidden there. Matches outside the right image become NaN too. No second pass is needed.
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px);
 
-/// Writes 255 into `jumps` on both sides of a disparity jump: a known neighbour along the row or
-/// column, holes skipped, differs by more than `jump_px` plus 0.4 px per pixel of distance. Also
-/// marks the middle between two such pixels 4 apart. Ground at a usable angle slopes less than this
-/// (baseline / camera height); the ramps that matchers draw behind edges slope more.
+/// Writes 255 into `jumps` on both sides of a disparity jump. There the next known pixel of the
+/// row or column differs by more than `jump_px` plus 0.4 px per pixel of distance. Also marks the
+/// middle between two such pixels 4 px apart. The slope of ground at a usable angle is smaller
+/// (baseline / camera height); the slope of the ramps that matchers draw behind edges is larger.
 void mark_jumps(Executor& executor,
                 const Image<float>& disparity_px,
                 double jump_px,
@@ -25,25 +25,25 @@ void mark_jumps(Executor& executor,
 
 /// Largest distance that distance_to_marks counts.
 inline constexpr int kFarthest_px = 15;
-/// Distance [px] of every pixel from the nearest marked pixel; a row, a column and a diagonal step
-/// count 1 each. 255 means more than kFarthest_px. After Rosenfeld and Pfaltz 1966.
+/// Computes the distance [px] of every pixel from the nearest marked pixel. A row, a column and a
+/// diagonal step count 1 each. 255 means more than kFarthest_px. After Rosenfeld and Pfaltz 1966.
 void distance_to_marks(Executor& executor,
                        const Image<std::uint8_t>& marks,
                        Image<std::uint8_t>& distance_px);
 
 /// Number of unknown pixels around each pixel.
 struct UnknownCounts {
-    Image<std::uint8_t> pixels;  ///< in the window of `radius_px`, cut at the image border
+    Image<std::uint8_t> pixels;  ///< counted in the window of `radius_px`, cut at the image border
     int radius_px = 0;
 };
-/// Windows hold at most 15 x 15 pixels, because a count must fit in a byte.
+/// Largest radius: a window has at most 15 x 15 pixels, because a count must fit in a byte.
 inline constexpr int kMaxCountRadius_px = 7;
 void count_unknown(Executor& executor,
                    const Image<float>& disparity_px,
                    int radius_px,
                    UnknownCounts& counts);
 
-/// Number of the positions 0 ... size - 1 that are at most `radius` away from `center`.
+/// Returns how many of the positions 0 ... size - 1 are at most `radius` away from `center`.
 constexpr int window_span(int center, int radius, int size) noexcept {
     return std::min(size - 1, center + radius) - std::max(0, center - radius) + 1;
 }

@@ -32,8 +32,8 @@ class Claims {
             const std::uint16_t before = best[place[u]];
             best[place[u]] = before < offer[u] ? before : offer[u];
         };
-        // Neighbouring pixels claim the same places and would wait for each other. Two halves of
-        // the row, far apart, are therefore processed together.
+        // Neighbouring pixels claim the same right pixels and would wait for each other. So the
+        // loop processes one pixel of each half of the row together.
         const std::size_t half = width / 2;
         for (std::size_t u = 0; u < half; ++u) {
             claim(u);
@@ -46,7 +46,8 @@ class Claims {
 
   private:
     static constexpr std::uint16_t kNoClaim = 0xffff;
-    /// Places left of the right row, which disparities can reach. Their results are never used.
+    /// Number of columns left of the right row that disparities can reach. Their results are never
+    /// used.
     static constexpr std::size_t kOutside = 256;
     std::size_t width_;
     std::vector<std::int32_t> place_;

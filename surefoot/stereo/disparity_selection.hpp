@@ -8,20 +8,20 @@
 namespace surefoot::stereo {
 
 struct SelectionConfig {
-    int uniqueness_percent = 5;  ///< the second best must cost at least this much more
-    int left_right_px = 1;       ///< largest difference to the best claim on the right pixel
+    int uniqueness_percent = 5;  ///< smallest margin of the best cost below the second best [%]
+    int left_right_px = 1;       ///< largest difference to the cheapest claim on its right pixel
 };
 
-/// Turns winners into disparities [px]. NaN if the match is not unique, is outside the right image
-/// or has disparity 0 (infinitely far), or if another left pixel has the same match at lower cost.
-/// A parabola through three costs gives the fraction of a pixel.
+/// Converts winners into disparities [px]. NaN if the match is not unique, lies outside the right
+/// image or has disparity 0 (infinitely far). NaN too if another left pixel has the same match at
+/// lower cost. A parabola through three costs gives the fraction of a pixel.
 void select_disparities(const SelectionConfig& config,
                         const Winners& winners,
                         Executor& executor,
                         Image<float>& disparity_px);
 
-/// Computes row `v` of the 3 x 3 median. A pixel with at least five unknown pixels among its nine
-/// becomes or stays unknown. Callers keep `scratch` from row to row.
+/// Computes row `v` of the 3 x 3 median. A pixel becomes or stays unknown if at least five of the
+/// nine pixels are unknown. Callers keep `scratch` from row to row.
 void median_of_row(const Image<float>& in, int v, std::vector<float>& scratch, float* out);
 
 }  // namespace surefoot::stereo

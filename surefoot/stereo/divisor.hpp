@@ -6,12 +6,12 @@
 
 namespace surefoot::stereo {
 
-/// Divides floats by one whole number below 2^10 with an odd part below 2^8. It multiplies instead,
-/// because a division takes a processor ten times as long. The result is rounded exactly as a
-/// division rounds it.
+/// Divides floats by one whole number below 2^10 with an odd part below 2^8. Uses multiplications,
+/// because a division takes a processor ten times as long as a multiplication. The result is
+/// rounded exactly like the result of a division.
 ///
 /// The proof splits x = h + l and 1 / n = H + L, with 12 bits in h and in H, so that h H is exact.
-/// The rest, h L + l / n, is smaller by 2^-11 and thus wrong by less than 2^-34 of the quotient. A
+/// The rest, h L + l / n, is smaller by 2^-11, so its error is below 2^-34 of the quotient. A
 /// quotient by an odd part m is at least 2^-25 / m = 2^-33 away from the middle between two floats,
 /// where rounding changes direction. Valid for x = 0 and 2^-80 <= |x| <= 2^80.
 class Divisor {

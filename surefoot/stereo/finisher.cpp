@@ -7,7 +7,8 @@
 namespace surefoot::stereo {
 namespace {
 
-/// A larger difference between neighbours separates two surfaces.
+/// Largest disparity difference [px] of neighbours on one surface. A larger difference is a jump
+/// between two surfaces.
 constexpr double kJump_px = 1.0;
 constexpr int kNeighbourhoodRadius_px = 4;
 

@@ -14,7 +14,7 @@ class Finisher {
     explicit Finisher(const RefineConfig& refinement = {}) : refiner_(refinement) {}
 
     /// Fills all of `depth` from the disparities `found_px` (NaN = unknown). Without a filter,
-    /// `found_px` may be `depth.disparity_px`. Jumps and holes are found before the filter.
+    /// `found_px` may be `depth.disparity_px`. Finds jumps and holes before it filters.
     void finish(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,
@@ -24,7 +24,7 @@ class Finisher {
 
   private:
     SubpixelRefiner refiner_;
-    // Kept between frames, so that a frame of the same size allocates nothing.
+    // These images stay between frames, so that a frame of the same size allocates nothing.
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
     UnknownCounts unknown_;

@@ -90,9 +90,9 @@ HWY_INLINE V middle_of(V a, V b, V c) {
     return hn::Max(hn::Min(a, b), hn::Min(hn::Max(a, b), c));
 }
 
-/// Median of nine values in three sorted columns: the median of the largest of the low values, the
-/// median of the middle values, and the smallest of the high values. The pointers refer to the
-/// previous column.
+/// Computes the median of nine values in three sorted columns. It is the median of three numbers:
+/// the largest low value, the median of the middle values, and the smallest high value. The
+/// pointers refer to the previous column.
 template <class D>
 HWY_INLINE void median_here(
     D d, const float* low, const float* middle, const float* high, float* out) {
@@ -148,8 +148,8 @@ void select_row(const SelectionRow& row) {
         const bool good = static_cast<int>(d != 0) & static_cast<int>(d <= u) &
                           static_cast<int>(second[u] * unique >= 100 * cost) &
                           static_cast<int>(apart <= tolerance);
-        // Vertex of the parabola through the costs at -1, 0 and 1; not at the ends of the search
-        // range.
+        // Vertex of the parabola through the costs at -1, 0 and 1. At the ends of the search
+        // range one of these costs is missing, so the vertex stays 0.
         const int curvature = below + above - 2 * cost;
         const bool curved = static_cast<int>(below != kNoCost) &
                             static_cast<int>(above != kNoCost) & static_cast<int>(curvature > 0);
@@ -160,7 +160,7 @@ void select_row(const SelectionRow& row) {
     }
 }
 
-/// 255 where two pixels are further apart than `limit`; NaN compares false.
+/// Returns 255 if two disparities differ by more than `limit`, else 0; NaN gives 0.
 HWY_INLINE std::uint8_t torn(float a, float b, float limit) {
     return std::abs(a - b) > limit ? 255 : 0;
 }
@@ -177,11 +177,11 @@ void mark_along_row(const float* d, int width, JumpRule rule, std::uint8_t* HWY_
     };
     for (int u = 0; u < std::min(r, width); ++u) beside_end(u);
     for (int u = r; u < width - r; ++u) {
-        // in range: truths
+        // in range: each comparison gives 0 or 1
         const bool jump =
             static_cast<int>(std::abs(d[u] - d[u - 1]) > step) |
             static_cast<int>(std::abs(d[u] - d[u + 1]) > step) |
-            static_cast<int>(std::abs(d[u - r] - d[u + r]) > ramp);  // in range: a truth
+            static_cast<int>(std::abs(d[u - r] - d[u + r]) > ramp);  // in range: 0 or 1
         mark[u] = jump ? 255 : 0;
     }
     for (int u = std::max(r, width - r); u < width; ++u) beside_end(u);
@@ -196,7 +196,7 @@ void mark_ramps_row(const float* HWY_RESTRICT above,
     for (int u = 0; u < width; ++u) mark[u] |= torn(above[u], below[u], ramp);
 }
 
-/// 255 in the lanes of the mask.
+/// Returns 255 in the lanes of the mask, else 0.
 template <class D>
 HWY_INLINE hn::Vec<hn::Rebind<std::uint8_t, D>> bytes_of(D /*d*/, hn::Mask<D> mask) {
     const hn::RebindToSigned<D> d32;
@@ -204,7 +204,7 @@ HWY_INLINE hn::Vec<hn::Rebind<std::uint8_t, D>> bytes_of(D /*d*/, hn::Mask<D> ma
     return hn::DemoteTo(d8, hn::IfThenElseZero(hn::RebindMask(d32, mask), hn::Set(d32, 255)));
 }
 
-/// mark_down for the lanes from `u` on.
+/// Does the work of mark_down for one register of columns.
 template <class D>
 HWY_INLINE void mark_down_here(D d,
                                const float* disparity_px,
@@ -294,7 +294,8 @@ void spread_along_row(const std::uint8_t* HWY_RESTRICT mark,
             const auto longer = hn::SaturatedAdd(beside, more);
             hn::StoreU(hn::Min(hn::LoadU(d8, from + u), longer), d8, to + u);
         }
-        // Registers wrote beyond the end; these values are no distances.
+        // Registers wrote beyond the end of the row. These values are not distances, so they become
+        // 255.
         std::fill_n(to + width, kSpreadMargin, std::uint8_t{255});
         std::swap(from, to);
     }

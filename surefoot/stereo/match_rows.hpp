@@ -8,7 +8,7 @@
 /// once per instruction set and chosen at run time; every instruction set gives the same bytes.
 namespace surefoot::stereo::rows {
 
-/// Sets one bit per pixel, 64 to a word, lowest bit first. `known`: the pixel has a disparity.
+/// Sets one bit per pixel, 64 in a word, lowest bit first. `known`: the pixel has a disparity.
 /// `linked`: this pixel and the next are known and differ by at most `same_px`. Other bits are 0.
 void link(const float* disparity_px,
           int width,
@@ -16,12 +16,12 @@ void link(const float* disparity_px,
           std::uint64_t* known,
           std::uint64_t* linked);
 
-/// Median of 3 x 3 disparities. Unknown (NaN) sorts below all numbers, so the median is unknown
-/// only where at least five pixels are. `lines`: the rows above, here and below. The end columns
-/// repeat. `scratch`: 3 (width + 2) floats.
+/// Computes the median of 3 x 3 disparities. Unknown (NaN) sorts below all numbers, so the median
+/// is unknown only where at least five pixels are unknown. `lines`: the rows above, here and below.
+/// The columns at the ends repeat. `scratch`: 3 (width + 2) floats.
 void median(const float* const lines[3], int width, float* scratch, float* out);
 
-/// Each left pixel claims a right pixel: `place` is its column, `offer` is 256 * cost + disparity.
+/// Each left pixel claims a right pixel, in column `place`. `offer` = 256 * cost + disparity.
 void claim(const std::uint8_t* disparity,
            const std::uint8_t* cost,
            int width,
@@ -34,14 +34,14 @@ struct SelectionRow {
     const std::uint8_t* cost_below = nullptr;
     const std::uint8_t* cost_above = nullptr;
     const std::uint8_t* second_cost = nullptr;
-    /// Disparity of the cheapest claim on the right pixel of this match.
+    /// Disparity of the cheapest claim on the same right pixel.
     const std::uint8_t* claimed = nullptr;
     int width = 0;
     int uniqueness_percent = 0;
     int left_right_px = 0;
-    float* disparity_px = nullptr;  ///< out
+    float* disparity_px = nullptr;  ///< output
 };
-/// See stereo::select_disparities.
+/// Computes one row of stereo::select_disparities.
 void select(const SelectionRow& row);
 
 /// A jump between known pixels is a difference larger than step_px + slope * distance.
@@ -49,7 +49,7 @@ struct JumpRule {
     float step_px = 0.0F;
     float slope = 0.0F;
 };
-/// A ramp spreads its step over 2 kRampHalf_px pixels.
+/// Half the length of a ramp: a ramp spreads its step over 2 kRampHalf_px pixels.
 inline constexpr int kRampHalf_px = 2;
 
 /// Writes 255 into `mark` on both sides of a jump between neighbours of the row and in the middle
@@ -58,9 +58,9 @@ void mark_along(const float* disparity_px, int width, JumpRule rule, std::uint8_
 /// Also marks the middle of each ramp between the rows kRampHalf_px above and below.
 void mark_ramps(
     const float* above, const float* below, int width, JumpRule rule, std::uint8_t* mark);
-/// Also marks both sides of each jump down a column. The upper side is the column's last known
-/// pixel: `last_px` (NaN = no known pixel yet), 1 + `rows_since` rows above. Both arrays are
-/// updated from row to row. The next row of `mark` begins `stride` elements later.
+/// Also marks both sides of each jump down a column. The upper side is the last known pixel of the
+/// column, 1 + `rows_since` rows above, with the disparity `last_px` (NaN = no known pixel yet).
+/// Each call updates both arrays. The next row of `mark` begins `stride` elements later.
 void mark_down(const float* disparity_px,
                int width,
                JumpRule rule,
@@ -71,12 +71,12 @@ void mark_down(const float* disparity_px,
 
 /// Adds `sign` to the count of every column whose pixel is unknown.
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts);
-/// Sums 2 radius + 1 neighbours; `counts` has `radius` more on either side. Sums must fit a byte.
+/// Sums 2 radius + 1 counts; `counts` has `radius` more on either side. Each sum must fit a byte.
 void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums);
 
 /// Largest distance that is counted; 255 means more.
 inline constexpr int kFarthest_px = 15;
-/// Distance [px] from the nearest marked pixel of the row. `scratch`: 2 (width + 2 kSpreadMargin).
+/// Computes the distance [px] to the nearest mark of a row. `scratch`: 2 (width + 2 kSpreadMargin).
 void spread_along(const std::uint8_t* mark,
                   int width,
                   std::uint8_t* scratch,

@@ -26,18 +26,18 @@ void MatcherConfig::describe(ConfigVisitor& visitor) {
                     1,
                     63,
                     "bm: limit of the grey slope along a row; steeper slopes count as this value");
-    visitor.integer(
-        "uniqueness_percent",
-        uniqueness_percent,
-        0,
-        50,
-        "smallest margin in per cent by which a match must be better than the second best");
+    visitor.integer("uniqueness_percent",
+                    uniqueness_percent,
+                    0,
+                    50,
+                    "smallest percentage by which the cost of a match must be below the cost of "
+                    "the second best match");
     visitor.number("left_right_tolerance_px",
                    left_right_tolerance_px,
                    0.0,
                    16.0,
-                   "largest disparity difference between a pixel and a nearer match that hides it; "
-                   "pixels with a larger difference are dropped");
+                   "largest disparity difference between two left pixels that match the same right "
+                   "pixel; one of the two is dropped if the difference is larger");
 }
 
 std::optional<std::string> MatcherConfig::problem() const {
@@ -63,7 +63,9 @@ std::optional<std::string> MatcherConfig::problem() const {
                            left_right_tolerance_px);
     }
     if (algorithm == Algorithm::census && disparities > 256)
-        return fmt::format("stereo.disparities = {}: census searches at most 256", disparities);
+        return fmt::format(
+            "stereo.disparities = {} must be at most 256 with stereo.algorithm = census",
+            disparities);
     return std::nullopt;
 }
 

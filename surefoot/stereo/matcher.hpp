@@ -21,28 +21,28 @@ inline constexpr const char* kAlgorithmNames[] = {"census", "sgbm", "bm"};
 
 /// Number and directions of the paths along which OpenCV's semi-global matcher sums costs.
 enum class SgbmMode : std::uint8_t {
-    three_way,  ///< from the left, from above, from the right
-    hh4,        ///< four, along rows and columns
-    hh,         ///< eight; keeps the costs of the whole image in memory
+    three_way,  ///< three paths: from the left, from above, from the right
+    hh4,        ///< four paths, along rows and columns
+    hh,         ///< eight paths; keeps the costs of the whole image in memory
 };
 inline constexpr const char* kSgbmModeNames[] = {"three_way", "hh4", "hh"};
 
 struct MatcherConfig {
     Algorithm algorithm = Algorithm::census;
-    int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images want 96-128
-    int block_size = 3;    ///< odd; for sgbm only
+    int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images need 96-128
+    int block_size = 3;    ///< side of the matching window [px], odd; for sgbm only
     SgbmMode sgbm_mode = SgbmMode::three_way;
-    /// Odd; for bm only. OpenCV's fast loops handle sizes up to 21 and prefilter caps up to 31.
+    /// Window side [px], odd; bm only. OpenCV is fast up to a side of 21 and a prefilter cap of 31.
     int bm_block_size = 15;
     int bm_prefilter_cap = 31;
     int uniqueness_percent = 5;
     double left_right_tolerance_px = 1.0;
     void describe(ConfigVisitor& visitor);
-    /// Returns the first invalid setting with its value in words, or nothing if all are valid.
+    /// Returns a text about the first invalid setting and its value, or nothing if all are valid.
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Dense matching of a rectified pair. Every executor gives the same result, byte for byte.
+/// Matches all pixels of a rectified pair. Every executor gives the same result, byte for byte.
 class Matcher {
   public:
     virtual ~Matcher() = default;
@@ -55,17 +55,17 @@ class Matcher {
                        DepthImage& depth) = 0;
 };
 
-/// OpenCV's semi-global matcher with our left-right check, sub-pixel refinement, sigma and outlier
-/// probability. `config` must have no problem().
+/// Makes OpenCV's semi-global matcher with our left-right check, sub-pixel refinement, sigma and
+/// outlier probability. `config` must have no problem().
 [[nodiscard]] std::unique_ptr<Matcher> make_sgbm_matcher(const MatcherConfig& config);
 
-/// OpenCV's block matcher, followed by the same steps.
+/// Makes OpenCV's block matcher, followed by the same steps as make_sgbm_matcher.
 [[nodiscard]] std::unique_ptr<Matcher> make_bm_matcher(const MatcherConfig& config);
 
-/// SemiGlobalSearch, selection of its winners, removal of speckles, then the same steps as above.
+/// Makes a matcher of SemiGlobalSearch, select_disparities, SpeckleFilter and Finisher.
 [[nodiscard]] std::unique_ptr<Matcher> make_census_matcher(const MatcherConfig& config);
 
-/// The matcher that `config.algorithm` names.
+/// Makes the matcher that `config.algorithm` names.
 [[nodiscard]] std::unique_ptr<Matcher> make_matcher(const MatcherConfig& config);
 
 }  // namespace surefoot::stereo

@@ -147,7 +147,7 @@ TEST(MatcherConfig, SaysWhatIsWrong) {
                   .value_or(""),
               "stereo.left_right_tolerance_px = nan must be from 0 to 16");
     EXPECT_EQ(with([](MatcherConfig& c) { c.disparities = 512; }).problem().value_or(""),
-              "stereo.disparities = 512: census searches at most 256");
+              "stereo.disparities = 512 must be at most 256 with stereo.algorithm = census");
 }
 
 class EveryMatcher : public testing::TestWithParam<Algorithm> {

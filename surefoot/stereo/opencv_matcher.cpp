@@ -79,7 +79,7 @@ class OpenCvMatcher final : public Matcher {
     cv::Ptr<cv::StereoMatcher> search_;
     ClippedFilter clipped_;
     Finisher finisher_;
-    // Kept between frames, so that a frame of the same size allocates nothing.
+    // These images stay between frames, so that a frame of the same size allocates nothing.
     cv::Mat padded_left_;
     cv::Mat padded_right_;
     cv::Mat steps_;
@@ -105,7 +105,7 @@ std::unique_ptr<Matcher> make_sgbm_matcher(const MatcherConfig& config) {
                                                                   config.block_size,
                                                                   8 * block_px2,
                                                                   32 * block_px2,
-                                                                  -1,  // our own left-right check
+                                                                  -1,  // off: we have our own check
                                                                   kSgbmPrefilterCap,
                                                                   config.uniqueness_percent,
                                                                   kSpeckleSize_px,
@@ -120,10 +120,11 @@ std::unique_ptr<Matcher> make_bm_matcher(const MatcherConfig& config) {
     search->setPreFilterType(cv::StereoBM::PREFILTER_XSOBEL);
     search->setPreFilterCap(config.bm_prefilter_cap);
     search->setUniquenessRatio(config.uniqueness_percent);
-    search->setDisp12MaxDiff(-1);  // our own left-right check
+    search->setDisp12MaxDiff(-1);  // off: we have our own left-right check
     search->setSpeckleWindowSize(kSpeckleSize_px);
     search->setSpeckleRange(kSpeckleRange_px);
-    // Half a window on every side plus one, because OpenCV requires images larger than the window.
+    // The margin is half a window plus one on every side, because OpenCV requires images larger
+    // than the window.
     return std::make_unique<OpenCvMatcher>(config, search, config.bm_block_size / 2 + 1);
 }
 

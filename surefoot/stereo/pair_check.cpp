@@ -15,13 +15,15 @@ namespace {
 
 constexpr int kHalf_px = kShiftHalf_px;  ///< half size of the window around a corner
 constexpr int kMaxCorners = 300;
-constexpr double kCornerQuality = 0.01;  ///< relative to the best corner
+/// Smallest quality of a corner relative to the best corner.
+constexpr double kCornerQuality = 0.01;
 constexpr double kMinCorrelation = 0.9;
-/// If a second place fits nearly as well (a fence, a tiled floor), the match is ambiguous.
+/// Largest ratio of the second best correlation to the best one. If a second position fits nearly
+/// as well (a fence, a tiled floor), the match is ambiguous.
 constexpr double kMaxSecond = 0.95;
 
 cv::Mat as_mat(ImageView<const std::uint8_t> image) {
-    // cv::Mat has no view of const pixels; these are only read.
+    // cv::Mat has no view of constant pixels. The callers only read the pixels.
     return {image.height,
             image.width,
             CV_8UC1,
@@ -29,7 +31,7 @@ cv::Mat as_mat(ImageView<const std::uint8_t> image) {
             static_cast<std::size_t>(image.stride)};
 }
 
-/// Whole-pixel shift of a corner with the best normalised correlation.
+/// Returns the whole-pixel shift of a corner with the best normalised correlation.
 std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
                                           const cv::Mat& right,
                                           const cv::Point& corner,
@@ -47,7 +49,7 @@ std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
     double best = 0.0;
     cv::Point at;
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
-    // A maximum at the edge of the search area may continue beyond it.
+    // If the maximum lies at the edge of the search area, the true maximum may lie beyond the area.
     if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
     const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);
     score(peak & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1.0);
@@ -69,7 +71,8 @@ Corners match_corners(ImageView<const std::uint8_t> left,
     const cv::Mat left_mat = as_mat(left);
     const cv::Mat right_mat = as_mat(right);
     std::vector<cv::Point2f> places;
-    // Spreads the corners over the image, for any image size.
+    // Smallest distance between two corners. It grows with the image size and spreads the corners
+    // over the image.
     const double distance_px = std::max(6.0, std::sqrt(left.width * (left.height / 1200.0)));
     cv::goodFeaturesToTrack(left_mat, places, kMaxCorners, kCornerQuality, distance_px);
     corners.found = static_cast<int>(places.size());

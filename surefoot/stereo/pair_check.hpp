@@ -8,20 +8,20 @@
 
 namespace surefoot::stereo {
 
-/// How well two images fit together as a rectified pair. Corners of the left image are searched in
-/// the right image, a few rows up and down and in both directions along the row.
+/// Tells how well two images fit together as a rectified pair. The check searches corners of the
+/// left image in the right image, a few rows up and down and in both directions along the row.
 struct PairCheck {
-    int corners = 0;             ///< found in the left image
-    int matched = 0;             ///< corners that are found again with a clear match
+    int corners = 0;             ///< number of corners in the left image
+    int matched = 0;             ///< number of corners with a clear match in the right image
     double row_offset_px = 0.0;  ///< median row in the right image minus row in the left one
-    double row_error_px = 0.0;   ///< median of its absolute value
-    int backward = 0;            ///< matches more than 1 px to the right in the right image
+    double row_error_px = 0.0;   ///< median of the absolute row difference
+    int backward = 0;            ///< matches more than 1 px farther right in the right image
 
-    /// The medians are meaningful from this many matched corners on.
+    /// Smallest number of matched corners that gives meaningful medians.
     static constexpr int kEnough = 20;
     [[nodiscard]] bool enough() const noexcept { return matched >= kEnough; }
-    /// The images are swapped: more than four of five matched corners moved the wrong way. In an
-    /// unswapped pair corners move that way only where the optical axes converge.
+    /// True if the images are swapped: more than four of five matched corners moved the wrong way.
+    /// In an unswapped pair, corners move that way only where the optical axes converge.
     [[nodiscard]] bool swapped() const noexcept { return enough() && 5 * backward > 4 * matched; }
 };
 
@@ -35,7 +35,7 @@ struct PairSearch {
 struct CornerShift {
     double u_px = 0.0;  ///< column in the left image
     double v_px = 0.0;
-    double columns_px = 0.0;  ///< right minus left
+    double columns_px = 0.0;  ///< column in the right image minus column in the left image
     double rows_px = 0.0;
 };
 

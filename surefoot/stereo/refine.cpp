@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kMaxWindowRadius_px = 16;
 constexpr int kMaxSmoothRadius_px = 16;
-/// A block starts by summing a window of rows, so it should be higher than the window.
+/// Number of rows in a block. A block starts by summing a window of rows, so it should be higher
+/// than the window.
 constexpr int kSolvedRows = 64;
 
 void smooth_image_row(ImageView<const std::uint8_t> in,
@@ -26,7 +27,7 @@ void smooth_image_row(ImageView<const std::uint8_t> in,
     rows::smooth_image(lines, in.width, scratch.data(), out);
 }
 
-/// Column sums of a window that moves down, and scratch memory for its way along the row.
+/// Column sums of a window that moves down, and scratch memory for the sums along a row.
 struct WindowSums {
     WindowSums(int width, int radius) {
         const auto columns = static_cast<std::size_t>(width + rows::kPadding);
@@ -198,7 +199,7 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     for_row_blocks(executor, height, [&](int first, int last) {
         smooth_block(first, last, found_px, filter);
     });
-    // Resized only here, because `disparity_px` may be the image `found_px`.
+    // The resize comes only here, because `disparity_px` may be the image `found_px`.
     disparity_px.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
         warp_block(first, last, left, right, jump_distance_px, disparity_px);

@@ -10,19 +10,19 @@
 namespace surefoot::stereo {
 
 struct RefineConfig {
-    int smooth_radius_px = 4;      ///< neighbours on the same surface are averaged over 9x9 pixels
+    int smooth_radius_px = 4;      ///< averages neighbours on the same surface over 9x9 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
     /// A search whose paths run down the image but not up follows slanted ground late. The value
     /// found in a row therefore belongs to the row this many rows farther up.
     int lag_rows = 0;
-    int window_radius_px = 12;    ///< 25x25 pixels share one correction, at most 16
-    double prior_sigma_px = 0.2;  ///< trust in the smoothed value, 1 sigma
-    int jump_margin_px = 2;       ///< pixels this near to a jump show mixed surfaces: not used
-    double max_step_px = 1.0;     ///< no correction is larger
-    /// Lower limit of the grey-level noise of a window, 1 sigma, after smoothing the image.
-    /// Prevents too much trust in a window.
+    int window_radius_px = 12;    ///< 25x25 pixels share one correction; the radius is at most 16
+    double prior_sigma_px = 0.2;  ///< prior standard deviation of the smoothed disparity
+    int jump_margin_px = 2;       ///< skips pixels this near to a jump: they show mixed surfaces
+    double max_step_px = 1.0;     ///< largest correction
+    /// Lower limit of the grey-level noise of a window (1 sigma, after smoothing of the image). The
+    /// limit prevents too much trust in a window.
     double min_noise_grey = 0.4;
-    /// Smoothing correlates the noise of neighbouring pixels: this many count as one.
+    /// Smoothing correlates the noise of neighbouring pixels: this many pixels count as one.
     double correlation = 3.5;
 };
 
@@ -32,18 +32,18 @@ enum class Filter : std::uint8_t {
     median,  ///< median of 3 x 3 pixels
 };
 
-/// By-products of the refinement for one row, besides the disparities; NaN = unknown.
+/// Results of the refinement for one row, besides the disparities; NaN = unknown.
 struct RefinedRow {
     const float* residual_grey = nullptr;     ///< rms grey difference that no shift explains
-    const float* gradient_grey_px = nullptr;  ///< rms slope along the row in the window
-    const float* shift_px = nullptr;          ///< change of the smoothed value
+    const float* gradient_grey_px = nullptr;  ///< rms grey slope along the row in the window
+    const float* shift_px = nullptr;          ///< change of the smoothed disparity
 };
-/// Called once for each refined row `v`, from any thread. The row's data are valid only during the
-/// call, so that they need not be written to memory.
+/// Called once for each refined row `v`, from any thread. The data of the row are valid only during
+/// the call, so no image of them is needed.
 using RefinedRows = std::function<void(int v, const RefinedRow&)>;
 
-/// Sub-pixel refinement: smoothing along surfaces, then image registration (Lucas and Kanade 1981)
-/// along the row.
+/// Refines disparities to sub-pixels: smooths them along surfaces, then registers both images along
+/// the row (Lucas and Kanade 1981).
 ///
 /// A semi-global matcher draws its parabola through three costs. It therefore prefers whole pixels,
 /// scatters from pixel to pixel, and leans toward fronto-parallel surfaces where texture is weak.
@@ -61,9 +61,9 @@ class SubpixelRefiner {
   public:
     explicit SubpixelRefiner(const RefineConfig& config);
 
-    /// Computes `disparity_px` from `found_px` (NaN = unknown, and stays unknown). Both may be the
-    /// same image if there is no filter. `jump_distance_px` is the distance of every pixel from the
-    /// nearest disparity jump.
+    /// Computes `disparity_px` from `found_px` (NaN = unknown; such pixels stay unknown). Both may
+    /// be the same image if there is no filter. `jump_distance_px` is the distance of every pixel
+    /// from the nearest disparity jump.
     void refine(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,
@@ -91,12 +91,12 @@ class SubpixelRefiner {
     Image<std::int32_t> evidence_;  ///< see rows::kUnused
 };
 
-/// Mean over the neighbours on the same surface along a row. Neighbours count in opposite pairs, so
+/// Averages the neighbours on the same surface along a row. Neighbours count in opposite pairs, so
 /// that a slanted plane keeps its value. `row` has `radius_px` unknown pixels before and after it.
 void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
-/// The same down the columns, for row `v`; near the image border fewer neighbours count. With
-/// `lag_rows`, the row that many farther down and its neighbours count instead, where it differs by
-/// at most half of `same_surface_px`. This limit keeps edges in place.
+/// Averages down the columns for row `v`; near the image border fewer neighbours count. With
+/// `lag_rows`, uses row `v + lag_rows` and its neighbours instead, where this row differs from row
+/// `v` by at most half of `same_surface_px`. This limit keeps edges in place.
 void smooth_down(
     const Image<float>& in, int v, int radius_px, double same_surface_px, int lag_rows, float* out);
 

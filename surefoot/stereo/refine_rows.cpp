@@ -26,9 +26,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Grey levels are stored in sixteenths.
 constexpr float kScale = 16.0F;
-/// A difference beyond 32 grey levels means another point; its size does not matter.
+/// Limit of a grey difference, 32 grey levels. A larger difference means another point; its size
+/// does not matter.
 constexpr float kMaxError = 512.0F;
-/// 64 grey levels per pixel; 33 x 33 squares of it fit an int32: 1089 * 1024^2 = 1.1e9.
+/// Limit of a gradient, 64 grey levels per pixel. The sum of 33 x 33 squares of this limit fits an
+/// int32: 1089 * 1024^2 = 1.1e9.
 constexpr float kMaxGradient = 1024.0F;
 
 void smooth_image_row(const std::uint8_t* const in[5],
@@ -46,7 +48,7 @@ void smooth_image_row(const std::uint8_t* const in[5],
     }
     sum[-2] = sum[-1] = sum[0];
     sum[width] = sum[width + 1] = sum[width - 1];
-    // The sum is at most 256 * 255 + 8, so it fits.
+    // The sum is at most 256 * 255 + 8, so it fits in 16 bits.
     for (int u = 0; u < width; ++u) {
         const auto total = static_cast<std::uint16_t>(
             sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u] + 8);
@@ -84,7 +86,8 @@ void smooth_along_row(const SmoothRow& row) {
         for_columns(0, row.width, [&](auto d, int u) { smooth_here<true>(d, row, row.steps, u); });
 }
 
-/// Position of the lanes from `u` on in the right row: whole pixel (or kNowhere) and fraction.
+/// Writes the position in the right row of the lanes from `u` on: whole pixel (or kNowhere) and
+/// fraction.
 template <class D>
 HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     const hn::RebindToSigned<D> d32;
@@ -94,7 +97,7 @@ HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     const auto jump_px =
         hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d8, row.jump_distance_px + u)));
     const auto far = hn::Gt(jump_px, hn::Set(d, static_cast<float>(row.jump_margin_px)));
-    // NaN compares false. One column is left on each side for the gradients.
+    // NaN compares false. The gradients need one more column on each side.
     const auto inside = hn::And(hn::Ge(x, hn::Set(d, 1.0F)),
                                 hn::Lt(x, hn::Set(d, static_cast<float>(row.width - 3))));
     const auto kept = hn::IfThenElseZero(hn::And(inside, far), x);
@@ -103,19 +106,20 @@ HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     hn::StoreU(hn::Sub(kept, hn::ConvertTo(d, place)), d, row.fraction + u);
 }
 
-/// Loads the four pixels of the right row around each place, side by side. A separate gather of
+/// Loads the four pixels of the right row around each position, side by side. A separate gather of
 /// each pixel would take four times as many loads.
 void take_pairs(const WarpRow& row) {
     const std::int16_t* HWY_RESTRICT right = row.right;
     const std::int32_t* HWY_RESTRICT place = row.place;
     std::int32_t* HWY_RESTRICT pairs = row.pairs;
-    const int end = row.width - 1;  // a copy: the stores below might change `row`
+    // A local copy, because the compiler must assume that the stores below change `row`.
+    const int end = row.width - 1;
     for (int u = 1; u < end; ++u)
         std::memcpy(pairs + 2 * u, right + place[u] - 1, 2 * sizeof(std::int32_t));
 }
 
-/// Pixel pairs of the lanes from `u` on: `front` left of the fractional position, `back` right of
-/// it.
+/// Loads the pixel pairs of the lanes from `u` on: `front` lies left of the fractional position,
+/// `back` right of this position.
 template <class D32>
 HWY_INLINE void load_pairs(
     D32 d32, const WarpRow& row, int u, hn::Vec<D32>& front, hn::Vec<D32>& back) {
@@ -134,7 +138,7 @@ HWY_INLINE void load_pairs(
 #endif
 }
 
-/// Nearest integers of |x| < 4096; halves round up.
+/// Returns the nearest integers of |x| < 4096. Halves round up.
 template <class D>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> rounded(D d, hn::Vec<D> x) {
     const hn::RebindToSigned<D> d32;
@@ -152,7 +156,7 @@ HWY_INLINE void warp_here(D d, const WarpRow& row, int u) {
     auto front = hn::Zero(d32);
     auto back = hn::Zero(d32);
     load_pairs(d32, row, u, front, back);
-    // No pixel is negative.
+    // No pixel value is negative, so the upper half of a word needs no sign.
     const auto before = hn::And(front, lower_half);
     const auto low = hn::ShiftRight<16>(front);
     const auto high = hn::And(back, lower_half);
@@ -208,7 +212,7 @@ void slide_row(const std::int32_t* HWY_RESTRICT entering,
     }
 }
 
-/// Prefix sums over the lanes.
+/// Returns prefix sums over the lanes.
 template <class D32>
 HWY_INLINE hn::Vec<D32> sums_so_far(D32 d32, hn::Vec<D32> x) {
     const auto lane = hn::Iota(d32, 0);
@@ -221,8 +225,9 @@ HWY_INLINE hn::Vec<D32> sums_so_far(D32 d32, hn::Vec<D32> x) {
     return x;
 }
 
-/// prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; 0 before the start, the total beyond the
-/// end. The prefix sums may wrap around; differences that fit are still correct.
+/// Computes prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; 0 before the start, the total
+/// beyond the end. The prefix sums may wrap around. Differences of prefix sums are still correct if
+/// they fit in 32 bits.
 void sum_up(const SolveRow& row) {
     const hn::ScalableTag<std::int32_t> d32;
     const int lanes = static_cast<int>(hn::Lanes(d32));
@@ -254,7 +259,7 @@ void solve_row(const SolveRow& row) {
     float* HWY_RESTRICT residual = row.residual_grey;
     float* HWY_RESTRICT gradient = row.gradient_grey_px;
     const auto window = [span](const std::int32_t* prefix, int u) {
-        // Computed as unsigned, because prefixes may have wrapped around.
+        // Subtracts as unsigned, because prefix sums may have wrapped around.
         return static_cast<std::int32_t>(static_cast<std::uint32_t>(prefix[u + span]) -
                                          static_cast<std::uint32_t>(prefix[u]));
     };
@@ -282,7 +287,7 @@ void solve_row(const SolveRow& row) {
         const float step = -ge / (gg + row.correlation * variance * prior_weight);
         const float shift = std::min(std::max(step, -row.max_step_px), row.max_step_px);
         const bool known = disparity_px[u] == disparity_px[u];
-        const float unknown = disparity_px[u];  // NaN where it is used
+        const float unknown = disparity_px[u];  // NaN in the pixels that use this value
         const float kept_shift = solvable ? shift : 0.0F;
         const float noise = solvable ? std::sqrt(variance) : kMaxError / kScale;
         const float slope = solvable ? std::sqrt(gg * per_pixel) : 0.0F;
@@ -293,7 +298,7 @@ void solve_row(const SolveRow& row) {
     }
 }
 
-/// Divisor::divide.
+/// Vector version of Divisor::divide.
 template <class D>
 HWY_INLINE hn::Vec<D> divide(D d, const Divisor& by, hn::Vec<D> x) {
     const hn::RebindToUnsigned<D> bits;
@@ -304,20 +309,21 @@ HWY_INLINE hn::Vec<D> divide(D d, const Divisor& by, hn::Vec<D> x) {
     return hn::Add(hn::Mul(high, hn::Set(d, by.upper())), rest);
 }
 
-/// c + x * y with two roundings on every processor.
+/// Returns c + x * y with two roundings on every processor.
 template <class D>
 HWY_INLINE hn::Vec<D> plus_product(D d, float c, hn::Vec<D> x, hn::Vec<D> y) {
     return hn::Add(hn::Set(d, c), hn::Mul(x, y));
 }
 
-/// ln x of a positive normal number, as 2 atanh((m - 1) / (m + 1)) of its mantissa. Error < 1e-6.
+/// Returns ln x of a positive normal number, computed as 2 atanh((m - 1) / (m + 1)) of its mantissa
+/// m. Error < 1e-6.
 template <class D>
 HWY_INLINE hn::Vec<D> log_of(D d, hn::Vec<D> x) {
     const hn::RebindToSigned<D> d32;
     const auto one = hn::Set(d, 1.0F);
     const auto bits = hn::BitCast(d32, x);
     const auto fraction = hn::And(bits, hn::Set(d32, 0x7fffff));
-    const auto large = hn::Gt(fraction, hn::Set(d32, 0x3504f3));  // beyond sqrt 2
+    const auto large = hn::Gt(fraction, hn::Set(d32, 0x3504f3));  // mantissa above sqrt 2
     const auto scale = hn::IfThenElse(large, hn::Set(d32, 0x3f000000), hn::Set(d32, 0x3f800000));
     const auto bias = hn::IfThenElse(large, hn::Set(d32, 126), hn::Set(d32, 127));
     const auto exponent = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<23>(bits), bias));
@@ -331,7 +337,8 @@ HWY_INLINE hn::Vec<D> log_of(D d, hn::Vec<D> x) {
                    hn::Mul(hn::Mul(hn::Set(d, 2.0F), t), series));
 }
 
-/// e^x for |x| <= 80, as 2^n times the series of the remainder. Relative error < 1e-6.
+/// Returns e^x for |x| <= 80, computed as 2^n times the series of the remainder. Relative error <
+/// 1e-6.
 template <class D>
 HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
     constexpr Divisor k720(720);
@@ -347,11 +354,11 @@ HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
     return hn::Mul(series, hn::BitCast(d, power));
 }
 
-// The formulae of confidence.cpp in two loops. In one loop each step would wait for so many others
-// that no processor could look far enough ahead.
+// The formulae of confidence.cpp, in two loops. In a single loop each step would wait for too many
+// earlier steps.
 
-/// Sigma and score of the lanes from `u` on. Their windows of unknown pixels contain `area` pixels.
-/// The score is stored in place of the probability.
+/// Computes sigma and score of the lanes from `u` on. The windows in which unknown pixels are
+/// counted have `area` pixels. The score is stored in place of the probability.
 template <class D>
 HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) {
     constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));         // in range: constants
@@ -392,7 +399,7 @@ HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) 
     hn::StoreU(score, d, row.outlier_probability + u);
 }
 
-/// Outlier probability of the lanes from `u` on.
+/// Computes the outlier probability of the lanes from `u` on.
 template <class D>
 HWY_INLINE void weigh_here(D d, const RateRow& row, int u) {
     const hn::RebindToSigned<D> d32;
@@ -419,7 +426,7 @@ void rate_row(const RateRow& row) {
     const Divisor whole(row.unknown_rows * (2 * radius + 1));
     for_columns(radius, inner, [&](auto d, int u) { score_here(d, row, whole, u); });
     for (int u = inner; u < row.width; ++u) beside_end(u);
-    // Values that are already rated must not be rated again.
+    // This loop must rate each value exactly once, so its registers do not overlap.
     const hn::ScalableTag<float> d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     int u = 0;

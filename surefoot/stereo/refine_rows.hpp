@@ -9,8 +9,8 @@
 /// no float sum is re-ordered and no operation is contracted.
 namespace surefoot::stereo::rows {
 
-/// Binomial filter 1 4 6 4 1 in both directions, result in 1/16 grey level. `in`: the five rows
-/// around the output row. `scratch`: width + 4 elements.
+/// Applies the binomial filter 1 4 6 4 1 in both directions; the result is in 1/16 grey level.
+/// `in`: the five rows around the output row. `scratch`: width + 4 elements.
 void smooth_image(const std::uint8_t* const in[5],
                   int width,
                   std::uint16_t* scratch,
@@ -18,18 +18,18 @@ void smooth_image(const std::uint8_t* const in[5],
 
 struct SmoothRow {
     const float* center = nullptr;
-    /// The lines k + 1 pixels before and after, already shifted to the pixel's place.
+    /// The lines k + 1 pixels before and after, already shifted to the position of the pixel.
     const float* const* before = nullptr;
     const float* const* after = nullptr;
     int steps = 0;
     int width = 0;
     float same_surface_px = 0.0F;
     float* out = nullptr;
-    /// Optional row that replaces `center` where they differ by at most half of `same_surface_px`.
-    /// The other lines are the neighbours of this row.
+    /// Optional row that replaces `center` where both differ by at most half of `same_surface_px`.
+    /// `before` and `after` are the neighbours of this row.
     const float* ahead = nullptr;
 };
-/// See stereo::smooth_along.
+/// Does the work of stereo::smooth_along and smooth_down.
 void smooth_along(const SmoothRow& row);
 
 /// Evidence of a pixel about its shift. Lower half: gradient [1/16 grey level per pixel]. Upper
@@ -44,8 +44,8 @@ struct WarpRow {
     int jump_margin_px = 0;
     int width = 0;
     std::int32_t* evidence = nullptr;
-    // Scratch of the row: where each pixel lies in the right row (0: outside), and the four right
-    // pixels around that place, two to a word.
+    // Scratch of the row: the position of each pixel in the right row (0: outside), and the four
+    // right pixels around that position, two in a word.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
     std::int32_t* pairs = nullptr;  ///< 2 width
@@ -53,12 +53,12 @@ struct WarpRow {
 /// Computes the grey difference and gradient of every pixel at its disparity.
 void warp(const WarpRow& row);
 
-/// Exact sums over the columns of a window: count and e, g, gg, ge, ee, each `width` long, then
-/// kPadding zeros. The first sum is kCounted times the sum of e, plus the number of pixels.
+/// Number of exact sums over the columns of a window: count and e, g, gg, ge, ee. Each has `width`
+/// elements, then kPadding zeros. The first holds kCounted times the sum of e, plus the count.
 inline constexpr int kSums = 5;
 inline constexpr int kCountBits = 11;
 inline constexpr std::int32_t kCounted = 1 << kCountBits;
-/// Registers may reach this far beyond the end of a row.
+/// Number of elements that a register may reach beyond the end of a row.
 inline constexpr int kPadding = 64;
 /// Moves the window down by one row: adds the row `entering`, subtracts the row `leaving`.
 void slide(const std::int32_t* entering,
@@ -76,7 +76,7 @@ struct SolveRow {
     float min_noise_grey = 0.0F;
     float prior_sigma_px = 0.0F;
     float max_step_px = 0.0F;
-    float* disparity_px = nullptr;  ///< moved by the shift; NaN = unknown, stays unknown
+    float* disparity_px = nullptr;  ///< changed by the shift; NaN = unknown, stays unknown
     float* shift_px = nullptr;
     float* residual_grey = nullptr;
     float* gradient_grey_px = nullptr;

@@ -12,11 +12,11 @@
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kRounds = 8;      ///< rounds of re-weighting; four or five are enough
-constexpr double kHuber = 1.5;  ///< sigmas
-/// Corners within a few degrees of each other share lens errors: this many count as one.
+constexpr int kRounds = 8;      ///< number of re-weightings; four or five are enough
+constexpr double kHuber = 1.5;  ///< limit of full weight [sigmas]
+/// Corners within a few degrees of each other share lens errors. This many corners count as one.
 constexpr double kCornersPerIndependent = 4.0;
-/// Weak prior. Without it a few corners on a line could give any result.
+/// Sigmas of a weak prior. Without a prior, a few corners on a line could give any result.
 constexpr double kPriorTurn_rad = 0.01;
 constexpr double kPriorFocal = 0.01;
 constexpr double kLeastSigma_px = 0.02;

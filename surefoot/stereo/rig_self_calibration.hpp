@@ -25,11 +25,11 @@ struct SelfCalibrationConfig {
 /// Correction of the right camera, estimated from the row errors of a rectified pair.
 struct RigSelfCalibration {
     camera::RightCameraCorrection camera;             ///< yaw stays 0
-    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< roll, pitch [rad] and focal share
+    Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< roll [rad], pitch [rad] and focal share
     int corners = 0;
-    double row_error_px = 0.0;       ///< median of the absolute value, before the correction
-    double row_error_left_px = 0.0;  ///< median after the correction
-    double significance = 0.0;       ///< chi square of the three parameters together
+    double row_error_px = 0.0;       ///< median of the absolute row error before the correction
+    double row_error_left_px = 0.0;  ///< median of the absolute row error after the correction
+    double significance = 0.0;       ///< chi^2 of all three parameters (3 degrees of freedom)
 
     /// A chi square with 3 degrees of freedom exceeds this by chance once in 1000 cases.
     static constexpr double kSignificant = 16.27;
@@ -40,9 +40,9 @@ struct RigSelfCalibration {
 /// its focal lengths are too long. To first order, the image of the ray (x, y, 1) moves by
 ///   rows:    dv / f = p (1 + y^2) - r x + m y
 ///   columns: du / f = p x y + r y + m x
-/// Row errors should be 0: they give p, r and m, and so the error of every disparity (0.06 % too
-/// long a focal length shifts disparities at the border of a ZED's image by 0.2 px, 1 cm at 1.5 m).
-/// Least squares with Huber's weights.
+/// Row errors should be 0. They give p, r and m, and so the error of every disparity. Example: a
+/// focal length 0.06 % too long shifts disparities at the border of a ZED's image by 0.2 px, which
+/// is 1 cm at 1.5 m. Method: least squares with Huber's weights.
 ///
 /// Rotation about y (yaw) is not estimated. It moves rows by x y, as a decentred lens does, so an
 /// error of the lens would become a bias of every depth.

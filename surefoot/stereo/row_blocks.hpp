@@ -7,8 +7,8 @@
 
 namespace surefoot::stereo {
 
-/// Calls work(first, last) for blocks of rows, `last` exclusive. The block borders do not depend on
-/// the number of threads, and so the results do not either.
+/// Calls work(first, last) for blocks of rows, `last` exclusive. The block borders, and so the
+/// results, do not depend on the number of threads.
 template <int kBlockRows = 32, typename Work>
 void for_row_blocks(Executor& executor, int height, const Work& work) {
     const int blocks = (height + kBlockRows - 1) / kBlockRows;

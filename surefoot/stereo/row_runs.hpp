@@ -11,7 +11,7 @@
 namespace surefoot::stereo {
 
 /// Runs of known pixels of a row whose neighbours differ by at most a limit. The search handles 64
-/// pixels at a time, so that its cost depends on the number of runs rather than of pixels.
+/// pixels at a time, so that its cost depends on the number of runs, not on the number of pixels.
 class RowRuns {
   public:
     void find(const float* disparity_px, int width, float same_px) {
@@ -47,7 +47,7 @@ class RowRuns {
     }
 
   private:
-    // Bit u % 64 of word u / 64 for column u.
+    // Column u has bit u % 64 of word u / 64.
     std::vector<std::uint64_t> known_;
     std::vector<std::uint64_t> linked_;  ///< pixel pairs that are known and within the limit
 };

@@ -51,7 +51,7 @@ class AlignedBytes {
     std::size_t size_ = 0;
 };
 
-/// An image with a border that repeats its edge; rows are aligned.
+/// An image with a border that repeats the edge of the image. Rows are aligned.
 struct Bordered {
     AlignedBytes bytes;
     std::ptrdiff_t stride = 0;
@@ -75,7 +75,8 @@ struct Bordered {
     }
 };
 
-/// Census words of an image, byte planes row by row. `front` columns repeat the first one.
+/// Census words of an image: one plane for each byte, row by row. `front` columns before a row
+/// repeat its first column.
 struct CensusPlanes {
     AlignedBytes bytes;
     std::ptrdiff_t stride = 0;
@@ -99,13 +100,13 @@ struct CensusPlanes {
     }
 };
 
-/// State of a path at one place: costs per disparity, one extra row, and the least cost.
+/// State of a path at one column or row: costs per disparity, one extra row, and the least cost.
 struct PathState {
     std::uint8_t* costs = nullptr;
     std::uint8_t* least = nullptr;
 };
 
-/// Path states at many places.
+/// Path states at many columns.
 struct PathStates {
     AlignedBytes bytes;
     std::ptrdiff_t stride = 0;
@@ -131,13 +132,13 @@ struct Strip {
     AlignedBytes grey;
     PathStates from_left;  ///< state at the start of each block of 64 columns
     PathStates from_right;
-    AlignedBytes sums;  ///< sums of one block, then its matching costs; a free group before each
+    AlignedBytes sums;  ///< sums of one block, then matching costs; a free group before each part
 };
 
 /// Number of finished blocks of 64 columns of each strip. A thread that has finished a strip begins
-/// the next one, upper strips first, and follows the strip above block by block. A thread therefore
-/// only waits for work that already runs. Tasks that wait for tasks not yet begun would wait
-/// forever on an executor with one thread.
+/// the next strip, upper strips first, and follows the strip above block by block. So a thread
+/// only waits for work that already runs. On an executor with one thread, tasks that wait for tasks
+/// not yet begun would wait forever.
 class Progress {
   public:
     void begin(int strips) {
@@ -148,7 +149,7 @@ class Progress {
         for (int strip = 0; strip < strips; ++strip) at(strip).store(0, std::memory_order_relaxed);
         next_.store(0, std::memory_order_relaxed);
     }
-    /// The next strip that is not begun yet; may lie beyond the last one.
+    /// Returns the next strip that is not begun yet. The number may lie beyond the last strip.
     [[nodiscard]] int take_strip() { return next_.fetch_add(1, std::memory_order_relaxed); }
     void block_is_done(int strip) {
         at(strip).fetch_add(1, std::memory_order_release);
@@ -163,7 +164,7 @@ class Progress {
 
   private:
     [[nodiscard]] std::atomic<int>& at(int strip) { return done_[static_cast<std::size_t>(strip)]; }
-    std::unique_ptr<std::atomic<int>[]> done_;  // NOLINT(*-avoid-c-arrays): of a size not constant
+    std::unique_ptr<std::atomic<int>[]> done_;  // NOLINT(*-avoid-c-arrays): size known at run time
     int capacity_ = 0;
     std::atomic<int> next_ = 0;
 };
@@ -183,7 +184,7 @@ kernels::WinnerRows winners_at(Winners& out, int u, int v) {
 /// Processes one row of a block, of which `count` columns lie in the image.
 void follow_row(const kernels::ColumnStep& step, const kernels::WinnerRows& out, int count) {
     if (count == kLanes) return kernels::follow_columns(step, out);
-    std::uint8_t rows[5][kLanes];  // all of it is written. NOLINT(*-member-init)
+    std::uint8_t rows[5][kLanes];  // follow_columns writes every element. NOLINT(*-member-init)
     kernels::follow_columns(step, {rows[0], rows[1], rows[2], rows[3], rows[4]});
     const auto size = static_cast<std::size_t>(count);
     std::memcpy(out.disparity, rows[0], size);
@@ -287,8 +288,8 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(const Strip& s, int blo
     return rows;
 }
 
-/// Runs the paths from the left once and stores their state at each block. The costs of a whole
-/// strip would not fit into a cache.
+/// Runs the paths from the left once and stores only their state at each block. The costs of a
+/// whole strip would not fit into a cache.
 void SemiGlobalSearch::Workspace::pass_strip(const Strip& s) {
     take_census(s.index);
     turn_strip(s);
@@ -328,7 +329,7 @@ void SemiGlobalSearch::Workspace::follow_rows(const Strip& s, int block) {
 }
 
 /// Prefetches the data that one row of a block reads and writes. Rows lie too far apart for the
-/// processor to predict the next one.
+/// processor to predict the next row.
 void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
     hwy::Prefetch(left.row(v) + u);
     for (int byte = 0; byte < kCensusBytes; ++byte) {
@@ -344,7 +345,8 @@ void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
     }
 }
 
-/// Path from above and winners of a block. Needs the block above, and the row paths of this block.
+/// Runs the path from above through a block and finds the winners. Needs the result of the block
+/// above, and the row paths of this block.
 void SemiGlobalSearch::Workspace::follow_columns(const Strip& s, int block, Winners& out) {
     const int u = block * kLanes;
     const PathState path = from_above.at(block);

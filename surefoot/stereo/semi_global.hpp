@@ -14,25 +14,25 @@ namespace surefoot::stereo {
 /// Costs of the semi-global search. A path costs at most kCensusBits + jump_penalty. The sum of
 /// three paths must stay below 255, because costs are stored in bytes.
 struct SemiGlobalConfig {
-    int disparities = 64;       ///< 0 ... disparities - 1 are searched; at most 256
-    int slope_penalty = 11;     ///< P1: disparity changes by one from pixel to pixel
-    int jump_penalty = 54;      ///< P2: it changes by more, where the image is flat ...
-    int contrast_shift = 0;     ///< ... minus |grey step| / 2^shift ...
-    int min_jump_penalty = 10;  ///< ... but at least this
+    int disparities = 64;       ///< searches 0 ... disparities - 1; at most 256
+    int slope_penalty = 11;     ///< P1: cost of a disparity change of 1 from pixel to pixel
+    int jump_penalty = 54;      ///< P2: cost of a larger disparity change where the image is flat
+    int contrast_shift = 0;     ///< a grey step lowers P2 by |grey step| / 2^contrast_shift
+    int min_jump_penalty = 10;  ///< lower limit of P2
 
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Bits of a census word. A bit says whether a neighbour in a chequered 9 x 7 window is darker.
+/// Bits of a census word. A bit tells if a neighbour in a chequered 9 x 7 window is darker.
 inline constexpr int kCensusBits = 30;
 
-/// Rows by which disparities lag behind. The paths come from the left, the right and above, not
-/// from below. On floor with the ZED's noise this costs 0.14 px; two rows correct it to less than
-/// 0.01 px (docs/lab/matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
+/// Rows by which disparities lag behind, because no path comes from below. On floor with the ZED's
+/// noise the lag causes an error of 0.14 px; a shift by two rows corrects it to less than 0.01 px
+/// (docs/lab/matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
 inline constexpr int kSearchLag_rows = 2;
 
 /// Result of the search for every pixel of the left image: the disparity of least cost, and the
-/// costs there and beside it. Also the least cost at least 2 disparities away (255 = none).
+/// costs there and beside it. `second_cost`: least cost at least 2 disparities away (255 = none).
 struct Winners {
     Image<std::uint8_t> disparity;
     Image<std::uint8_t> cost;
@@ -48,14 +48,14 @@ struct Winners {
 /// from the left, the right and above, all in bytes. Beyond the left border the right image repeats
 /// its first column. Of equal costs the smallest disparity wins.
 ///
-/// This is the slow plain version. It defines the result of the fast SemiGlobalSearch.
+/// This slow, plain version defines the result of the fast SemiGlobalSearch.
 void search_plainly(const SemiGlobalConfig& config,
                     ImageView<const std::uint8_t> left,
                     ImageView<const std::uint8_t> right,
                     Winners& out);
 
-/// The same search, fast, with the same bytes. A register holds 64 rows (for paths along rows) or
-/// 64 columns side by side, so that no step needs a neighbouring lane. The cost volume covers only
+/// Fast version of search_plainly, with the same bytes. A register holds 64 rows (for paths along
+/// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only
 /// 64 x 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
 /// processor. Threads share strips of rows. After the first pair of a size nothing is allocated.
 class SemiGlobalSearch {

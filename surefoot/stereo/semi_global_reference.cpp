@@ -32,7 +32,7 @@ int jump_penalty(const SemiGlobalConfig& config, int grey, int grey_before) {
     return std::max(config.min_jump_penalty, config.jump_penalty - contrast);
 }
 
-/// L(p, d) = C(p, d) + min(L(p-r, d), L(p-r, d +- 1) + P1, min L(p-r) + P2) - min L(p-r)
+/// Computes L(p, d) = C(p, d) + min(L(p-r, d), L(p-r, d +- 1) + P1, min L(p-r) + P2) - min L(p-r).
 PathCosts step(const PathCosts& before, const PathCosts& match_costs, int slope, int jump) {
     const int least = *std::min_element(before.begin(), before.end());
     PathCosts costs(before.size());
@@ -70,7 +70,8 @@ std::optional<std::string> SemiGlobalConfig::problem() const {
                            disparities);
     if (slope_penalty < 0 || min_jump_penalty < 0 || contrast_shift < 0 || contrast_shift > 8)
         return std::string(
-            "semi-global search: penalties must be at least 0, the contrast shift from 0 to 8");
+            "semi-global search: the penalties must be at least 0, and the contrast shift must be "
+            "from 0 to 8");
     if (jump_penalty < min_jump_penalty || 3 * (kCensusBits + jump_penalty) >= 255) {
         return fmt::format("semi-global search: jump penalty {}; the value must be from {} to {}",
                            jump_penalty,

@@ -24,13 +24,14 @@ int lanes() {
     return static_cast<int>(hn::Lanes(kBytes));
 }
 
-/// Without byte-wise population counts, a matching cost takes longer than the rest of a step. In
-/// this case the first path stores the costs, and they are transposed with the sums.
+/// True if the first path stores the matching costs for the other paths. Without byte-wise
+/// population counts, a matching cost takes longer than the rest of a step. The stored costs are
+/// transposed with the sums.
 constexpr bool kMatchKept = HWY_TARGET > HWY_AVX3_DL;
 
-/// On these targets bits are counted by table look-up, four at a time. Census words a b c d are
-/// stored so that six look-ups are enough instead of eight: c becomes a ^ b ^ c (see count_bits),
-/// and the six bits of d leave places 3 and 7 free.
+/// True for targets that count bits by table look-up, four bits at a time. The bytes a b c d of a
+/// census word are stored so that six look-ups are enough instead of eight. Byte c becomes a ^ b ^
+/// c (see count_bits), and the six bits of d leave bits 3 and 7 free.
 constexpr bool kLookedUp = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2 ||
                            HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3;
 
@@ -86,7 +87,7 @@ HWY_INLINE Bytes load_pieces(const std::uint8_t* from, std::ptrdiff_t stride) {
 #endif
 }
 
-/// Four rounds of interleaving row i with row i + 8 transpose 16 columns of `lanes()` rows.
+/// Transposes 16 columns of `lanes()` rows by four rounds of interleaving row i with row i + 8.
 HWY_INLINE void turn_sixteen(const std::uint8_t* in,
                              std::ptrdiff_t in_stride,
                              std::uint8_t* out,
@@ -125,12 +126,13 @@ void transpose_block(const std::uint8_t* in,
     turn(in, in_stride, out, out_stride);
 }
 
-/// Separate from transpose_block: with compile-time strides, addresses cost no arithmetic.
+/// This function is separate from transpose_block, because its constant strides save address
+/// arithmetic.
 HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
     turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
 }
 
-/// Shifts each byte; the instruction sets have no such instruction.
+/// Shifts each byte to the right, because no instruction set has an instruction for this.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #if HWY_TARGET == HWY_SCALAR
     return hn::Set(kBytes, static_cast<std::uint8_t>(hn::GetLane(value) >> shift));
@@ -141,7 +143,7 @@ HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #endif
 }
 
-/// P2; it falls with the grey step.
+/// Returns the jump penalty P2, which falls with the grey step.
 HWY_INLINE Bytes jump_penalty(const Penalties& penalties, Bytes grey, Bytes grey_before) {
     const Bytes step = hn::Sub(hn::Max(grey, grey_before), hn::Min(grey, grey_before));
     const Bytes relief = shift_right(step, penalties.contrast_shift);
@@ -154,9 +156,10 @@ struct Word {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// Number of bits set in a, b, c and d, given odd = a ^ b ^ c. For each position, `odd` holds
-/// whether one or three of a, b, c are set, `pair` whether two or three. A look-up uses bits 0 to 3
-/// and needs bit 7 clear. d needs no mask, whatever the shift moves in from the next byte.
+/// Returns the number of bits set in a, b, c and d, given odd = a ^ b ^ c. A bit of `odd` is set if
+/// one or three of a, b, c are set at this position; a bit of `pair` is set if two or three are
+/// set. A look-up uses bits 0 to 3 and needs bit 7 clear. d needs no mask, because its bits 3 and 7
+/// are clear.
 [[maybe_unused]] HWY_INLINE Bytes count_bits(Bytes a, Bytes b, Bytes odd, Bytes d) {
     HWY_ALIGN static constexpr std::uint8_t kCounts[16] = {
         0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
@@ -196,12 +199,12 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
             hn::Load(kBytes, place + 3 * kLanes)};
 }
 
-/// Prefetch distance for memory that is written without being read before. Otherwise every line
-/// would wait for memory.
+/// Prefetch distance for memory that is written without being read before. Without the prefetch,
+/// every cache line would wait for memory.
 constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kSumsGroup;
 
-/// Before adding the matching cost: stay, change by one, or jump. Additions saturate; the entry
-/// beyond the last disparity is 255.
+/// Returns the least path cost without the matching cost. The disparity stays, changes by one, or
+/// jumps. Additions saturate. The entry beyond the last disparity is 255.
 HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Bytes jump) {
     const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
     return hn::Min(hn::Min(neighbour, here), jump);
@@ -209,7 +212,7 @@ HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Byt
 
 enum class Sums : std::uint8_t { left_alone, written, added_to };
 
-/// `sum` and `match` point at one disparity of one column.
+/// Stores the cost of one disparity of one column, to which `sum` and `match` point.
 template <Sums kSums>
 HWY_INLINE void put_down(Bytes cost, Bytes matching, std::uint8_t* sum, std::uint8_t* match) {
     if constexpr (kSums == Sums::written) {
@@ -306,10 +309,10 @@ HWY_INLINE Word word_of(const std::uint8_t* const bytes[kCensusBytes], std::ptrd
 struct Winner {
     Bytes disparity, cost, cost_below, cost_above;
     Bytes second;  ///< least cost at least two away from the winner
-    Bytes older;   ///< least cost of all but the last disparity
+    Bytes older;   ///< least cost of all disparities except the last
     Bytes last;
     Bytes next;                            ///< next disparity of the scan
-    hn::Mask<decltype(kBytes)> older_won;  ///< the last one is not the winner
+    hn::Mask<decltype(kBytes)> older_won;  ///< the last disparity is not the winner
 
     HWY_INLINE explicit Winner(Bytes none)
         : disparity(hn::Zero(kBytes)),
@@ -345,7 +348,7 @@ struct Winner {
     }
 };
 
-/// One step of the path from above; also finds the winner of all three paths.
+/// Does one step of the path from above and finds the winner of all three paths.
 void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     const Bytes slope = hn::Set(kBytes, step.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});

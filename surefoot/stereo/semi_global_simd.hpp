@@ -11,15 +11,15 @@
 namespace surefoot::stereo::kernels {
 
 inline constexpr int kLanes = 64;
-/// Bytes of the census words at one place of a strip, lane by lane: kCensusBytes rows of kLanes.
+/// Bytes of the census words at one column of a strip: kCensusBytes rows of kLanes.
 inline constexpr int kCensusRow = kCensusBytes * kLanes;
 
-/// The path sums of 64 x 64 pixels are stored in groups of disparities, column by column (row by
-/// row after the transposition). Loops over disparities and the transposition of one group both
-/// touch only a few memory pages.
+/// Number of disparities in a group. The path sums of 64 x 64 pixels are stored in such groups,
+/// column by column (row by row after the transposition). So loops over disparities, and the
+/// transposition of one group, use only a few memory pages.
 inline constexpr int kGroup = 8;
-/// One disparity and one column of padding: addresses a power of two apart would share their cache
-/// lines.
+/// Sizes with one disparity and one column of padding. Without padding, addresses a power of two
+/// apart would share their cache lines.
 inline constexpr int kSumsColumn = (kGroup + 1) * kLanes;
 inline constexpr int kSumsGroup = (kLanes + 1) * kSumsColumn;
 
@@ -30,7 +30,7 @@ struct Penalties {
     int contrast_shift = 0;
 };
 
-/// Census bytes of one row, in the order in which the processor counts differing bits fastest.
+/// Computes the census bytes of one row, in the order that makes counting differing bits fastest.
 /// `grey` points at the row's first pixel in an image with a border of kCensusReach. `out[byte]`
 /// receives `width` values.
 void census(const std::uint8_t* grey,
@@ -38,7 +38,7 @@ void census(const std::uint8_t* grey,
             int width,
             std::uint8_t* const out[kCensusBytes]);
 
-/// out[x][y] = in[y][x], 64 x 64 bytes.
+/// Transposes 64 x 64 bytes: out[x][y] = in[y][x].
 void transpose(const std::uint8_t* in,
                std::ptrdiff_t in_stride,
                std::uint8_t* out,
@@ -49,10 +49,10 @@ struct RowBlock {
     const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
     const std::uint8_t* right = nullptr;  ///< `disparities` more columns precede column 0
     const std::uint8_t* grey = nullptr;   ///< [column] kLanes
-    /// Of the previous column on the path; at the image edge, of the path's first column.
+    /// Grey values of the previous column on the path; at the image edge, of its first column.
     const std::uint8_t* grey_before = nullptr;
     std::uint8_t* state = nullptr;  ///< path costs: (disparities + 1) * kLanes, updated
-    std::uint8_t* least = nullptr;  ///< their least cost: kLanes, updated
+    std::uint8_t* least = nullptr;  ///< least path cost: kLanes, updated
     std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [column] kSumsColumn: [d] kLanes
     std::uint8_t* match = nullptr;  ///< matching costs, laid out like the sums
     int columns = 0;
@@ -64,15 +64,15 @@ struct RowBlock {
 void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least);
 /// Runs the path from the left through the block without changing `sums` and `match`.
 void pass_right(const RowBlock& block);
-/// The same, and writes the path's costs to `sums`. Also stores the matching costs in `match` for
-/// the next two paths, except on processors that count bits quickly.
+/// Runs the path from the left and writes its costs to `sums`. Also stores the matching costs in
+/// `match` for the next two paths, except on processors that count bits quickly.
 void follow_right(const RowBlock& block);
 /// Runs the path from the right, adds its costs to `sums` and transposes them. Column u of row v
 /// moves to row u of column v, one group of disparities earlier. `match` moves in the same way. The
 /// first group needs room before `sums`.
 void follow_left(const RowBlock& block);
 
-/// Output of the winners of 64 columns: kLanes values each, at any alignment.
+/// Output of the winners of 64 columns: kLanes values in each array, at any alignment.
 struct WinnerRows {
     std::uint8_t* disparity = nullptr;
     std::uint8_t* cost = nullptr;
@@ -83,7 +83,7 @@ struct WinnerRows {
 /// Input for one row of 64 columns, which lie side by side in the lanes.
 struct ColumnStep {
     const std::uint8_t* left[kCensusBytes] = {};
-    const std::uint8_t* right[kCensusBytes] = {};  ///< at the column of disparity 0
+    const std::uint8_t* right[kCensusBytes] = {};  ///< pointers to the column of disparity 0
     const std::uint8_t* grey = nullptr;
     const std::uint8_t* grey_above = nullptr;
     const std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [d] kLanes, paths along rows

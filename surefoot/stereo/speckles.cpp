@@ -11,7 +11,7 @@
 namespace surefoot::stereo {
 namespace {
 
-// `at` finds a run by its number.
+// In the functions below, `at` returns the run with a given number.
 
 template <typename At>
 int root_of(const At& at, int run) {
@@ -22,7 +22,8 @@ int root_of(const At& at, int run) {
     return run;
 }
 
-/// The smaller number becomes the root, so that roots do not depend on the order of joining.
+/// Joins two islands. The smaller number becomes the root, so that roots do not depend on the order
+/// of joining.
 template <typename At>
 void join(const At& at, int a, int b) {
     a = root_of(at, a);
@@ -71,7 +72,7 @@ SpeckleFilter::Band& SpeckleFilter::band_of(int v) {
     return bands_[static_cast<std::size_t>(v / kBandRows)];
 }
 
-/// Finds the islands of one band, independent of other bands.
+/// Finds the islands of one band, independently of other bands.
 void SpeckleFilter::find_islands(int first_row,
                                  int last_row,
                                  const Image<float>& disparity_px,
@@ -93,7 +94,8 @@ void SpeckleFilter::find_islands(int first_row,
         connect([runs](int place) -> Run& { return runs[place]; }, above, here, same_px);
         above = here;
     }
-    // A parent never comes after its run, so that each parent already has the number of its root.
+    // A parent never comes after its run. So when the loop reaches a run, the parent already holds
+    // the number of its root.
     const int number = first_row / kBandRows << kPlaceBits;
     for (int place = 0; place < found(); ++place) {
         Run& run = band.runs[static_cast<std::size_t>(place)];
@@ -121,7 +123,7 @@ void SpeckleFilter::remove_islands(int first_row,
                                    int min_size,
                                    Image<float>& disparity_px) {
     const Band& band = band_of(first_row);
-    int parent = -1;  // parent of the previous run: usually also that of the next run
+    int parent = -1;  // parent of the previous run; the next run often has the same parent
     bool small = false;
     for (int v = first_row; v < last_row; ++v) {
         float* const d = disparity_px.row(v);

@@ -10,15 +10,15 @@
 
 namespace surefoot::stereo {
 
-/// Islands of fewer pixels are removed after every search. Neighbours that differ by at most
-/// kSpeckleRange_px belong to the same island.
+/// Every search removes islands with fewer pixels than this. Neighbours that differ by at most
+/// kSpeckleRange_px [px] belong to the same island.
 inline constexpr int kSpeckleSize_px = 100;
 inline constexpr int kSpeckleRange_px = 2;
 
-/// Removes small islands: groups of fewer than `min_size` pixels become NaN. Pixels belong together
-/// when neighbours along a row or column differ by at most `same_px`. Works on runs of each row
-/// with union-find, so that the cost grows with the number of edges in the image, not of pixels.
-/// Bands of rows are joined separately first, then across their borders.
+/// Removes small islands: groups of fewer than `min_size` pixels become NaN. Neighbours along a row
+/// or column belong together if they differ by at most `same_px`. Works on runs of each row with
+/// union-find, so the cost grows with the number of edges in the image, not with its pixels. Joins
+/// runs within bands of rows first, then across the borders of the bands.
 class SpeckleFilter {
   public:
     void remove(Executor& executor, int min_size, double same_px, Image<float>& disparity_px);
@@ -30,8 +30,8 @@ class SpeckleFilter {
         int parent = 0;  ///< number of a run of the same island; its own number = root
         int size = 0;    ///< number of pixels of the island; valid for roots
     };
-    /// A band of rows. A run's number is first its place in the band. When bands are joined, the
-    /// shifted number of the band is added.
+    /// A band of rows. The number of a run is first its index in the band. Before bands are joined,
+    /// the shifted number of the band is added.
     struct Band {
         RowRuns in_row;
         std::vector<Run> runs;
@@ -39,7 +39,7 @@ class SpeckleFilter {
     };
     static constexpr int kBandRows = 32;
     static constexpr int kPlaceBits = 20;
-    static constexpr int kMaxSide_px = 65000;  ///< 2047 bands of 32 rows of half as many runs fit
+    static constexpr int kMaxSide_px = 65000;  ///< run numbers hold 2047 bands of at most 2^20 runs
 
     Run& at(int number);
     [[nodiscard]] Band& band_of(int v);

@@ -12,17 +12,17 @@ namespace {
 
 constexpr int kHalf = kShiftHalf_px;
 constexpr int kSide = 2 * kHalf + 1;
-constexpr int kTaps = 6;    ///< taps of the interpolation, from 2 before to 3 behind
+constexpr int kTaps = 6;    ///< taps of the interpolation, from 2 pixels before to 3 after
 constexpr int kBefore = 2;  ///< taps before the position
 constexpr int kMaxRounds = 20;
 constexpr double kRefined_px = 0.003;
-constexpr double kFarthest_px = 1.0;  ///< from the whole-pixel match
-constexpr double kMostSlant = 0.5;    ///< px per px: a wall seen at 80 deg
+constexpr double kFarthest_px = 1.0;  ///< largest distance from the whole-pixel match
+constexpr double kMostSlant = 0.5;    ///< largest slant [px per px], as of a wall seen at 80 deg
 constexpr double kLeastGain = 0.2;
-constexpr double kMiddleGrey = 128.0;  ///< gain and offset are nearly independent about it
+constexpr double kMiddleGrey = 128.0;  ///< makes gain and offset nearly independent
 constexpr double kSingular = 1e-6;
 
-/// Shift at the place (x, y) of the window: columns by c + a x + b y, rows by r.
+/// Shift of the pixel (x, y) of the window: columns by c + a x + b y, rows by r.
 struct Warp {
     double columns_px = 0.0;
     double slant_x = 0.0;
@@ -30,12 +30,12 @@ struct Warp {
     double rows_px = 0.0;
 };
 
-/// d grey / d (columns, slant_x, slant_y, rows, gain, offset).
+/// Derivatives of a grey value by (columns, slant_x, slant_y, rows, gain, offset).
 using Row = Eigen::Matrix<double, 6, 1>;
 using Rows = std::array<Row, static_cast<std::size_t>(kSide) * kSide>;
 
 /// Weights of the pixels -2 ... 3 for the value at t in [0, 1): Lagrange polynomial of degree 5.
-/// With only two or four pixels, fine texture appears nearer to the whole pixel than it is.
+/// An interpolation over only two or four pixels moves fine texture toward the whole pixel.
 std::array<double, kTaps> taps_at(double t) {
     const double a = t + 2.0, b = t + 1.0, d = t - 1.0, e = t - 2.0, f = t - 3.0;
     return {-b * t * d * e * f / 120.0,
@@ -67,8 +67,8 @@ Rows rows_of(ImageView<const std::uint8_t> left, int u_px, int v_px) {
     return rows;
 }
 
-/// Sum of the rows times the right image's grey values at their places under `warp`; nothing where
-/// the places leave the image.
+/// Returns the sum of the rows times the grey values of the right image at the positions given by
+/// `warp`. Returns nothing if a position leaves the image.
 std::optional<Row> project(
     const Rows& rows, ImageView<const std::uint8_t> right, int u_px, int v_px, const Warp& warp) {
     constexpr int kReach =
@@ -76,7 +76,7 @@ std::optional<Row> project(
     constexpr int kWide = 2 * kReach + kTaps;
     // in range: refine_shift() keeps the warp within kFarthest_px of a start that it has checked
     const auto u0 = u_px + static_cast<int>(std::floor(warp.columns_px));
-    const auto v0 = v_px + static_cast<int>(std::floor(warp.rows_px));  // in range: the same
+    const auto v0 = v_px + static_cast<int>(std::floor(warp.rows_px));  // in range: as u0
     if (v0 - kHalf - kBefore < 0 || v0 + kHalf + kTaps - kBefore > right.height) return {};
     const auto down = taps_at(warp.rows_px - std::floor(warp.rows_px));
     const int first = u0 - kReach - kBefore;  // column of strip[0]
@@ -97,7 +97,7 @@ std::optional<Row> project(
             const double at = u_px + x + warp.columns_px + warp.slant_x * x + warp.slant_y * y;
             const double whole = std::floor(at);
             if (whole < kBefore || whole + kTaps - kBefore > right.width) return {};
-            const int k = static_cast<int>(whole) - kBefore - first;  // in range: as checked
+            const int k = static_cast<int>(whole) - kBefore - first;  // in range: checked above
             const auto along = taps_at(at - whole);
             double grey = 0.0;
             for (int tap = 0; tap < kTaps; ++tap)

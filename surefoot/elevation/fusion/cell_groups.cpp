@@ -63,8 +63,9 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
 }
 
 void CellGroups::assign(const CellSamples& samples, std::size_t cells) {
-    // Counts two places ahead, so the sums stand one place ahead. Placing the samples of a cell
-    // moves its begin to its end, which is the begin of the next cell.
+    // The counts of cell c go to index c + 2, so the running sums put its begin at index c + 1.
+    // Placing the samples of a cell moves this begin to the end of the cell, which is the begin of
+    // the next cell.
     begin_.assign(cells + 2, 0);
     for (int b = 0; b < samples.blocks(); ++b) {
         const CellSamples::Block from = samples.block(b);

@@ -22,15 +22,15 @@ struct GridPoint {
 /// Heights and their cells, in blocks that threads can fill at the same time.
 class CellSamples {
   public:
-    /// Writers of whole registers may write this far beyond the last sample of a block.
+    /// Number of elements that a register store may write beyond the last sample of a block.
     static constexpr std::size_t kSlack = 64;
 
-    /// Empties all; makes room for `blocks` blocks of `most` samples each. Allocates only to grow.
+    /// Deletes all samples. Makes room for `blocks` blocks of `most` samples. Allocates to grow.
     void reset(int blocks, std::size_t most);
     [[nodiscard]] int blocks() const noexcept { return static_cast<int>(counts_.size()); }
 
     struct Columns {
-        std::uint32_t* cell = nullptr;  ///< iy * nx + ix
+        std::uint32_t* cell = nullptr;  ///< index of the cell, iy * nx + ix
         float* z_m = nullptr;
         float* var_m2 = nullptr;
     };
@@ -61,7 +61,7 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
 /// Groups samples by cell (counting sort; no allocation once the buffers have grown).
 class CellGroups {
   public:
-    /// Readers of whole registers may read this far beyond the last sample of a cell.
+    /// Number of elements that a register load may read beyond the last sample of a cell.
     static constexpr std::size_t kSlack = 16;
 
     void assign(const CellSamples& samples, std::size_t cells);
@@ -72,7 +72,7 @@ class CellGroups {
     [[nodiscard]] const float* var_m2() const noexcept { return var_m2_.data(); }
 
   private:
-    std::vector<std::uint32_t> begin_;  ///< cells + 2
+    std::vector<std::uint32_t> begin_;  ///< size: cells + 2
     std::vector<float> z_m_;
     std::vector<float> var_m2_;
 };

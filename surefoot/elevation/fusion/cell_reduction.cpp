@@ -100,12 +100,13 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
         surface_relief_m,
         0.0,
         1.0,
-        "height range of the ground within one cell; added to the distance limit window_sigma");
+        "height range of the ground within one cell [m]; the limit window_sigma grows by this "
+        "value");
     visitor.number("points_per_independent",
                    points_per_independent,
                    1.0,
                    1e6,
-                   "number of points of one cell and frame that share one error");
+                   "number of points that share one error, in one cell and frame");
     visitor.number("max_independent",
                    max_independent,
                    1.0,
@@ -116,7 +117,7 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
         min_face_points,
         1,
         1000000,
-        "smallest number of points without a common height that make a cell a vertical face");
+        "a cell without a common height is a vertical face if it has at least this many points");
     visitor.number(
         "systematic_sigma_m",
         systematic_sigma_m,
@@ -127,8 +128,8 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    border_share,
                    0.0,
                    1.0,
-                   "smallest share of the points of level ground that a cell at the image border "
-                   "needs; 0 = min_points suffice");
+                   "smallest number of points in a cell at the image border, as a share of the "
+                   "points that level ground would give; 0 = min_points is enough");
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

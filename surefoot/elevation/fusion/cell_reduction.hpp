@@ -13,9 +13,9 @@ namespace surefoot::elevation {
 /// Settings that reduce the points of one frame in one cell to one measurement.
 struct ReductionConfig {
     int min_points = 3;              ///< fewer points on one surface give no measurement
-    double upper_share = 0.1;        ///< share of the cell's points that the upper surface needs
-    double window_sigma = 2.5;       ///< points this close to a surface belong to it ...
-    double surface_relief_m = 0.01;  ///< ... plus this: relief of the ground within a cell
+    double upper_share = 0.1;        ///< smallest share of a cell's points on its upper surface
+    double window_sigma = 2.5;       ///< largest distance of a point from its surface [sigma]
+    double surface_relief_m = 0.01;  ///< added to that distance: height range of ground in a cell
     /// Errors of a semi-global matcher are correlated over more pixels than a cell covers: we
     /// measured 1.0-1.3 independent errors per cell and frame (docs/lab/correlated_depth.md).
     double points_per_independent = 30.0;
@@ -41,8 +41,8 @@ struct CellMeasurement {
 };
 
 /// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of
-/// the heights, so single outliers above do not count, and climbs to the centre of the points
-/// around it (mean shift). If too few points share that height, it tries the next lower one. The
+/// the heights, so single outliers do not count. It climbs to the centre of the points around the
+/// start (mean shift). If too few points share that height, it tries the next lower start. The
 /// variance is the larger of the mean variance and the scatter of the points, divided by the number
 /// of independent errors, plus the systematic part. Many points without a common height are a
 /// vertical face (a wall, a person) with the height of the upper quantile; few such points give no
@@ -53,10 +53,10 @@ struct CellMeasurement {
                                                          std::span<const float> z_m,
                                                          std::span<const float> var_m2);
 
-// Parts that both versions use.
+// Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< 3 steps reach a few percent of the window
-inline constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as pure scatter
+inline constexpr int kClimbs = 3;    ///< number of steps; 3 end within a few percent of the window
+inline constexpr int kMaxTries = 4;  ///< start heights tried before a cell counts as pure scatter
 
 /// Returns the number of points that a surface needs in a cell of `n` points.
 [[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {
@@ -78,8 +78,8 @@ struct Surface {
     float scatter_m2 = 0.0F;
 };
 
-/// Computes a surface from sums over `points` > 0 points: offset from the centre, its square, and
-/// the variance.
+/// Computes a surface from three sums over `points` > 0 points: of the offsets from the centre, of
+/// their squares, and of the variances.
 [[nodiscard]] inline Surface surface_of(
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
     const auto n = static_cast<float>(points);
@@ -106,7 +106,7 @@ struct Surface {
                                       int points,
                                       float half_width_m) noexcept;
 
-/// Adds sixteen columns, always in the same order.
+/// Returns the sum of sixteen columns. The order of the additions is always the same.
 [[nodiscard]] constexpr float tree(const float column[16]) noexcept {
     float four[4] = {};
     for (int i = 0; i < 4; ++i) {

@@ -15,15 +15,16 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Vector type for runs: most runs are shorter than this, and stores beyond a run cost the same.
+/// Vector type for runs. Most runs are shorter than this vector, and a store beyond a run takes no
+/// extra time.
 using D = hn::CappedTag<float, 8>;
 using DU = hn::ScalableTag<std::uint32_t>;
 
-/// Samples per search for runs: few enough to stay in the L1 cache.
+/// Number of samples per search for runs, so small that they stay in the L1 cache.
 constexpr std::size_t kChunk = 512;
 
-/// Finds the begins of runs of equal cells among samples [first, last), after `first` itself.
-/// Returns their number.
+/// Finds the begins of runs of equal cells among samples [first, last), except for `first` itself.
+/// Returns the number of runs that were found.
 HWY_INLINE std::size_t find_runs(const std::uint32_t* cell,
                                  std::size_t first,
                                  std::size_t last,
@@ -45,7 +46,7 @@ HWY_INLINE std::size_t find_runs(const std::uint32_t* cell,
 }
 
 /// Calls f(first sample, length) for every run of equal cells; a long run may come in parts. Calls
-/// ahead(first sample) some runs earlier.
+/// ahead(first sample) some runs before f.
 template <class F, class Ahead>
 HWY_INLINE void for_each_run(const std::uint32_t* cell,
                              std::size_t samples,

@@ -18,7 +18,7 @@ int level_of(int cells) {
     return static_cast<int>(std::bit_width(static_cast<unsigned>(cells))) - 1;
 }
 
-/// Calls f(first row of a block, row behind its last row).
+/// Calls f(row) for every row; each block of rows is one work item.
 template <typename F>
 void for_row_blocks(Executor& executor, int rows, int block_rows, const F& f) {
     const int blocks = (rows + block_rows - 1) / block_rows;
@@ -27,7 +27,7 @@ void for_row_blocks(Executor& executor, int rows, int block_rows, const F& f) {
         int rows;
         int block_rows;
     } job{f, rows, block_rows};
-    // A single reference, so std::function needs no memory for the closure.
+    // The closure holds one reference only, so std::function allocates no memory.
     executor.parallel_for(blocks, [&job](int block) {
         const int first = block * job.block_rows;
         for (int iy = first; iy < std::min(first + job.block_rows, job.rows); ++iy) job.f(iy);
@@ -140,7 +140,8 @@ void HeightBounds::answer_row(const Input& input,
             const int side = 1 << level;
             lowest_m = kInfinity;
             highest_m = -kInfinity;
-            // Two by two blocks; more only if the border cuts the square.
+            // Two by two overlapping blocks cover the square. Only a square that the border cuts
+            // needs more blocks.
             for (int y = y0;; y = std::min(y + side, y1 - side + 1)) {
                 for (int x = x0;; x = std::min(x + side, x1 - side + 1)) {
                     lowest_m = std::min(lowest_m, table.lowest_m.row(y)[x]);

@@ -10,20 +10,22 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Larger offsets are other surfaces, whatever the motion.
+/// Largest offset [m] that counts as drift. Larger offsets belong to other surfaces, whatever the
+/// motion.
 constexpr double kMost_m = 0.1;
-constexpr double kBin_m = 1e-4;  ///< a tenth of the snapshot's resolution
+constexpr double kBin_m = 1e-4;  ///< bin width of the histogram [m]
 constexpr int kBins = 2 * 1000 + 1;
 constexpr int kTileCells = 8;
-constexpr int kLeastOfTile = 4;          ///< least number of the sixteen used cells of a tile
+constexpr int kLeastOfTile = 4;  ///< smallest number of agreeing cells in a tile, of sixteen
 constexpr double kAgreeingSigmas = 2.5;  ///< same factor as the gate of the fusion
 /// Variance of a median divided by that of a mean, for normal noise: pi / 2.
 constexpr double kMedianLoss = 1.5708;
-constexpr double kSlopeChi2 = 13.8;  ///< 2 degrees of freedom, 0.1 %
+constexpr double kSlopeChi2 = 13.8;  ///< exceeded by chance in 0.1 % of cases, 2 degrees of freedom
 /// A camera tilt that explains this share of the offset at the cells makes the offset unusable.
 constexpr double kTiltShare = 0.25;
 constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
-constexpr double kFrameShare = 0.5;  ///< like kTiltShare, for the offset of recently aligned ground
+/// If recently aligned ground shows this share of the offset, the offset is unusable.
+constexpr double kFrameShare = 0.5;
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);
@@ -34,8 +36,8 @@ int tiles_along(int cells) {
     return (cells + kTileCells - 1) / kTileCells;
 }
 
-/// Returns the height variance that the motion added since the residual was observed, at the rate
-/// before.
+/// Returns the height variance that the motion added since the residual was observed. Assumes the
+/// same variance per motion as before the observation.
 double later_variance_m2(const HeightResidual& residual, std::uint32_t motions) {
     const auto before = static_cast<double>(residual.seen_step - residual.step);
     const auto since = static_cast<double>(motions - residual.seen_step);
@@ -53,24 +55,25 @@ bool agrees(const HeightResidual& residual, double offset_m) {
 void HeightDriftConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
         "enabled", enabled, "true: correct old parts of the map by the drift of the body's height");
-    visitor.integer("min_motions",
-                    min_motions,
-                    1,
-                    100000,
-                    "smallest number of uncertain motions since the last alignment of a cell that "
-                    "make the cell old; min_drift_m must be met too");
+    visitor.integer(
+        "min_motions",
+        min_motions,
+        1,
+        100000,
+        "a cell is old after this number of uncertain motions since its last alignment, "
+        "if its height error also reaches min_drift_m");
     visitor.number("min_drift_m",
                    min_drift_m,
                    0.0,
                    1.0,
-                   "smallest height error (1 sigma) of the motions since the last alignment of a "
-                   "cell that makes the cell old");
+                   "a cell is old only if the motions since its last alignment cause at least this "
+                   "height error (1 sigma)");
     visitor.number("level_m",
                    level_m,
                    0.0,
                    1.0,
-                   "largest height difference between a cell and the map two cells beside it; "
-                   "cells with a larger difference are not used");
+                   "largest height difference between a cell and the map two cells beside it; the "
+                   "drift check skips cells with a larger difference");
     visitor.integer("kept_motions",
                     kept_motions,
                     0,
@@ -80,32 +83,37 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                     min_cells,
                     1,
                     4096,
-                    "smallest number of old cells that an offset needs; one cell of four is used");
-    visitor.integer("min_tiles",
-                    min_tiles,
-                    4,
-                    1000000,
-                    "smallest number of squares of 8 x 8 cells that an offset needs");
-    visitor.number("min_spread_m",
-                   min_spread_m,
-                   0.0,
-                   100.0,
-                   "smallest standard deviation of the cell positions along the longer axis");
-    visitor.number("agreeing_share",
-                   agreeing_share,
-                   0.5,
-                   1.0,
-                   "smallest share of the old cells that agree with the offset within their noise");
+                    "smallest number of old cells that a height correction needs; only one cell of "
+                    "four is counted");
+    visitor.integer(
+        "min_tiles",
+        min_tiles,
+        4,
+        1000000,
+        "smallest number of squares of 8 x 8 cells with old cells that a height correction needs");
+    visitor.number(
+        "min_spread_m",
+        min_spread_m,
+        0.0,
+        100.0,
+        "smallest standard deviation of the positions of the old cells, along their longer axis");
+    visitor.number(
+        "agreeing_share",
+        agreeing_share,
+        0.5,
+        1.0,
+        "smallest share of the old cells that must show the same height offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,
                    0.1,
                    100.0,
-                   "smallest offset that corrects the map [sigma of the offset]");
-    visitor.number("motion_sigmas",
-                   motion_sigmas,
-                   0.0,
-                   100.0,
-                   "largest offset that counts as drift [sigma of the motion since the alignment]");
+                   "smallest height offset that corrects the map [sigma of the offset]");
+    visitor.number(
+        "motion_sigmas",
+        motion_sigmas,
+        0.0,
+        100.0,
+        "largest height offset that counts as drift [sigma of the motion since the alignment]");
     visitor.number("depth_scale_sigma",
                    depth_scale_sigma,
                    0.0,

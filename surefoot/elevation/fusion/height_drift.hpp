@@ -12,27 +12,27 @@
 
 namespace surefoot::elevation {
 
-/// Conditions for a correction of the map by the body's height drift. ASSUMPTION, all of them.
+/// Conditions for a correction of the map by the body's height drift. All are an ASSUMPTION.
 struct HeightDriftConfig {
     bool enabled = false;
     /// A cell is old if at least this many uncertain motions lie between its alignment and the
-    /// frame. Younger cells belong to the same observation, and show the frame's own error ...
+    /// frame, and if their error reaches `min_drift_m`. Younger cells show the frame's own error.
     int min_motions = 10;
-    double min_drift_m = 0.003;        ///< ... and the motions may have moved it by this (1 sigma)
-    double level_m = 0.03;             ///< largest height difference to the map two cells aside
+    double min_drift_m = 0.003;        ///< smallest height error of these motions (1 sigma)
+    double level_m = 0.03;             ///< largest height difference to the cells two cells aside
     int kept_motions = 15;             ///< residuals of old cells expire after these motions
-    int min_cells = 40;                ///< old cells per offset; one cell of four is used
-    int min_tiles = 8;                 ///< 8 x 8 cells each: matcher errors span a tile
-    double min_spread_m = 0.3;         ///< standard deviation of positions, longer axis
-    double agreeing_share = 0.8;       ///< share of old cells with the offset, within noise
+    int min_cells = 40;                ///< smallest number of old cells; one cell of four is used
+    int min_tiles = 8;                 ///< fewest tiles of 8 x 8 cells; matcher errors span a tile
+    double min_spread_m = 0.3;         ///< smallest standard deviation of positions, longer axis
+    double agreeing_share = 0.8;       ///< smallest share of old cells with the offset within noise
     double significance_sigmas = 3.0;  ///< smallest significant offset [sigma]
-    double motion_sigmas = 3.0;        ///< a larger offset is no drift [sigma of the motion]
-    double depth_scale_sigma = 0.002;  ///< per frame; resembles an offset on level ground
+    double motion_sigmas = 3.0;        ///< a larger offset is not a drift [sigma of the motion]
+    double depth_scale_sigma = 0.002;  ///< depth error of one frame; looks like a height offset
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Why the map was corrected, or why not; in the order of the checks.
+/// Reason why the map was corrected or not corrected, in the order of the checks.
 enum class HeightDriftReason : std::uint8_t {
     off,
     no_old_ground,     ///< the frame shows no ground that may have drifted
@@ -41,16 +41,16 @@ enum class HeightDriftReason : std::uint8_t {
     not_significant,   ///< the frame's own error explains the offset, or there is none
     tilted,            ///< the offsets slope: a tilt error of the camera, not a drift
     frame_is_off,      ///< recently aligned ground is off as well: the frame is wrong
-    beyond_motion,     ///< more than the motion can drift: other ground, or a lost pose
+    beyond_motion,     ///< the offset exceeds the motion's drift: other ground, or a lost pose
     moved,
 };
 [[nodiscard]] std::string_view to_string(HeightDriftReason reason) noexcept;
 
 /// Result of the height drift check of one frame.
 struct HeightDriftReport {
-    double offset_m = 0.0;   ///< frame - map
+    double offset_m = 0.0;   ///< height in the frame minus height in the map
     double sigma_m = 0.0;    ///< sigma of the offset, with the common errors of the frame
-    std::int64_t cells = 0;  ///< number of cells behind the offset
+    std::int64_t cells = 0;  ///< number of cells that support the offset
     std::int64_t moved_cells = 0;
     HeightDriftReason reason = HeightDriftReason::off;
 };
@@ -65,10 +65,10 @@ struct HeightDriftReport {
 /// alignment). It holds for all cells aligned no later than the last cell of that half: they
 /// drifted together, and their earlier drift has mean zero. It does not hold for younger cells.
 ///
-/// Sigma covers the errors that one frame shares: `systematic_sigma_m` (of the frame and of the
-/// map), tilt times distance, depth scale times camera height, on sloped ground the slope times
-/// the horizontal drift, and the motion since the residuals were taken. The random part comes
-/// from the scatter of tiles; cells of a tile share the errors of the matcher.
+/// Sigma covers the errors that all heights of a frame share: `systematic_sigma_m` (of frame and
+/// map), tilt times distance, and depth scale times camera height. Sigma also covers the ground
+/// slope times the horizontal drift, and the motion since the residuals were taken. The random
+/// part comes from the scatter of tiles; cells of a tile share the errors of the matcher.
 class HeightDrift {
   public:
     struct Frame {
@@ -76,7 +76,7 @@ class HeightDrift {
         double camera_z_m = 0.0;  ///< camera height in odom
         double systematic_sigma_m = 0.0;
         double tilt_sigma_rad = 0.0;
-        std::uint32_t motions = 0;  ///< uncertain motions so far
+        std::uint32_t motions = 0;  ///< number of uncertain motions so far
     };
     struct Verdict {
         HeightDriftReport report;
@@ -87,17 +87,17 @@ class HeightDrift {
     explicit HeightDrift(const HeightDriftConfig& config) : config_(config) {}
     /// Allocates the memory for a map of this size; nothing allocates afterwards.
     void reserve(const grid::GridGeometry& geometry);
-    /// `old` and `recent` as in HeightResiduals. Serial: the same bytes however the map is
-    /// fused.
+    /// Computes the offset and decides about the correction. `old` and `recent`: see
+    /// HeightResiduals. Runs in one thread, so every executor of the map gives the same bytes.
     [[nodiscard]] Verdict judge(std::span<const HeightResidual> old,
                                 std::span<const HeightResidual> recent,
                                 const Frame& frame);
 
-    /// True if a motion with this share of the variance may have moved a cell by this offset.
+    /// True if a motion of variance `motion_var_m2` may have moved a cell by `offset_m`.
     [[nodiscard]] bool allows(double offset_m, double motion_var_m2) const noexcept;
 
   private:
-    /// Mean of the agreeing cells of a tile.
+    /// Sums over the agreeing cells of a tile.
     struct Tile {
         int cells = 0;
         double sum_m = 0.0;
@@ -111,17 +111,17 @@ class HeightDrift {
         double scatter_m2 = 0.0;  ///< scatter of the offsets
         double spread_m = 0.0;
         Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-        double slope_chi2 = 0.0;  ///< test of "no slope", 2 degrees of freedom
+        double slope_chi2 = 0.0;  ///< chi^2 of the test for "no slope", 2 degrees of freedom
     };
 
     /// Common offset of the older half of the old cells.
     struct Evidence {
         std::int64_t asked = 0;
-        std::int64_t agreeing = 0;  ///< within noise of the offset; the fields below use these
+        std::int64_t agreeing = 0;  ///< cells with the offset within noise; base of fields below
         Eigen::Vector2d ground_slope = Eigen::Vector2d::Zero();
-        double drift_m = 0.0;  ///< horizontal, 1 sigma
+        double drift_m = 0.0;  ///< horizontal drift (1 sigma)
         double motion_var_m2 = 0.0;
-        double later_var_m2 = 0.0;  ///< height, from the motion since the residuals
+        double later_var_m2 = 0.0;  ///< height variance of the motion since the residuals
         double height_m = 0.0;
         Field field;
     };
@@ -141,8 +141,8 @@ class HeightDrift {
                                               const Evidence& evidence,
                                               std::span<const HeightResidual> recent,
                                               const Frame& frame);
-    /// Offset that the frame shows on recently aligned ground. Continued as a plane to `at_m` (from
-    /// the point below the camera). 0 if the frame shows too little of that ground.
+    /// Returns the offset of the frame on recently aligned ground, continued as a plane to `at_m`
+    /// (from the point below the camera). Returns 0 if the frame shows too little of that ground.
     [[nodiscard]] double frame_error_m(std::span<const HeightResidual> recent,
                                        const Eigen::Vector2d& at_m,
                                        const Frame& frame);

@@ -18,8 +18,8 @@ FusionResult disagree(const FusionConfig& config,
     if (same_scan && measured.z_m < cell.z_m) return {cell, FusionOutcome::ignored};
     // A measurement slightly beyond the gate comes from the tail of the noise, not from another
     // surface. So the variance grows only as far as the measurement needs, and at most by the step
-    // for one contradiction. One wrong match weakens a certain cell little; a second one in a row
-    // weakens it much more, because the step grows with the variance.
+    // for one contradiction. One wrong match raises a small variance little. A second wrong match
+    // in a row raises the variance much more, because the step grows with the variance.
     const double innovation_m = measured.z_m - cell.z_m;
     const double explained_m2 =
         innovation_m * innovation_m / (config.gate_sigma * config.gate_sigma) - measured.var_m2;
@@ -46,7 +46,7 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
         min_height_var_m2,
         1e-12,
         1.0,
-        "smallest variance of a cell height; errors remain that averaging does not remove");
+        "smallest variance of a cell height; it covers errors that averaging does not remove");
     visitor.number(
         "max_height_var_m2",
         max_height_var_m2,
@@ -59,22 +59,23 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
         0.0,
         100.0,
         "largest amount added to the variance of a cell when the gate rejects a measurement");
-    visitor.number("contradiction_growth",
-                   contradiction_growth,
-                   1.0,
-                   1e6,
-                   "largest factor on the sigma of a cell when the gate rejects a measurement");
+    visitor.number(
+        "contradiction_growth",
+        contradiction_growth,
+        1.0,
+        1e6,
+        "largest factor by which the sigma of a cell grows when the gate rejects a measurement");
     visitor.number("scan_duration_s",
                    scan_duration_s,
                    0.0,
                    60.0,
                    "time within which measurements of one cell belong to one scan; the upper "
                    "measurement of a scan is kept; 0 = off");
-    visitor.enumeration(
-        "gate_variance",
-        gate_variance,
-        kGateVarianceNames,
-        "variances that the Mahalanobis gate uses; cell_alone is for comparison only");
+    visitor.enumeration("gate_variance",
+                        gate_variance,
+                        kGateVarianceNames,
+                        "variances that the Mahalanobis gate uses; use cell_alone only to compare "
+                        "with the reference implementation");
 }
 
 std::optional<std::string> FusionConfig::problem() const {

@@ -16,17 +16,17 @@ enum class GateVariance : std::uint8_t {
     cell_alone,            ///< used by the reference implementation; for comparison only
 };
 
-/// How a cell fuses a height measurement (Fankhauser 2014, section 4; Lange 2016, equation 6.1).
+/// Settings for the fusion of heights (Fankhauser 2014, section 4; Lange 2016, equation 6.1).
 struct FusionConfig {
-    double gate_sigma = 2.5;            ///< Mahalanobis gate on the innovation [sigma]
-    double min_height_var_m2 = 9e-6;    ///< floor, (3 mm)^2: errors that no averaging removes
+    double gate_sigma = 2.5;            ///< largest innovation that passes the gate [sigma]
+    double min_height_var_m2 = 9e-6;    ///< lower limit, (3 mm)^2: averaging leaves some errors
     double max_height_var_m2 = 2.5e-3;  ///< (50 mm)^2: a contradicted cell beyond this is replaced
-    /// Added when a measurement is gated out, (10 mm)^2; less if a smaller addition explains it.
+    /// Largest addition for a rejected measurement, (10 mm)^2. Adds less if less explains it.
     double multi_height_var_m2 = 1e-4;
-    /// One such measurement multiplies the cell's sigma by at most this factor. The errors of cells
-    /// that have just refused one measurement grow from 2.5 to 4 mm (docs/lab/gate_scenes.md).
+    /// One rejected measurement multiplies the cell's sigma by at most this factor. The errors of
+    /// cells that have just rejected a measurement grow from 2.5 to 4 mm (docs/lab/gate_scenes.md).
     double contradiction_growth = 2.0;
-    double scan_duration_s = 0.0;  ///< scan-time rule, 0 = off: see `fuse`
+    double scan_duration_s = 0.0;  ///< duration for `same_scan` of `fuse`; 0 = rule is off
     GateVariance gate_variance = GateVariance::cell_and_measurement;
 
     void describe(ConfigVisitor& visitor);
@@ -43,8 +43,8 @@ struct Height {
 enum class FusionOutcome : std::uint8_t {
     fused,     ///< agreed: Kalman update
     inflated,  ///< disagreed: the cell keeps its height; its variance grows
-    replaced,  ///< disagreed and variance at its limit, or higher within one scan
-    ignored,   ///< disagreed and lower within one scan: the upper surface stays
+    replaced,  ///< disagreed: variance at its limit, or higher surface of the same scan
+    ignored,   ///< disagreed: lower surface of the same scan; the upper one stays
 };
 [[nodiscard]] std::string_view to_string(FusionOutcome outcome) noexcept;
 

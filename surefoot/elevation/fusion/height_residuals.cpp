@@ -7,8 +7,8 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Cells this far to either side reveal a step anywhere between. The distance also covers an edge
-/// that the body's horizontal drift has moved by one cell.
+/// Distance [cells] to the neighbours that reveal a step between them and the cell. The distance
+/// also covers an edge that the body's horizontal drift has moved by one cell.
 constexpr int kBeside = 2;
 /// Neighbours share the matcher's errors, so every second cell in both directions is enough.
 constexpr int kEvery = 2;

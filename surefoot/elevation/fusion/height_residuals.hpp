@@ -12,26 +12,26 @@
 
 namespace surefoot::elevation {
 
-/// Last alignment of each cell with the body, by iy * nx + ix. A cell is aligned when an
+/// Last alignment of each cell with the body, indexed by iy * nx + ix. A cell is aligned when an
 /// observation agrees with it, or when its height is corrected by the height drift.
 struct CellAlignment {
-    const float* var_m2;        ///< height variance without the motion since then
+    const float* var_m2;        ///< height variance without the motion since the alignment
     const std::uint32_t* step;  ///< number of uncertain motions at the alignment
-    std::uint8_t* is_asked;     ///< the cell has given its residual since then
+    std::uint8_t* is_asked;     ///< 1 = the cell has given its residual since the alignment
 };
 
 /// A cell that the map remembers and that a frame measured.
 struct HeightResidual {
-    Eigen::Vector2d at_m;           ///< in odom
-    Eigen::Vector2f from_camera_m;  ///< from the point below the camera: ahead, left
+    Eigen::Vector2d at_m;           ///< position of the cell in odom
+    Eigen::Vector2f from_camera_m;  ///< position from the point below the camera: ahead, left
     Eigen::Vector2f slope;          ///< slope of the map around the cell
     float height_m = 0.0F;          ///< height of the map
     float offset_m = 0.0F;          ///< measurement - map
-    float var_m2 = 0.0F;            ///< sum of measurement and map, without motion
-    float motion_var_m2 = 0.0F;     ///< height, from the motion since the alignment
-    float drift_m = 0.0F;           ///< 1 sigma, horizontal, since its observation
+    float var_m2 = 0.0F;            ///< variance of measurement plus map, without motion
+    float motion_var_m2 = 0.0F;     ///< height variance of the motion since the alignment
+    float drift_m = 0.0F;           ///< horizontal drift since the observation (1 sigma)
     std::uint32_t step = 0;         ///< see CellAlignment
-    std::uint32_t seen_step = 0;    ///< number of uncertain motions now
+    std::uint32_t seen_step = 0;    ///< number of uncertain motions at this frame
 };
 
 /// Height differences between frames and the map on the same ground. A frame shows little old
@@ -46,19 +46,19 @@ class HeightResiduals {
         const grid::GridGeometry& geometry;
         const ElevationLayers& layers;
         CellAlignment alignment;
-        const CellMeasurement* measured;  ///< all cells; no points = not measured
+        const CellMeasurement* measured;  ///< one entry per cell; 0 points = not measured
         Eigen::Vector2d camera_m;         ///< point below the camera, in odom
-        Eigen::Vector2d ahead;            ///< unit vector, of the body in odom
-        std::uint32_t motions = 0;        ///< uncertain motions so far
+        Eigen::Vector2d ahead;            ///< forward direction of the body in odom, a unit vector
+        std::uint32_t motions = 0;        ///< number of uncertain motions so far
         std::uint32_t min_motions = 0;
         std::uint32_t kept_motions = 0;
         double level_m = 0.0;
         double min_drift_m = 0.0;
     };
     /// Collects residuals from every second cell of every second row. Skips cells that are not
-    /// level (the map two cells aside, along x and y, is unknown or differs by more than
-    /// `level_m`), and cells that are not finite or have no variance. Returns the number of old
-    /// cells with a residual. Allocates only to grow.
+    /// level: the map two cells aside, along x or y, is unknown or differs by more than `level_m`.
+    /// Also skips cells that are not finite or have no variance. Returns the number of old cells
+    /// with a residual. Allocates only to grow.
     std::size_t gather(const Input& input);
     /// Deletes the residuals of old cells after their use.
     void forget() { old_.clear(); }
@@ -66,7 +66,7 @@ class HeightResiduals {
     /// Cells whose last alignment is at least `min_motions` ago, and whose height the motion may
     /// have moved by `min_drift_m` (1 sigma) or more since.
     [[nodiscard]] const std::vector<HeightResidual>& old() const noexcept { return old_; }
-    /// Cells aligned later than that: they show the error of this frame itself.
+    /// Cells aligned fewer than `min_motions` ago. They show the error of this frame itself.
     [[nodiscard]] const std::vector<HeightResidual>& recent() const noexcept { return recent_; }
 
   private:

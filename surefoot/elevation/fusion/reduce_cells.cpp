@@ -11,9 +11,9 @@
 #include <cstring>
 #include <limits>
 
-// Sixteen samples of a cell at a time, in one, two or four registers. Float sums run in sixteen
-// columns first and then in one fixed tree, as in `LaneSum`. So the register width does not change
-// the result. Most cells hold no more than sixteen samples.
+// Processes sixteen samples of a cell at a time, in one, two or four registers. Float sums add
+// sixteen columns first and then use one fixed tree, as `LaneSum` does. So the register width does
+// not change the result. Most cells hold no more than sixteen samples.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::elevation::HWY_NAMESPACE {
@@ -28,7 +28,7 @@ constexpr int kWidth = static_cast<int>(hn::MaxLanes(D()));
 constexpr int kParts = 16 / kWidth;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Ranks up to this are found by removing one extreme after the other; higher ranks are found bit
+/// Largest rank that is found by removing one extreme after the other. Higher ranks are found bit
 /// by bit.
 constexpr int kFewRanks = 32;
 
@@ -52,7 +52,7 @@ HWY_INLINE auto add_halves(DV, W value) {
     return hn::Add(hn::LowerHalf(half, value), hn::UpperHalf(half, value));
 }
 
-/// Column i together with columns i + 4, i + 8 and i + 12.
+/// Adds columns i, i + 4, i + 8 and i + 12 for i from 0 to 3.
 template <int kHere>
 HWY_INLINE auto four_of(const V (&part)[kHere]) {
     if constexpr (kHere == 1) {
@@ -64,7 +64,7 @@ HWY_INLINE auto four_of(const V (&part)[kHere]) {
     }
 }
 
-/// `tree` in registers: ((0 + 8) + (4 + 12)) + ((2 + 10) + (6 + 14)), ...
+/// Computes `tree` in registers: ((0 + 8) + (4 + 12)) + ((2 + 10) + (6 + 14)), ...
 HWY_INLINE float sum_of(const V (&part)[kParts]) {
     const auto four = four_of(part);
     const auto two = hn::Add(four, hn::Shuffle1032(four));
@@ -87,8 +87,8 @@ HWY_INLINE M present(int index, int n) {
     return hn::FirstN(D(), static_cast<std::size_t>(n > index ? n - index : 0));
 }
 
-/// Calls f(part, offset of its first sample, mask of its existing samples). `kFew`: there are no
-/// more than sixteen samples.
+/// Calls f(part, offset of its first sample, mask of its existing samples). `kFew`: the cell has at
+/// most sixteen samples.
 template <bool kFew, class F>
 HWY_INLINE void for_each_part(int n, const F& f) {
     if constexpr (kFew) {
@@ -112,11 +112,11 @@ HWY_INLINE int count_from(const Samples& samples, V flip, V least) {
     return static_cast<int>(count);
 }
 
-/// Returns the value with `rank` values at or above it, by removing the largest value again and
+/// Returns the value with `rank` values at or above it. Removes the largest value again and
 /// again.
 HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     V below = hn::Set(D(), kInfinity);
-    std::size_t from_below = 0;  // number of values that are not less
+    std::size_t from_below = 0;  // number of values at or above `below`
     while (true) {
         V largest = hn::Set(D(), -kInfinity);
         for_each_part<false>(samples.n, [&](int, int at, M exists) {
@@ -131,8 +131,8 @@ HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     }
 }
 
-/// The same result bit by bit: floats in the order of integers (sign and magnitude to two's
-/// complement).
+/// Returns the same value as `by_extremes`, found bit by bit. Floats are compared in the order of
+/// integers (sign and magnitude become two's complement).
 HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     const auto float_of = [](std::uint32_t key) {
         const std::uint32_t bits = key & 0x80000000U ? key ^ 0x80000000U : ~key;
@@ -144,8 +144,8 @@ HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     std::uint32_t key = 0;
     for (std::uint32_t bit = 0x80000000U; bit != 0; bit >>= 1) {
         const float least = float_of(key | bit);
-        // In integer order NaN lies beyond infinity on either side: no value is above +NaN, all are
-        // above -NaN.
+        // In integer order NaN lies beyond infinity on either side: no value is above +NaN, and all
+        // values are above -NaN.
         const bool is_reached = std::isnan(least)
                                     ? (key | bit) < 0x80000000U
                                     : count_from(samples, flip, hn::Set(D(), least)) >= rank;
@@ -158,17 +158,18 @@ HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
 struct RanksOfMany {
     const Samples& samples;
 
-    /// Height with `rank` samples at or above it (rank 1 = the maximum), or at or below it.
+    /// Returns the height with `rank` samples at or above it (rank 1 = the maximum). With
+    /// `from_below`, counts samples at or below the height.
     HWY_INLINE float ranked(bool from_below, int rank) const {
         const V flip = hn::Set(D(), from_below ? -0.0F : 0.0F);
         const float value = rank <= kFewRanks ? by_extremes(samples, flip, rank)
                                               : by_bits(samples, from_below, rank);
-        return (from_below ? -value : value) + 0.0F;  // zero has no sign
+        return (from_below ? -value : value) + 0.0F;  // removes the sign of zero
     }
 };
 
-/// The same for up to sixteen samples: counts for each sample how many are at least as high, and as
-/// low.
+/// Heights by their rank among up to sixteen samples. Counts for each sample how many samples are
+/// at least as high, and how many at least as low.
 struct RanksOfFew {
     V z_m[kParts];
     V as_high[kParts];  ///< number of samples at or above this one; 0 if absent
@@ -205,11 +206,11 @@ struct RanksOfFew {
             best = from_below ? hn::Min(best, value) : hn::Max(best, value);
         }
         const V extreme = from_below ? hn::MinOfLanes(D(), best) : hn::MaxOfLanes(D(), best);
-        return hn::GetLane(extreme) + 0.0F;  // zero has no sign
+        return hn::GetLane(extreme) + 0.0F;  // removes the sign of zero
     }
 };
 
-/// Points within a window around a height: their number and the sum of their offsets.
+/// Number of the points within a window around a height, and the sum of their offsets from it.
 struct Window {
     std::size_t points = 0;
     float sum_m = 0.0F;
@@ -253,7 +254,7 @@ HWY_INLINE Surface surface_around(const Samples& samples, float center_m, float 
         static_cast<int>(points), center_m, sum_m.total(), sum_sq_m2.total(), sum_var_m2.total());
 }
 
-/// While climbing, only the position of a surface counts, not its spread.
+/// Finds a surface by mean shift. The steps need only the position of the surface, not its spread.
 template <bool kFew>
 HWY_INLINE Surface climb(const Samples& samples, float start_m, float half_width_m) {
     float center_m = start_m;
@@ -305,8 +306,8 @@ CellMeasurement reduce(const ReductionConfig& config, const Samples& samples) {
                            : reduce<false>(config, samples, support, RanksOfMany{samples});
 }
 
-/// One cell per lane, each with up to kMost samples. Column i holds sample i of all cells; the sum
-/// over a cell adds columns in the order of `tree`.
+/// Reduces one cell per lane, each with up to kMost samples. Column i holds sample i of all cells.
+/// The sum over a cell adds columns in the order of `tree`.
 template <int kMost>
 class SmallCells {
   public:
@@ -344,7 +345,7 @@ class SmallCells {
     HWY_INLINE M exists(int i) const {
         return hn::Lt(hn::Set(D(), static_cast<float>(i)), hn::Load(D(), n_));
     }
-    /// `tree` for columns whose last ones are zero.
+    /// Computes `tree`. The columns from kMost on are zero.
     static HWY_INLINE V sum_of(const PerSample& column) {
         V four[4];
         for (int i = 0; i < 4; ++i) {
@@ -418,7 +419,8 @@ class SmallCells {
         return hn::And(exists(i), hn::Le(hn::Abs(offset), half_width));
     }
 
-    /// NaN if no sample is near; then no later step finds one either.
+    /// Returns the mean of the samples near `center`. Returns NaN if no sample is near; later steps
+    /// then also find no sample.
     HWY_INLINE V climbed(V center, V half_width) const {
         V points = hn::Zero(D());
         PerSample column;
@@ -461,7 +463,7 @@ class SmallCells {
                 measured = reduce(config_, {z_m_ + begin_[k], var_m2_ + begin_[k], n});
                 continue;
             }
-            // in range: how many of n points lie in the window
+            // in range: a number of points, at most n
             const Surface surface = surface_of(static_cast<int>(figures[0][k]),
                                                figures[1][k],
                                                figures[2][k],

@@ -21,8 +21,11 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
     visitor.number("length_m", length_m, 0.01, 1000.0, "side length of the square map");
     visitor.number("start_x_m", start_x_m, -1e6, 1e6, "x of the map centre before the first step");
     visitor.number("start_y_m", start_y_m, -1e6, 1e6, "y of the map centre before the first step");
-    visitor.number(
-        "start_time_s", start_time_s, -1e12, 1e12, "time from which the time layer counts");
+    visitor.number("start_time_s",
+                   start_time_s,
+                   -1e12,
+                   1e12,
+                   "start time of the map; the time layer holds seconds since this time");
     visitor.number("min_variance_m2",
                    min_variance_m2,
                    0.0,
@@ -45,12 +48,12 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    100.0,
                    "amount added to the variance of a cell when the gate rejects a point");
-    visitor.number(
-        "scanning_duration_s",
-        scanning_duration_s,
-        0.0,
-        1000.0,
-        "time within which points belong to one scan; the upper point of a scan is kept");
+    visitor.number("scanning_duration_s",
+                   scanning_duration_s,
+                   0.0,
+                   1000.0,
+                   "time within which points of one cell belong to one scan; the upper point of a "
+                   "scan is kept");
     visitor.number(
         "increase_height_alpha",
         increase_height_alpha,
@@ -93,7 +96,7 @@ void AncestorMap::add(std::span<const AncestorPoint> cloud, double time_s) {
 }
 
 void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
-    // The reference implementation counts cells down from the corner of largest x and y. So a point
+    // The reference implementation numbers cells from the corner of largest x and y. So a point
     // on a border between two cells belongs to the cell with the smaller coordinates.
     const double length_m = geometry_.nx * geometry_.resolution_m;
     const Eigen::Vector2d down_m =

@@ -18,7 +18,7 @@ struct AncestorConfig {
     double length_m = 2.0;
     double start_x_m = 0.0;
     double start_y_m = 0.0;
-    double start_time_s = 1000.0;  ///< the time layer counts from here
+    double start_time_s = 1000.0;  ///< the time layer counts from this time
     double min_variance_m2 = 9e-6;
     double max_variance_m2 = 0.009;
     double mahalanobis_threshold = 2.5;
@@ -35,7 +35,7 @@ struct AncestorPoint {
     float z_m = 0.0F;
     float variance_m2 = 0.0F;
 };
-static_assert(sizeof(AncestorPoint) == 16, "read from files of four float32 per point");
+static_assert(sizeof(AncestorPoint) == 16, "the files hold four float32 per point");
 
 /// Elevation update of the reference implementation, for comparison only; the live chain does not
 /// use it. It differs from ElevationMap. Every point updates its cell in file order and in
@@ -49,7 +49,7 @@ class AncestorMap {
   public:
     explicit AncestorMap(const AncestorConfig& config);
 
-    /// Moves by whole cells, halves away from zero. New cells are NaN in all
+    /// Moves the map by whole cells. Half a cell rounds away from zero. New cells are NaN in all
     /// layers.
     void move_to(double x_m, double y_m);
     void add(std::span<const AncestorPoint> cloud, double time_s);
@@ -63,7 +63,7 @@ class AncestorMap {
     }
     [[nodiscard]] const grid::SlidingLayer<float>& time_s() const noexcept {
         return time_s_;
-    }  ///< since the start
+    }  ///< seconds since `start_time_s`
 
   private:
     void add_point(const AncestorPoint& point, float time_s);

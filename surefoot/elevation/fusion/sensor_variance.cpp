@@ -64,9 +64,12 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    matcher_lateral_px,
                    0.0,
                    50.0,
-                   "matcher: one sigma of the image position of a disparity");
-    visitor.number(
-        "laser_min_radius_m", laser_min_radius_m, 0.0, 1.0, "laser: one sigma along the beam");
+                   "matcher: standard deviation of the image position of a match");
+    visitor.number("laser_min_radius_m",
+                   laser_min_radius_m,
+                   0.0,
+                   1.0,
+                   "laser: standard deviation of a point along the beam");
     visitor.number(
         "laser_beam_constant_m", laser_beam_constant_m, 0.0, 1.0, "laser: beam radius at range 0");
     visitor.number("laser_beam_angle_rad",
@@ -78,47 +81,67 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    kinect_a_m,
                    -1.0,
                    1.0,
-                   "kinect: a in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+                   "kinect: term a of the sigma along the line of sight, which is a + b (z - c)^2 "
+                   "+ d z^e at depth z");
     visitor.number("kinect_b_per_m",
                    kinect_b_per_m,
                    -1.0,
                    1.0,
-                   "kinect: b in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+                   "kinect: term b of the sigma along the line of sight, which is a + b (z - c)^2 "
+                   "+ d z^e at depth z");
     visitor.number("kinect_c_m",
                    kinect_c_m,
                    -10.0,
                    10.0,
-                   "kinect: c in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+                   "kinect: term c of the sigma along the line of sight, which is a + b (z - c)^2 "
+                   "+ d z^e at depth z");
     visitor.number("kinect_d",
                    kinect_d,
                    -10.0,
                    10.0,
-                   "kinect: d in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+                   "kinect: term d of the sigma along the line of sight, which is a + b (z - c)^2 "
+                   "+ d z^e at depth z");
     visitor.number("kinect_e",
                    kinect_e,
                    -10.0,
                    10.0,
-                   "kinect: e in the sigma along the line of sight, a + b (z - c)^2 + d z^e");
+                   "kinect: term e of the sigma along the line of sight, which is a + b (z - c)^2 "
+                   "+ d z^e at depth z");
     visitor.number("kinect_lateral",
                    kinect_lateral,
                    0.0,
                    1.0,
                    "kinect: sigma across the line of sight per metre of depth");
-    visitor.number(
-        "stereo_p1", stereo_p1, -1e3, 1e3, "stereo (Keller): parameter p1 of equation 6.2");
-    visitor.number(
-        "stereo_p2", stereo_p2, -1e3, 1e3, "stereo (Keller): parameter p2 of equation 6.2");
-    visitor.number(
-        "stereo_p3", stereo_p3, -1e3, 1e3, "stereo (Keller): parameter p3 of equation 6.2");
-    visitor.number(
-        "stereo_p4", stereo_p4, -1e4, 1e4, "stereo (Keller): parameter p4 of equation 6.2");
-    visitor.number(
-        "stereo_p5", stereo_p5, -1e3, 1e3, "stereo (Keller): parameter p5 of equation 6.2");
+    visitor.number("stereo_p1",
+                   stereo_p1,
+                   -1e3,
+                   1e3,
+                   "stereo (Keller): parameter p1 of equation 6.2 in Lange 2016");
+    visitor.number("stereo_p2",
+                   stereo_p2,
+                   -1e3,
+                   1e3,
+                   "stereo (Keller): parameter p2 of equation 6.2 in Lange 2016");
+    visitor.number("stereo_p3",
+                   stereo_p3,
+                   -1e3,
+                   1e3,
+                   "stereo (Keller): parameter p3 of equation 6.2 in Lange 2016");
+    visitor.number("stereo_p4",
+                   stereo_p4,
+                   -1e4,
+                   1e4,
+                   "stereo (Keller): parameter p4 of equation 6.2 in Lange 2016");
+    visitor.number("stereo_p5",
+                   stereo_p5,
+                   -1e3,
+                   1e3,
+                   "stereo (Keller): parameter p5 of equation 6.2 in Lange 2016");
     visitor.number("stereo_depth_to_disparity_px_m",
                    stereo_depth_to_disparity_px_m,
                    1e-3,
                    1e5,
-                   "stereo (Keller): factor D, focal length times baseline");
+                   "stereo (Keller): factor D = focal length times baseline [px m]");
     visitor.number("stereo_lateral",
                    stereo_lateral,
                    0.0,
@@ -128,7 +151,8 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
                    simplified_disparity_px,
                    0.0,
                    100.0,
-                   "simplified stereo: matching error of a disparity");
+                   "simplified stereo: largest error of a disparity; a quarter of the depth error "
+                   "that follows is one sigma");
     visitor.number("simplified_lateral",
                    simplified_lateral,
                    0.0,

@@ -18,15 +18,15 @@ enum class SensorModel : std::uint8_t {
     kinect,             ///< structured light, Nguyen 2012
     stereo,             ///< Keller; Lange 2016, equations 6.2 and 6.3
     simplified_stereo,  ///< Rodriguez and Aggarwal 1990, eq. 6.4 and 6.5
-    basic,              ///< equation 6.6
+    basic,              ///< height variance linear in the range; Lange 2016, equation 6.6
 };
 
 /// Parameters of all models; only those of the chosen model are used.
 struct SensorConfig {
     SensorModel model = SensorModel::matcher;
-    double min_var_m2 = 1e-8;  ///< floor of both variances, (0.1 mm)^2
+    double min_var_m2 = 1e-8;  ///< lower limit of both variances, (0.1 mm)^2
 
-    double matcher_lateral_px = 0.5;  ///< one sigma of a disparity's image position
+    double matcher_lateral_px = 0.5;  ///< standard deviation of a match's image position
 
     double laser_min_radius_m = 0.018;  ///< Hokuyo, Pomerleau 2012
     double laser_beam_constant_m = 0.0015;
@@ -37,7 +37,7 @@ struct SensorConfig {
     double kinect_c_m = 0.4;
     double kinect_d = 0.0;
     double kinect_e = 1.0;
-    double kinect_lateral = 0.001376915;  ///< sigma across = this times z
+    double kinect_lateral = 0.001376915;  ///< sigma across the ray per metre of depth z
 
     double stereo_p1 = 0.03287;  ///< published set; its column offset p4 fits a 752 px wide image
     double stereo_p2 = -0.0001276;
@@ -45,9 +45,9 @@ struct SensorConfig {
     double stereo_p4 = 399.1046;
     double stereo_p5 = 0.000006735;
     double stereo_depth_to_disparity_px_m = 47.3;
-    double stereo_lateral = 0.001376915;  ///< sigma across = this times range
+    double stereo_lateral = 0.001376915;  ///< sigma across the ray per metre of range
 
-    double simplified_disparity_px = 2.0;  ///< matching error dd
+    double simplified_disparity_px = 2.0;  ///< matching error dd of equation 6.4
     double simplified_lateral = 0.001376915;
 
     double basic_constant_m2 = 0.0010;  ///< height variance = constant + per_m * range
@@ -56,28 +56,28 @@ struct SensorConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Readings of one point, as far as any model needs them.
+/// Values of one point from which the models compute its variances.
 struct SensorReading {
     double depth_m = 0.0;             ///< along the optical axis
     double range_m = 0.0;             ///< distance from the sensor
-    double disparity_sigma_px = 0.0;  ///< matcher
-    double column_px = 0.0;           ///< stereo (Keller)
-    double row_px = 0.0;              ///< stereo (Keller)
+    double disparity_sigma_px = 0.0;  ///< used by the model `matcher`
+    double column_px = 0.0;           ///< used by the model `stereo`
+    double row_px = 0.0;              ///< used by the model `stereo`
     double principal_row_px =
-        0.0;                ///< stereo (Keller): R of equation 6.2, the principal point's row
-    double focal_px = 0.0;  ///< matcher
+        0.0;                ///< used by `stereo`: row R of the principal point in equation 6.2
+    double focal_px = 0.0;  ///< used by the model `matcher`
     double depth_to_disparity_px_m =
-        0.0;  ///< focal length times baseline: matcher, simplified stereo
+        0.0;  ///< focal length times baseline; used by `matcher` and `simplified_stereo`
 };
 
-/// Variance of a point along its ray (the papers say "normal": to the sensor) and across it.
+/// Variance of a point along its ray (called "normal" in the papers) and across its ray.
 struct RayVariance {
     double along_m2 = 0.0;
     double lateral_m2 = 0.0;
 };
 
-/// The model `matcher` without the floor; inline because it runs for every pixel. z = D / d, so
-/// that sigma_z = z^2 sigma_d / D, and a change of z moves the point along its ray.
+/// Computes the model `matcher` without the lower limit. Inline, because it runs for every pixel.
+/// z = D / d, so sigma_z = z^2 sigma_d / D, and a change of z moves the point along its ray.
 [[nodiscard]] inline RayVariance matcher_variance(const SensorConfig& config,
                                                   const SensorReading& reading) noexcept {
     const double along_m = reading.depth_m * reading.range_m * reading.disparity_sigma_px /
@@ -86,13 +86,13 @@ struct RayVariance {
     return {along_m * along_m, lateral_m * lateral_m};
 }
 
-/// Any model without the floor.
+/// Computes the variances of `config.model` without the lower limit.
 [[nodiscard]] RayVariance model_variance(const SensorConfig& config,
                                          const SensorReading& reading) noexcept;
 
-/// Variances of one point after `config.model`, each at least `min_var_m2`. Keller's published set
-/// is negative for small disparities far from the image centre: the floor applies there. NaN in the
-/// reading gives NaN.
+/// Computes the variances of one point by `config.model`, each at least `min_var_m2`. Keller's
+/// published parameters give negative variances for small disparities far from the image centre;
+/// there the lower limit applies. NaN in the reading gives NaN.
 [[nodiscard]] inline RayVariance ray_variance(const SensorConfig& config,
                                               const SensorReading& reading) noexcept {
     const RayVariance free = config.model == SensorModel::matcher
@@ -103,7 +103,7 @@ struct RayVariance {
             std::max(free.lateral_m2, config.min_var_m2)};
 }
 
-/// Height variance of a point through the Jacobians of the sensor and of its pose,
+/// Returns the height variance of a point, from the Jacobians of the sensor and of its pose:
 ///   var h = along n^2 + lateral (1 - n^2) + J Sigma J^T,  n = up . p/|p|,  J = [up^T, (p x up)^T]
 /// p_sensor_m: the point; up_sensor: unit vector against gravity; both in the frame that the pose
 /// covariance (translation, rotation; right perturbation; see pose.hpp) belongs to, |p| > 0.

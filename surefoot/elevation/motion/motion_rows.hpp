@@ -3,7 +3,7 @@
 
 namespace surefoot::elevation {
 
-/// MotionNoise for a row of cells. Along x its variances are polynomials, y in the coefficients:
+/// MotionNoise for a row of cells. The variances are polynomials; y is part of the coefficients:
 ///   height: h0 + h1 x + h2 x^2
 ///   dx, dx: xx0 + xx1 z + xx2 z^2
 ///   dy, dy: yy0 + yy1 x + yy2 z + yy3 x^2 + yy4 x z + yy5 z^2
@@ -15,7 +15,7 @@ struct MotionPolynomials {
     float xy[5];
     float first_x_m;  ///< x of the row's first cell, from the body
     float step_m;
-    float body_z_m;  ///< zero of z
+    float body_z_m;  ///< height of the body in odom; z counts from here
 };
 
 /// Adds the polynomials to the variances of remembered cells; drift is a sigma. Every instruction

@@ -8,20 +8,20 @@
 namespace surefoot::elevation {
 
 /// Effect of an uncertain body motion on remembered ground (Fankhauser 2014, section 5; here as a
-/// closed form per cell). With r = (x, y, z) from the body to a cell in odom axes, an error (dp,
+/// closed form per cell). r = (x, y, z) points from the body to a cell in odom axes. An error (dp,
 /// theta) of the relative motion displaces the cell relative to the body by dp + theta x r:
 ///   dz = dp_z + theta_x y - theta_y x         (translation and tilt leverage)
 ///   dx = dp_x + theta_y z - theta_z y,  dy = dp_y + theta_z x - theta_x z      (yaw leverage)
 class MotionNoise {
   public:
-    /// `relative_covariance` of the motion since the previous update: (translation, rotation),
-    /// right perturbation, in the present body frame; see pose.hpp.
+    /// `relative_covariance`: covariance (translation, rotation) of the motion since the previous
+    /// update. It is a right perturbation in the present body frame; see pose.hpp.
     MotionNoise(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
 
     /// True if all entries are finite. Otherwise the position of the cells is unknown.
     [[nodiscard]] bool is_finite() const { return covariance_.allFinite(); }
     /// True if all entries are so small that `blur_row` stays in the range of floats on every map.
-    /// Beyond it, two infinities may cancel and the added variance may vanish.
+    /// With larger entries, two infinities may cancel and the added variance may vanish.
     [[nodiscard]] bool is_bounded() const {
         return is_finite() && covariance_.cwiseAbs().maxCoeff() <= kMostVariance;
     }
@@ -30,8 +30,8 @@ class MotionNoise {
 
     /// Returns the variance that the motion adds to the height of a cell, never negative.
     [[nodiscard]] double height_var_m2(double x_m, double y_m) const noexcept;
-    /// Returns the variance of the horizontal displacement in its worst direction: the larger
-    /// eigenvalue of the covariance of (dx, dy), never negative. Sums of it bound that of the sum.
+    /// Returns the horizontal variance in its worst direction: the larger eigenvalue of the
+    /// covariance of (dx, dy), never negative. Its sum over motions bounds that of their total.
     [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
 
     /// Cells of a row along x, from the body in odom axes.
@@ -39,7 +39,7 @@ class MotionNoise {
         double first_x_m = 0.0;
         double y_m = 0.0;
         double step_m = 0.0;
-        double body_z_m = 0.0;  ///< zero of the heights
+        double body_z_m = 0.0;  ///< height of the body in odom; heights count from here
     };
     /// Adds the motion's variances to those of remembered cells (drift is a sigma), in floats.
     /// Every instruction set gives the same bytes. NaN stays NaN.
@@ -50,7 +50,7 @@ class MotionNoise {
                   float* horizontal_drift_m) const;
 
   private:
-    Matrix6 covariance_;  ///< in odom axes, about the body
+    Matrix6 covariance_;  ///< covariance of the motion in odom axes, about the body
 };
 
 }  // namespace surefoot::elevation

@@ -59,15 +59,15 @@ void store(MapRegion& r, std::size_t i, const KnownCell& cell) {
     r.density_ratio.data()[i] = cell.density_ratio;
 }
 
-/// Order of cells: later observation first; at equal times the smaller variance, then the higher
-/// cell.
+/// True if cell `a` goes before cell `b`: the later observation goes first. At equal times the
+/// smaller variance goes first, then the higher cell.
 bool goes_before(const KnownCell& a, const KnownCell& b) {
     if (a.seen_ns != b.seen_ns) return a.seen_ns > b.seen_ns;
     if (a.height_var_m2 != b.height_var_m2) return a.height_var_m2 < b.height_var_m2;
     return a.height_m > b.height_m;
 }
 
-/// Returns the smaller value, or the number if the other value is NaN.
+/// Returns the smaller value. If one value is NaN, returns the other value.
 float least(float a, float b) {
     return std::isnan(a) || b < a ? b : a;
 }
@@ -88,7 +88,8 @@ KnownCell agreed(const FusionConfig& fusion,
         }
         cell.count = std::max(later.count, earlier.count);
     } else {
-        // A variance above the live map's limit stays as it is.
+        // `fuse` without an upper limit: a variance above the limit of the live map stays
+        // unchanged.
         FusionConfig unbounded = fusion;
         unbounded.max_height_var_m2 = std::numeric_limits<double>::infinity();
         const Height fused = fuse(unbounded, later.height(), earlier.height()).cell;
@@ -108,7 +109,8 @@ KnownCell agreed(const FusionConfig& fusion,
     return cell;
 }
 
-/// Two surfaces, or a surface that moved: the later cell stays, and its variance grows.
+/// Merges two cells that disagree: two surfaces, or a surface that moved. The later cell stays, and
+/// its variance grows.
 KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     KnownCell cell = later;
     const double apart_m =
@@ -118,7 +120,7 @@ KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     return cell;
 }
 
-/// Needs a known cell `theirs`.
+/// Merges two cells. Cell `theirs` must be known.
 KnownCell merged(const FusionConfig& fusion,
                  RegionErrors errors,
                  const KnownCell& ours,
@@ -157,8 +159,9 @@ std::optional<std::string> problem_of(const MapRegion& into,
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(
-            "the maps come from two runs, whose frames {0} were placed at {1} and at "
-            "{2} ns: each run places its own {0}",
+            "the maps come from two runs: their frames {0} started at {1} ns and at {2} ns. Give "
+            "maps of one run, or merge them as independent maps if both frames are at the same "
+            "place",
             into.frame,
             into.frame_since_ns,
             from.frame_since_ns);

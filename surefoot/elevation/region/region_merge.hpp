@@ -11,8 +11,8 @@ namespace surefoot::elevation {
 
 /// Common errors of the heights of two regions.
 enum class RegionErrors : std::uint8_t {
-    shared,       ///< one run: both may share observations, matcher errors, drift
-    independent,  ///< two runs over the same ground, one placed in the frame of the other
+    shared,       ///< one run: both may share observations, matcher errors and drift
+    independent,  ///< two runs over the same ground; one is placed in the other's frame
 };
 
 struct MergeCounts {
@@ -25,10 +25,10 @@ struct MergeCounts {
 /// regions does not change the cells. Rules for a cell:
 /// * known in one region: the cell is copied;
 /// * known in both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`): with shared
-///   errors the height of smaller variance stays and nothing is gained (covariance intersection in
-///   one dimension, Julier and Uhlmann 1997); independent errors are fused by equation 6.1 (Lange
-///   2016). The cell takes time, drift and confidence of the later observation, and the more
-///   cautious of the extremes, clearances and densities;
+///   errors the height of smaller variance stays unchanged (covariance intersection in one
+///   dimension, Julier and Uhlmann 1997). With independent errors, equation 6.1 (Lange 2016) fuses
+///   both. The cell takes time, drift and confidence of the later observation. Of the extremes,
+///   clearances and densities it takes the more cautious values;
 /// * known in both, and they disagree: the later observed cell stays, and its variance grows by the
 ///   squared difference of the heights.
 ///

@@ -48,8 +48,8 @@ Status pay_for_motion(grid::MapRegion& region,
     const MotionNoise noise(covariance, T_frame_body.R());
     if (!T_frame_body.all_finite() || !noise.is_finite()) {
         return input_error(
-            "the covariance or the pose that places the map is not finite: the position of its "
-            "cells is unknown");
+            "the covariance or the pose that places the map is not finite, so the position of the "
+            "cells is unknown: give finite values");
     }
     const grid::GridGeometry geometry = region.geometry();
     for (int iy = 0; iy < region.box.ny; ++iy) {

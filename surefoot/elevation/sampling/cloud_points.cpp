@@ -12,8 +12,8 @@ bool is_measurement(const MeasuredPoint& point) {
            point.along_var_m2 >= 0.0F && point.lateral_var_m2 >= 0.0F;
 }
 
-/// Covariance of equal errors in roll and pitch; in the sensor frame their axes are perpendicular
-/// to gravity.
+/// Returns the covariance of equal errors in roll and pitch. In the sensor frame, the axes of both
+/// errors are perpendicular to gravity.
 Matrix6 tilt_covariance(double sigma_rad, const Eigen::Vector3d& up_sensor) {
     Matrix6 covariance = Matrix6::Zero();
     covariance.bottomRightCorner<3, 3>() =

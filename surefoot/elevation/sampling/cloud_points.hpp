@@ -15,8 +15,8 @@ namespace surefoot::elevation {
 /// One point of a cloud with the variances of its sensor (see `ray_variance`).
 struct MeasuredPoint {
     Eigen::Vector3f p_sensor_m = Eigen::Vector3f::Zero();
-    float along_var_m2 = 0.0F;    ///< along the ray
-    float lateral_var_m2 = 0.0F;  ///< across it
+    float along_var_m2 = 0.0F;    ///< variance along the ray
+    float lateral_var_m2 = 0.0F;  ///< variance across the ray
 };
 
 /// Converts a cloud into points over a grid: range filter, height cut, height with its variance.

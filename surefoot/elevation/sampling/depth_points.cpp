@@ -8,7 +8,7 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Conversion of one frame into points; holds the constants of the frame.
+/// Converts one frame into points. Holds the constants of the frame.
 class DepthWalk {
   public:
     DepthWalk(const ElevationConfig& config,
@@ -88,7 +88,7 @@ class DepthWalk {
                 v + reach < d.height() ? d.row(v + reach)[u] : kNanF};
     }
 
-    /// Needs a `reading` that is complete except for the range.
+    /// Adds the point of a pixel. `reading` must be complete except for the range.
     void add_pixel(const RowRays& rays,
                    double x,
                    SensorReading& reading,
@@ -108,7 +108,7 @@ class DepthWalk {
             return;
         }
         const RayVariance ray = ray_variance(config_.sensor, reading);
-        // height_variance_m2() for equal errors of roll and pitch only.
+        // Same result as height_variance_m2() if the pose has only equal errors of roll and pitch.
         const double n_sq = ray_up * ray_up / ray_sq;
         const double beside_camera_sq_m2 = z_m * z_m * (ray_sq - ray_up * ray_up);
         const double var_m2 =

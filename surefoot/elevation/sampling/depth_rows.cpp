@@ -76,7 +76,8 @@ HWY_INLINE V ray_along(const DepthRow& row, int axis, V x) {
     return hn::Add(set(row.start[axis]), hn::Mul(x, set(row.along[axis])));
 }
 
-/// Height variance from the model `matcher` and from an error of the camera's roll and pitch.
+/// Returns the height variance from the model `matcher` and from an error of the camera's roll and
+/// pitch.
 HWY_INLINE V height_variance(const DepthFrame& f, V depth, V range, V sigma, V ray_up, V ray_sq) {
     const V along = hn::Div(hn::Mul(hn::Mul(depth, range), sigma), set(f.depth_to_disparity_px_m));
     const V lateral = hn::Mul(hn::Mul(set(f.lateral_px), depth), set(f.per_focal_px));

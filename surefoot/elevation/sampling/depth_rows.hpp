@@ -16,7 +16,7 @@ struct DepthFrame {
     float per_focal_px = 0.0F;  ///< 1 / focal length, for the lateral error
     float lateral_px = 0.0F;
     float min_var_m2 = 0.0F;
-    float tilt_var = 0.0F;  ///< rad^2
+    float tilt_var = 0.0F;  ///< variance of roll and of pitch [rad^2]
     float camera_m[3] = {};
     float min_range_m = 0.0F;
     float max_range_m = 0.0F;
@@ -34,8 +34,8 @@ struct DepthRow {
     const float* disparity_px = nullptr;
     const float* sigma_px = nullptr;
     const float* outlier_probability = nullptr;
-    const float* before_px = nullptr;  ///< disparity `reach` columns before the first pixel, ...
-    const float* after_px = nullptr;   ///< ... after it, above and below; NaN = no match
+    const float* before_px = nullptr;  ///< left neighbours at `reach_px`; NaN = no match
+    const float* after_px = nullptr;   ///< right neighbours at `reach_px`; NaN = no match
     const float* above_px = nullptr;
     const float* below_px = nullptr;
     int width = 0;
@@ -55,7 +55,7 @@ struct RowCounts {
 
 /// Writes the samples of the accepted pixels of a row, from left to right: the model `matcher` of
 /// `points_from_depth`, in floats. Every instruction set gives the same bytes. May write up to
-/// `CellSamples::kSlack` beyond the last sample of `out`.
+/// `CellSamples::kSlack` elements beyond the last sample of `out`.
 RowCounts samples_of_row(const DepthFrame& frame, const DepthRow& row, CellSamples::Columns out);
 
 }  // namespace surefoot::elevation

@@ -84,7 +84,7 @@ void DepthSampler::sample(const ElevationConfig& config,
         const DepthImage& depth;
         CellSamples& samples;
     } job{*this, depth, samples};
-    // A single reference, so std::function needs no memory for the closure.
+    // The closure holds one reference only, so std::function allocates no memory.
     executor.parallel_for(
         blocks, [&job](int block) { job.sampler.sample_block(block, job.depth, job.samples); });
     for (const RowCounts& block : counts_) {

@@ -22,7 +22,7 @@ ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
     axis_y_ = static_cast<float>(axis.y());
     axis_z_ = static_cast<float>(axis.z());
 
-    // A pixel extends half a pixel beyond its centre. The right camera limits the common view only
+    // A pixel reaches half a pixel beyond its centre. The right camera limits the common view only
     // at the left side.
     const double left = rig.cx_px + 0.5;
     const double top = rig.cy_px + 0.5;

@@ -9,9 +9,9 @@
 
 namespace surefoot::elevation {
 
-/// Number of pixels that level ground in a cell covers. A cell of area A at the depth z along the
-/// optical axis and h below the camera covers the solid angle A h / r^3, a pixel covers (z / r)^3 /
-/// (fx fy), so that
+/// Number of pixels that level ground in a cell covers. The cell of area A at the depth z along the
+/// optical axis and h below the camera covers the solid angle A h / r^3. A pixel covers the solid
+/// angle (z / r)^3 / (fx fy). So the number is
 ///   n = A fx fy h / z^3.
 /// A vertical surface shows more pixels (Oniga and Nedevschi 2010 detect obstacles by it).
 class ExpectedPoints {
@@ -43,15 +43,15 @@ class ExpectedPoints {
 
   private:
     float scale_m2_;  ///< A fx fy
-    float x_m_;       ///< distance of cell (0, 0) from the camera
+    float x_m_;       ///< position of cell (0, 0) from the camera
     float y_m_;
     float camera_z_m_;
     float resolution_m_;
     float axis_x_;  ///< optical axis in odom
     float axis_y_;
     float axis_z_;
-    /// One side of the common view of both cameras, moved inwards by the radius of a cell. Inside
-    /// is x x + y y + z z + offset >= 0, in odom axes from the camera.
+    /// One side of the common view of both cameras, moved inwards by the radius of a cell. A point
+    /// p (from the camera, in odom axes) is inside if (x, y, z) . p + offset >= 0.
     struct Side {
         float x;
         float y;

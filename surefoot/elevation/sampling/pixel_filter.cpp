@@ -18,35 +18,35 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                     reach_px,
                     1,
                     20,
-                    "distance in pixels of the four neighbours with which a pixel is compared");
-    visitor.number(
-        "jump_px",
-        jump_px,
-        0.0,
-        100.0,
-        "largest deviation from a linear disparity between two neighbours; jump_sigma is added");
+                    "distance from a pixel to the four neighbours with which it is compared [px]");
+    visitor.number("jump_px",
+                   jump_px,
+                   0.0,
+                   100.0,
+                   "largest difference between a pixel's disparity and the mean of two opposite "
+                   "neighbours; jump_sigma is added");
     visitor.number("jump_sigma",
                    jump_sigma,
                    0.0,
                    100.0,
-                   "sigmas of the disparity that are added to the deviation limit jump_px");
+                   "number of disparity sigmas that are added to the limit jump_px");
     visitor.number(
         "max_incidence_deg",
         max_incidence_deg,
         1.0,
         90.0,
-        "largest angle between line of sight and surface normal of a pixel that is used");
+        "largest angle between line of sight and surface normal at which a pixel is used");
     visitor.number("max_incidence_level_deg",
                    max_incidence_level_deg,
                    1.0,
                    90.0,
-                   "largest angle between line of sight and surface normal of a pixel on a level "
-                   "surface, for example a distant table top");
+                   "largest angle between line of sight and surface normal at which a pixel on a "
+                   "level surface is used, for example on a distant table top");
     visitor.number("level_deg",
                    level_deg,
                    0.0,
                    45.0,
-                   "largest tilt of a level surface against the horizontal");
+                   "largest angle to the horizontal at which a surface counts as level");
 }
 
 namespace {

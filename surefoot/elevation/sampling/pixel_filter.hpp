@@ -12,21 +12,21 @@ namespace surefoot::elevation {
 /// Conditions under which a pixel of a depth image may give a height.
 struct PixelFilterConfig {
     double max_outlier_probability = 0.5;
-    bool surface_check = true;  ///< the three keys below; needs neighbours in the image
+    bool surface_check = true;  ///< checks jumps and incidence; needs neighbours in the image
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
-    double jump_px = 0.5;     ///< a plane's disparity is linear in the pixel: largest departure ...
-    double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
-    /// Matchers bridge depth edges with ramps along the line of sight. 70 deg with `min_points` 3
-    /// leaves 2 % of the cells hidden behind drop edges as invented ground, and keeps 97 % of the
-    /// visible floor (docs/lab/correlated_depth.md).
+    double jump_px = 0.5;       ///< largest departure from a disparity that is linear in the pixel
+    double jump_sigma = 2.0;    ///< added to jump_px [sigma of the disparity]
+    /// Matchers bridge depth edges with ramps along the line of sight. At 70 deg (`min_points` = 3)
+    /// 2 % of the cells hidden behind drop edges get invented ground, and 97 % of the visible
+    /// floor stays (docs/lab/correlated_depth.md).
     double max_incidence_deg = 70.0;
     /// A distant table top is observed at 80-84 deg; without its pixels, the floor under it becomes
     /// the surface. A table top is level; a bridge along the line of sight is not.
     double max_incidence_level_deg = 85.0;
     /// Surfaces with less tilt are level, if the line of sight is so flat that a level surface
-    /// exceeds `max_incidence_deg`. Noise alone tilts such a table by 10 deg (with a limit of 8,
-    /// its far half was lost, docs/lab/terrain.md). On steeper lines of sight, a surface with the
-    /// same small tilt and flat incidence is a bridge behind a low kerb.
+    /// exceeds `max_incidence_deg`. Noise alone tilts a distant table top by 10 deg; a limit of
+    /// 8 deg loses its far half (docs/lab/terrain.md). On steeper lines of sight, a surface with
+    /// the same small tilt and flat incidence is a bridge behind a low kerb.
     double level_deg = 15.0;
 
     void describe(ConfigVisitor& visitor);
@@ -47,7 +47,7 @@ struct SurfaceLimits {
     float per_reach = 0.0F;  ///< 1 / reach_px
     float jump_px = 0.0F;
     float jump_sigma = 0.0F;
-    float up_x = 0.0F;  ///< against gravity, in the camera frame
+    float up_x = 0.0F;  ///< unit vector against gravity in the camera frame
     float up_y = 0.0F;
     float up_z = 0.0F;
     float min_cosine_sq = 0.0F;
@@ -97,8 +97,8 @@ class SurfaceCheck {
     [[nodiscard]] const SurfaceLimits& limits() const noexcept { return limits_; }
 
   private:
-    /// Gradient per pixel; from one side if the other has no match; NaN if both sides have no match
-    /// or if the three values do not lie on a line.
+    /// Returns the gradient per pixel. If one side has no match, the other side is enough. Returns
+    /// NaN if both sides have no match or if the three values do not lie on a line.
     [[nodiscard]] float gradient(float before_px,
                                  float after_px,
                                  float here_px,

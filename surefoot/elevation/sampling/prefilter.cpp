@@ -100,8 +100,8 @@ void CloudFilter::reset_table(std::size_t points) {
 }
 
 std::size_t CloudFilter::slot_of(const Cube& cube) const {
-    // Primes of Teschner 2003; the product is mixed once more, because neighbours differ in low
-    // bits.
+    // Primes of Teschner 2003. The hash is mixed once more, because neighbouring cubes differ only
+    // in low bits.
     std::uint64_t hash = static_cast<std::uint32_t>(cube.x) * 73856093ULL;
     hash ^= static_cast<std::uint32_t>(cube.y) * 19349663ULL;
     hash ^= static_cast<std::uint32_t>(cube.z) * 83492791ULL;

@@ -19,7 +19,7 @@ struct PrefilterConfig {
     double min_range_m = 0.3;
     double max_range_m = 20.0;
     bool height = true;
-    /// Relative to base_link; the floor lies near -1. Ground below the limit has no height in the
+    /// Relative to base_link; the floor lies near -1 m. Ground below the limit has no height in the
     /// map, but is evidence of a drop (`free_above_m`).
     double min_height_m = -3.0;
     double max_height_m = 1.0;   ///< excludes lintels and ceilings
@@ -48,9 +48,9 @@ struct PrefilterConfig {
     return !config.height || over_body_m <= config.max_height_m;
 }
 
-/// The two filters that need the whole cloud. Points count from the corner of a grid and lie over
-/// or near it; all are finite. The order of the points stays. Does not allocate once its tables
-/// have grown.
+/// The two filters that need the whole cloud. The positions of the points count from the corner of
+/// a grid; all points are finite and lie over or near the grid. The order of the points stays. Does
+/// not allocate once its tables have grown.
 class CloudFilter {
   public:
     /// Keeps one point per cube of `sampling_m`: the point nearest to the centre of the cube, the
@@ -70,7 +70,7 @@ class CloudFilter {
 
     [[nodiscard]] static Cube cube_of(const GridPoint& point, double edge_m);
     void reset_table(std::size_t points);
-    /// Returns the slot of a cube in the open-addressing table: an empty one or its own.
+    /// Returns the slot of the open-addressing table that holds a cube, or else an empty slot.
     [[nodiscard]] std::size_t slot_of(const Cube& cube) const;
     void link(std::span<const GridPoint> points, double edge_m);
     [[nodiscard]] int count_neighbours(std::span<const GridPoint> points,
@@ -78,7 +78,7 @@ class CloudFilter {
                                        double radius_m,
                                        int enough) const;
 
-    std::vector<std::uint32_t> first_;  ///< hash table: point that stands for a cube
+    std::vector<std::uint32_t> first_;  ///< hash table: the point that represents a cube
     std::vector<Cube> cubes_;           ///< one cube per point
     std::vector<std::uint32_t> next_;   ///< per point: the next point in the same cube
     std::vector<std::uint8_t> keep_;

@@ -9,9 +9,11 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Cells nearer to the camera than this, along x or y in cells, have no direction.
+/// Smallest distance [cells] from the camera, the larger of x and y. Nearer cells have no useful
+/// direction.
 constexpr float kNearest = 2.0F;
-/// A surface covers one or two cells, so a line that ends this near beyond it may have ended at it.
+/// First cell beyond a surface in which an endpoint counts. A surface covers one or two cells, so a
+/// nearer endpoint may lie on the surface itself.
 constexpr int kOwnCells = 3;
 
 }  // namespace
@@ -49,12 +51,12 @@ bool RayEndpoints::passed(grid::Cell cell, float z_m) const {
         }
         // in range: inside the grid, see above
         const auto i = static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(geometry_.nx) +
-                       static_cast<std::size_t>(at.x());  // in range: likewise
+                       static_cast<std::size_t>(at.x());  // in range: inside the grid
         if (std::isnan(z_m_[i])) continue;
         const float line_z_m = z_m - steps * fall_m;
         if (line_z_m > z_m_[i] + rounding_m) continue;
-        // The line met this surface, or passes below it. Below it, the endpoint of the line was not
-        // observed.
+        // The line meets this surface or passes below it. The endpoint of a line below the surface
+        // was not observed.
         return line_z_m >= bottom_m_[i] - rounding_m;
     }
 }

@@ -13,8 +13,8 @@ namespace surefoot::elevation {
 /// space is free.
 ///
 /// Lines to the floor under a table pass below the top, so an observed floor does not contradict
-/// the top. Only a line through the remembered surface itself does. All lines start at the camera,
-/// so the line through a position is known; the cells along it tell if it ended beyond.
+/// the top. Only a line through the remembered top contradicts it. All lines start at the camera,
+/// so the line through a position is known. The cells along this line tell if it ended beyond it.
 class RayEndpoints {
   public:
     /// Starts a frame with the camera at `camera_m` in odom, without any observed cell.
@@ -36,7 +36,7 @@ class RayEndpoints {
     [[nodiscard]] bool passed(grid::Cell cell, float z_m) const;
 
     grid::GridGeometry geometry_;
-    Eigen::Vector2f camera_cells_ = Eigen::Vector2f::Zero();  ///< counted from the grid corner
+    Eigen::Vector2f camera_cells_ = Eigen::Vector2f::Zero();  ///< position from the corner [cells]
     float camera_z_m_ = 0.0F;
     std::vector<float> z_m_;  ///< highest surface of each cell
     std::vector<float> bottom_m_;

@@ -9,7 +9,8 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr std::size_t kCapacity = 1024;
-constexpr double kSharedEntry = 0.25;  ///< share of the limits within which poses share an entry
+/// Poses closer than this share of the limits have one entry.
+constexpr double kSharedEntry = 0.25;
 
 double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
     return 2.0 * std::acos(std::min(1.0, std::abs(a.dot(b))));
@@ -23,15 +24,15 @@ void ViewpointConfig::describe(ConfigVisitor& visitor) {
         min_translation_m,
         0.0,
         10.0,
-        "smallest translation of the camera between two independent views of a cell; after a "
-        "smaller translation and rotation a view does not lower the variance of the cell");
+        "smallest translation of the camera between two independent views of a cell. A view with "
+        "less translation and less rotation does not lower the variance of the cell");
     visitor.number(
         "min_rotation_deg",
         min_rotation_deg,
         0.0,
         180.0,
-        "smallest rotation of the camera between two independent views of a cell; after a smaller "
-        "translation and rotation a view does not lower the variance of the cell");
+        "smallest rotation of the camera between two independent views of a cell. A view with less "
+        "translation and less rotation does not lower the variance of the cell");
 }
 
 ViewpointHistory::ViewpointHistory(const ViewpointConfig& config)

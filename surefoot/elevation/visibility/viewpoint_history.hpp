@@ -19,27 +19,27 @@ struct ViewpointConfig {
 
 /// Remembers the viewpoints from which the ground was observed, so that a standing camera does not
 /// count the same error many times as independent evidence. Poses closer than a quarter of the
-/// limits share an entry; this bounds the accuracy of the limits. Beyond 1024 entries (at least 1.2
+/// limits share an entry, so the limits are not exact. Beyond 1024 entries (at least 1.2
 /// m of travel with the defaults) the oldest entries are dropped and count as far away. No
 /// allocation after construction.
 class ViewpointHistory {
   public:
     using Id = std::uint32_t;
-    /// No viewpoint: differs from every pose.
+    /// Id that stands for no viewpoint. Every pose differs from it.
     static constexpr Id kNever = 0;
 
     explicit ViewpointHistory(const ViewpointConfig& config);
     /// Sets the pose as the present viewpoint and returns its id. Ids increase.
     Id look_from(const Pose& T_odom_body);
-    /// True if the present viewpoint is farther from viewpoint `id` than the limits allow.
+    /// True if the present viewpoint is farther from viewpoint `id` than a limit of the config.
     [[nodiscard]] bool is_new_since(Id id) const;
 
   private:
     [[nodiscard]] bool apart(const Pose& a, const Pose& b, double share) const;
 
     ViewpointConfig config_;
-    std::vector<Pose> poses_;            ///< ring, entry of id at id % size
-    std::vector<std::uint8_t> is_near_;  ///< by ring position: too close to the present view
+    std::vector<Pose> poses_;            ///< ring buffer; index of an id: id % size
+    std::vector<std::uint8_t> is_near_;  ///< by ring position: 1 = too close to the present view
     Id newest_ = kNever;
 };
 

@@ -9,9 +9,10 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Cells nearer to the camera than this, |dx| + |dy| in cells, have no direction.
+/// Smallest distance |dx| + |dy| [cells] from the camera. Nearer cells have no useful direction.
 constexpr float kNearest = 2.0F;
-/// A line gives no evidence at its own end: the surface there covers one or two cells.
+/// Number of rings before its end in which a line gives no evidence. The surface at the end covers
+/// one or two cells.
 constexpr int kEndRings = 3;
 
 }  // namespace
@@ -20,24 +21,25 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean("cleanup", cleanup, "true: remove surfaces that lines of sight pass through");
     visitor.boolean("drops",
                     drops,
-                    "true: lines of sight over unknown cells bound the depth of the ground there");
+                    "true: lines of sight over an unknown cell give an upper limit for the height "
+                    "of its ground");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
                    10.0,
-                   "smallest distance of a line of sight below a cell height that contradicts the "
-                   "cell; sigmas of the height are added");
+                   "a line of sight contradicts a cell if it passes more than this distance below "
+                   "the cell height; the value of sigmas is added");
     visitor.number("sigmas",
                    sigmas,
                    0.0,
                    100.0,
-                   "sigmas of the height that are added to the contradiction limit margin_m");
-    visitor.number("neighbour_s",
-                   neighbour_s,
-                   0.0,
-                   60.0,
-                   "time since the last confirmation of a neighbour of equal height within which a "
-                   "cell is not removed");
+                   "number of sigmas of the cell height that are added to margin_m");
+    visitor.number(
+        "neighbour_s",
+        neighbour_s,
+        0.0,
+        60.0,
+        "a cell is not removed if a neighbour of equal height was confirmed within this time");
     visitor.integer("frames",
                     frames,
                     1,
@@ -80,7 +82,7 @@ std::size_t FreeSpaceRays::quarter_of(float dx_cells, float dy_cells) noexcept {
 
 FreeSpaceRays::Place FreeSpaceRays::place_of(float dx_cells, float dy_cells) const {
     const float distance = std::abs(dx_cells) + std::abs(dy_cells);
-    // 0 along +x, 1 along +y, 2 along -x, 3 along -y.
+    // Direction in quarters: 0 along +x, 1 along +y, 2 along -x, 3 along -y.
     const float along = dy_cells / distance;
     float turn = 0.0F;
     if (dx_cells < 0.0F) {
@@ -102,7 +104,7 @@ void FreeSpaceRays::add(grid::Cell cell, float z_m) {
     const float slope = (z_m - camera_z_m_) / place.distance;
     // Neighbouring endpoints leave no gap between their lines.
     const float half_width = 0.5F * kQuarter / place.distance;
-    // Rounded down: adding one quarter keeps the converted value positive.
+    // One quarter is added, so the value is positive and the conversion rounds down.
     // in range: from 0.75 to 5.25 quarters, as the distance is at least kNearest
     const float around = place.direction + kQuarter;
     const int first = static_cast<int>(around - half_width) - kQuarter;  // in range: as above
@@ -112,7 +114,7 @@ void FreeSpaceRays::add(grid::Cell cell, float z_m) {
         float& lowest = row[direction & (kDirections - 1)];
         lowest = std::min(lowest, slope);
     }
-    // A line is narrower than a quarter.
+    // A line is narrower than a quarter, so it lies in the quarters of its two ends.
     for (const int direction : {first, last})
         used_[static_cast<std::size_t>(direction & (kDirections - 1)) / kQuarter] = true;
 }
@@ -135,7 +137,7 @@ void FreeSpaceRays::finish() {
 float FreeSpaceRays::lowest_over(grid::Cell cell) const {
     const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
-    // On the border of two quarters, a direction may belong to either.
+    // A direction on the border of two quarters may belong to either quarter, so it is not skipped.
     if (!used_[quarter_of(dx, dy)] && dx != 0.0F && dy != 0.0F) return kInfinity;
     const Place place = place_of(dx, dy);
     if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_ - 1))) {

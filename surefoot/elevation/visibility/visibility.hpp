@@ -11,16 +11,16 @@
 
 namespace surefoot::elevation {
 
-/// When free-space evidence removes a remembered surface. ASSUMPTION, all of them; for their
-/// effects see docs/evidence/accuracy.md.
+/// Settings for the removal of remembered surfaces by free-space evidence. All are an ASSUMPTION;
+/// for their effects see docs/evidence/accuracy.md.
 struct VisibilityConfig {
     bool cleanup = true;
     /// Lines of sight over unknown cells bound the depth of the ground there.
     bool drops = true;
-    double margin_m = 0.05;  ///< lines this far below a height contradict it ...
-    double sigmas = 3.0;     ///< ... plus this many sigma of the height
-    /// Number of such frames, with no agreeing one in between, that removes a surface shown by
-    /// every observation. A surface shown by every third one needs three times as many.
+    double margin_m = 0.05;  ///< lines of sight this far below a height contradict it
+    double sigmas = 3.0;     ///< added to margin_m [sigma of the height]
+    /// This many contradicting frames, without an agreeing frame between them, remove a surface
+    /// that every observation showed. A surface in every third observation needs 3 times as many.
     int frames = 3;
     /// A neighbour of equal height, confirmed this recently, keeps a cell from removal.
     double neighbour_s = 0.4;
@@ -32,13 +32,13 @@ struct VisibilityConfig {
 /// So a remembered surface in that space is gone.
 ///
 /// All lines start at the camera. In one direction, a line to a surface at distance r and height
-/// dz over the camera is at r' < r at the height dz/r * r'. The lowest line over a place is the
+/// dz over the camera is at r' < r at the height dz/r * r'. The lowest line over a position is the
 /// line with the smallest dz/r among all that end beyond it. So one table over direction and
 /// distance, with a running minimum from far to near, holds all lines. Its cost does not depend on
 /// the length of the lines; the reference implementation casts them cell by cell in 199 ms a
 /// frame.
 ///
-/// Directions and distances are those of the diamond |x| + |y| = 1: no square root, no angle.
+/// Directions and distances refer to the diamond |x| + |y| = 1, to avoid square roots and angles.
 class FreeSpaceRays {
   public:
     /// Starts a frame with the camera at `camera_m` in odom.
@@ -52,7 +52,7 @@ class FreeSpaceRays {
     [[nodiscard]] float lowest_over(grid::Cell cell) const;
 
   private:
-    /// Directions in a quarter of the diamond, and all around.
+    /// Number of directions in a quarter of the diamond, and in the whole diamond.
     static constexpr int kQuarter = 256;
     static constexpr int kDirections = 4 * kQuarter;
 
@@ -65,11 +65,11 @@ class FreeSpaceRays {
     [[nodiscard]] static std::size_t quarter_of(float dx_cells, float dy_cells) noexcept;
 
     grid::GridGeometry geometry_;
-    float camera_x_ = 0.0F;  ///< in cells from the corner of the grid
+    float camera_x_ = 0.0F;  ///< position in cells from the corner of the grid
     float camera_y_ = 0.0F;
     float camera_z_m_ = 0.0F;
     int rings_ = 0;
-    std::vector<float> lowest_;  ///< ring by ring: smallest height over distance [m per cell]
+    std::vector<float> lowest_;  ///< ring by ring: smallest slope dz/r of a line [m per cell]
     /// A camera points ahead, so quarters without any line are skipped.
     std::array<bool, 4> used_{};
 };

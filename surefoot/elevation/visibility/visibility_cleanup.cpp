@@ -11,7 +11,7 @@
 namespace surefoot::elevation {
 namespace {
 
-constexpr int kBeside = 2;  ///< distance of neighbours that confirm a cell
+constexpr int kBeside = 2;  ///< largest distance [cells] of neighbours that confirm a cell
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void VisibilityCleanup::reset(const grid::GridGeometry& geometry, const Eigen::V
 std::int64_t VisibilityCleanup::apply(std::int64_t time_ns,
                                       Executor& executor,
                                       ElevationCells& cells) {
-    // A single reference, so std::function needs no memory for the closure.
+    // The closure holds one reference only, so std::function allocates no memory.
     struct Job {
         VisibilityCleanup& check;
         ElevationCells& cells;
@@ -98,7 +98,8 @@ void VisibilityCleanup::find_gone(int block, std::int64_t time_ns, ElevationCell
     const std::int64_t* agreed_ns = layers.seen_ns.data();
     RowBlocks(geometry_).for_each_cell(block, [&](grid::Cell at, std::size_t cell) {
         if (std::isnan(height_m[cell]) || agreed_ns[cell] == time_ns) return;
-        // An observation that ended here, below the height, has passed the surface as well.
+        // A line of sight that ended in this cell below the remembered height has passed the
+        // surface as well.
         const float line_z_m = lines_.lowest_over(at);
         const float seen_z_m = ends_.z_m(cell);
         const float lowest_m = seen_z_m < line_z_m ? seen_z_m : line_z_m;
@@ -120,8 +121,8 @@ bool VisibilityCleanup::passed_through(grid::Cell cell, float z_m) const {
 bool VisibilityCleanup::stands_beside(grid::Cell cell,
                                       std::int64_t time_ns,
                                       const ElevationLayers& layers) const {
-    // Cells on an edge, or observed edge-on, are often missed; their neighbours on the same object
-    // are not.
+    // A frame often misses cells on an edge or cells that it observes edge-on, but not their
+    // neighbours on the same object.
     const std::int64_t since_ns = time_ns - ns_from_seconds(config_.neighbour_s);
     const float height_m = layers.height_m.row(cell.iy)[cell.ix];
     const int last_iy = std::min(cell.iy + kBeside, geometry_.ny - 1);

@@ -24,17 +24,17 @@ class VisibilityCleanup {
 
     /// Starts a frame with the camera at `camera_m` in odom.
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);
-    /// Notes that lines of sight ended in a cell, see `RayEndpoints::set`. `var_m2`: of `z_m`.
+    /// Notes ray endpoints in a cell, see `RayEndpoints::set`. `var_m2`: variance of `z_m`.
     void ended(std::size_t cell, float z_m, float var_m2, float bottom_m) noexcept {
         ends_.set(cell, z_m, bottom_m);
         of_cell_[cell] = not_above_m(z_m, var_m2);
     }
-    /// Upper bound of a measured height at `visibility.sigmas`: an uncertain wrong match far below
-    /// the floor does not show a drop.
+    /// Returns the upper bound of a measured height at `visibility.sigmas`. So an uncertain wrong
+    /// match far below the floor does not show a drop.
     [[nodiscard]] float not_above_m(float z_m, float var_m2) const noexcept {
         return z_m + sigmas_ * std::sqrt(var_m2);
     }
-    /// Call after all measurements of the frame are in the cells. Returns the removed surfaces.
+    /// Call after the last measurement of the frame. Returns the number of removed surfaces.
     std::int64_t apply(std::int64_t time_ns, Executor& executor, ElevationCells& cells);
 
   private:
