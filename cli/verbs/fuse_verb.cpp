@@ -24,14 +24,14 @@ struct FuseOptions {
     std::string out_dir;
 };
 
-/// Settings of this verb: the group "ancestor" configures the map update of the reference
+/// Settings of this verb: the group "reference" configures the map update of the reference
 /// implementation (ETH elevation_mapping).
 struct FuseSettings {
-    elevation::AncestorConfig ancestor;
-    void describe(ConfigVisitor& visitor) { visitor.group("ancestor", ancestor); }
+    elevation::ReferenceConfig reference;
+    void describe(ConfigVisitor& visitor) { visitor.group("reference", reference); }
 };
 
-Result<elevation::AncestorConfig> load(const CommonOptions& options) {
+Result<elevation::ReferenceConfig> load(const CommonOptions& options) {
     FuseSettings settings;
     if (options.preset != "ethz") {
         return usage_error(
@@ -41,10 +41,10 @@ Result<elevation::AncestorConfig> load(const CommonOptions& options) {
     }
     if (auto status = apply_overrides(options, io::describe_config(settings)); !status)
         return status.error();
-    return settings.ancestor;
+    return settings.reference;
 }
 
-Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& path) {
+Result<std::vector<elevation::ReferencePoint>> read_points(const std::string& path) {
     const auto values = io::read_floats(path);
     if (!values) return values.error();
     if (values->size() % 4 != 0) {
@@ -53,7 +53,7 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
             path,
             values->size()));
     }
-    std::vector<elevation::AncestorPoint> points(values->size() / 4);
+    std::vector<elevation::ReferencePoint> points(values->size() / 4);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const float* v = values->data() + 4 * i;
         points[i] = {v[0], v[1], v[2], v[3]};

@@ -8,14 +8,14 @@
 //
 // Writes OUT.csv, one line per run and method: `found` = each frame on its own, `followed` =
 // tracked by stairs::FeatureTracker. Lengths in mm; empty or nan = not found:
-//   looks                  frames of the run
+//   observations           frames of the run
 //   edges, drops, kerbs, flights, doors   appearances and disappearances, summed over the frames
 //                          after the first: no feature of that class within 0.1 m across and 20 deg
 //                          before
 //   new_ids                features whose id changed at the same place; followed only
 //   drops_lost             drops that a frame detected, but that are missing in the result, or
 //                          farther away in it by more than their sigma
-//   found_looks            frames that found the true flight
+//   found_observations     frames that found the true flight
 //   steps_changes          changes of its number of steps between consecutive frames of these
 //   steps_exact            frames of these with the true number of steps
 //   riser_mean, _sd, _step, _last   error: mean and sd over the frames, rms change between frames,
@@ -238,7 +238,8 @@ class Account {
 };
 
 constexpr const char* kHeader =
-    "scene,seed,mode,way,kind,looks,edges,drops,kerbs,flights,doors,new_ids,drops_lost,found_looks,"
+    "scene,seed,mode,way,kind,observations,edges,drops,kerbs,flights,doors,new_ids,drops_lost,"
+    "found_observations,"
     "steps_changes,steps_exact,riser_mean,riser_sd,riser_step,riser_last,going_mean,going_sd,"
     "going_step,going_last,width_mean,width_sd,width_step,width_last,across_mean,across_sd,"
     "across_step,across_last,riser_sure,across_sure,call_us,most_us\n";

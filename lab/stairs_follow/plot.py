@@ -25,10 +25,10 @@ def stairs_follow(lab):
         for way in WAYS:
             mine = [r for r in rows if (r["scene"], r["way"]) == (scene, way)]
             total = lambda key: sum(int(r[key]) for r in mine)  # noqa: E731
-            seconds = total("looks") / FOLLOW_HZ
+            seconds = total("observations") / FOLLOW_HZ
             calls = numbers(mine, "call_us")
             changes.append([scene, len(mine), WAYS[way], *(f"{total(key) / seconds:.1f}" for key in ("edges", "drops", "kerbs", "flights", "doors")),
-                            f"{total('steps_changes')} of {total('found_looks')}", total("drops_lost"),
+                            f"{total('steps_changes')} of {total('found_observations')}", total("drops_lost"),
                             f"{statistics.median(calls):.0f}" if calls else "-"])
             if any(numbers(mine, "across_mean")):
                 errors.append([scene, WAYS[way], *(follow_errors(mine, name) for name in ("riser", "going", "across"))])

@@ -102,8 +102,8 @@ elevation::ElevationConfig thesis_points() {
     return config;
 }
 
-elevation::AncestorConfig thesis_map() {
-    elevation::AncestorConfig config;
+elevation::ReferenceConfig thesis_map() {
+    elevation::ReferenceConfig config;
     config.resolution_m = 0.025;
     config.length_m = 6.0;
     config.start_time_s = 0.0;
@@ -151,7 +151,7 @@ class Mapper {
         if (!T_believed_world_) T_believed_world_ = ground_error(rig_, depth, T_world_body);
         fuse(depth, *T_believed_world_ * T_world_body, time_s);
     }
-    [[nodiscard]] const elevation::AncestorMap& map() const { return map_; }
+    [[nodiscard]] const elevation::ReferenceMap& map() const { return map_; }
     [[nodiscard]] const Fault& fault() const { return fault_; }
 
   private:
@@ -183,11 +183,11 @@ class Mapper {
     Fault fault_;
     Rng delays_;
     elevation::ElevationConfig config_ = thesis_points();
-    elevation::AncestorMap map_{thesis_map()};
+    elevation::ReferenceMap map_{thesis_map()};
     std::optional<Pose> T_believed_world_;
     elevation::CloudFilter filter_;
     std::vector<elevation::GridPoint> points_;
-    std::vector<elevation::AncestorPoint> cloud_;
+    std::vector<elevation::ReferencePoint> cloud_;
 };
 
 struct HeightMap {

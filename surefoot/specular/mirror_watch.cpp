@@ -105,8 +105,9 @@ void MirrorWatch::add(const camera::RectifiedRig& rig,
     ++frame_;
     if (!panes_.empty()) look_again(panes_[frame_ % panes_.size()]);
     for (int slot = 0; slot < 2 * config_.directions_per_frame; ++slot) look(next_direction(slot));
-    std::erase_if(
-        panes_, [&](const SuspectedPane& pane) { return pane.low_looks >= config_.forget_looks; });
+    std::erase_if(panes_, [&](const SuspectedPane& pane) {
+        return pane.low_observations >= config_.forget_observations;
+    });
 }
 
 /// Even slots search ahead: 0, 1, -1, 2, -2 ... deg from the heading. Odd slots search all around.
@@ -185,7 +186,7 @@ void MirrorWatch::look_again(SuspectedPane& pane) {
     if (!line) return;
     pane.score = line->score;
     pane.correlation = line->correlation;
-    pane.low_looks = line->score < config_.keep_score ? pane.low_looks + 1 : 0;
+    pane.low_observations = line->score < config_.keep_score ? pane.low_observations + 1 : 0;
 }
 
 void MirrorWatch::suspect(const SuspectedPane& found) {
@@ -196,7 +197,7 @@ void MirrorWatch::suspect(const SuspectedPane& found) {
         if (found.score > pane.score) pane = found;
         pane.from_m = from_m;
         pane.to_m = to_m;
-        pane.low_looks = 0;
+        pane.low_observations = 0;
         return;
     }
     if (panes_.size() < kMostPanes) panes_.push_back(found);

@@ -28,7 +28,7 @@ struct SuspectedPane {
     double to_m = 0.0;
     double score = 0.0;        ///< score of the last observation; see PatchLine
     double correlation = 0.0;  ///< of the last observation: near 1 for a mirror, near 0.1 for glass
-    int low_looks = 0;         ///< consecutive observations with a score below `keep_score`
+    int low_observations = 0;  ///< consecutive observations with a score below `keep_score`
 
     [[nodiscard]] Eigen::Vector2d left() const { return {-normal.y(), normal.x()}; }
 };

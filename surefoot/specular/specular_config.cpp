@@ -41,7 +41,7 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    50.0,
                    "smallest score at which a suspected line is kept [sigma of the noise]");
     visitor.integer("forget_observations",
-                    forget_looks,
+                    forget_observations,
                     1,
                     100,
                     "number of observations below keep_score after which a line is removed");

@@ -176,7 +176,7 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
         const auto z_m = static_cast<double>(height_m);
         const double var_m2 = variance_of(ground, ix, iy);
         const auto doubt_m = static_cast<float>(config_.sigma_factor * std::sqrt(var_m2));
-        const bool is_agreed = ground.looks.empty() || ground.looks.at(ix, iy) > 1;
+        const bool is_agreed = ground.observations.empty() || ground.observations.at(ix, iy) > 1;
         shown[ix] = is_agreed ? -(height_m + doubt_m) : kNothing;
         possible[ix] = -(height_m - doubt_m);
         total.z += z_m;

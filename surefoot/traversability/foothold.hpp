@@ -69,7 +69,7 @@ struct FootholdGround {
     ImageView<const float> reach_step_m;  ///< see Reachability; empty = everything is reachable
     double resolution_m = 0.0;
     /// Number of observations that agree on the height; empty = more than one.
-    ImageView<const std::uint32_t> looks = {};
+    ImageView<const std::uint32_t> observations = {};
 };
 
 /// Finds the footholds of a map. Around a cell, F is the disc of the foot plus margin, B is F plus

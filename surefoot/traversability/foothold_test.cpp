@@ -26,7 +26,7 @@ struct Map {
     Image<float> clearance_m{kSide, kSide, kNanF};
     Image<float> free_above_m{kSide, kSide, kNanF};
     Image<float> reach_m{kSide, kSide, 0.0F};
-    Image<std::uint32_t> looks{kSide, kSide, 2U};
+    Image<std::uint32_t> observations{kSide, kSide, 2U};
 
     template <typename F>
     explicit Map(const F& height) {
@@ -40,7 +40,7 @@ struct Map {
                 free_above_m.view(),
                 reach_m.view(),
                 kCell_m,
-                looks.view()};
+                observations.view()};
     }
     void forget_from(int column) {
         for (int iy = 0; iy < kSide; ++iy)
@@ -118,7 +118,7 @@ class Oracle {
                 }
                 const double z = height(x, y);
                 const double doubt = k * std::sqrt(variance(x, y));
-                deep = deep || (g_.looks.at(x, y) > 1 && middle - (z + doubt) > c_.drop_m);
+                deep = deep || (g_.observations.at(x, y) > 1 && middle - (z + doubt) > c_.drop_m);
                 perhaps_deep = perhaps_deep || middle - (z - doubt) > c_.drop_m;
             }
         }
@@ -161,7 +161,7 @@ class Oracle {
         for (int y = cy - reach; y <= cy + reach; ++y) {
             for (int x = cx - reach; x <= cx + reach; ++x) {
                 if (!within(x - cx, y - cy, near) || !inside(x, y)) continue;
-                if (known(x, y) && g_.looks.at(x, y) < 2) continue;
+                if (known(x, y) && g_.observations.at(x, y) < 2) continue;
                 const double shown =
                     known(x, y) ? height(x, y) + c_.sigma_factor * std::sqrt(variance(x, y))
                                 : free_above(x, y);
@@ -398,10 +398,10 @@ TEST(Foothold, UnderLessThanASquareOfWhatHangsNothingIsSure) {
 TEST(Foothold, ADropThatOneLookAloneSawIsUnsure) {
     Map ground([](int ix) { return ix < 40 ? 0.0 : -0.8; });
     EXPECT_EQ(at(ground, 30), Foothold::drop);
-    ground.looks.fill(1);
+    ground.observations.fill(1);
     EXPECT_EQ(at(ground, 30), Foothold::unsure);
     EXPECT_EQ(at(ground, 20), Foothold::safe);
-    ground.looks.at(41, kSide / 2) = 2;
+    ground.observations.at(41, kSide / 2) = 2;
     EXPECT_EQ(at(ground, 30), Foothold::drop);
 }
 
@@ -431,7 +431,7 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                     for (int i = 0; i < (seed % 2 == 0 ? 1 : 6); ++i)
                         map.clearance_m.at(std::min(ix + i, kSide - 1), iy) = 1.0F;
                 if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNanF;
-                if (rng.uniform() < 0.2) map.looks.at(ix, iy) = 1;
+                if (rng.uniform() < 0.2) map.observations.at(ix, iy) = 1;
                 if (rng.uniform() < 0.5)
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
             }

@@ -44,9 +44,9 @@ TEST(HeightFusion, GateUsesCellAndMeasurementVariance) {
     EXPECT_EQ(fuse({}, cell, measured).outcome, FusionOutcome::fused);
     EXPECT_EQ(fuse({}, cell, {0.013, 1.6e-5}).outcome, FusionOutcome::inflated);
 
-    FusionConfig ancestor;  // with the cell's variance only, the distance is 4 sigma
-    ancestor.gate_variance = GateVariance::cell_alone;
-    EXPECT_EQ(fuse(ancestor, cell, measured).outcome, FusionOutcome::inflated);
+    FusionConfig reference;  // with the cell's variance only, the distance is 4 sigma
+    reference.gate_variance = GateVariance::cell_alone;
+    EXPECT_EQ(fuse(reference, cell, measured).outcome, FusionOutcome::inflated);
 }
 
 TEST(HeightFusion, DisagreementCostsTrustNotHeight) {

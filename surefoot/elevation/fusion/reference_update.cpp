@@ -16,7 +16,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void AncestorConfig::describe(ConfigVisitor& visitor) {
+void ReferenceConfig::describe(ConfigVisitor& visitor) {
     visitor.number("resolution_m", resolution_m, 0.001, 10.0, "side length of a map cell");
     visitor.number("length_m", length_m, 0.01, 1000.0, "side length of the square map");
     visitor.number("start_x_m", start_x_m, -1e6, 1e6, "x of the map centre before the first step");
@@ -62,7 +62,7 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
         "share of the old height that remains when a higher point of the same scan replaces it");
 }
 
-AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
+ReferenceMap::ReferenceMap(const ReferenceConfig& config) : config_(config) {
     const int cells = std::max(1, grid::nearest_cells(config.length_m, config.resolution_m));
     geometry_.resolution_m = config.resolution_m;
     geometry_.nx = cells;
@@ -73,13 +73,13 @@ AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
     time_s_ = grid::SlidingLayer<float>(cells, cells, kNanF);
 }
 
-void AncestorMap::place(const Eigen::Vector2d& position_m) {
+void ReferenceMap::place(const Eigen::Vector2d& position_m) {
     position_m_ = position_m;
     const double half_m = 0.5 * geometry_.nx * geometry_.resolution_m;
     geometry_.origin_m = position_m - Eigen::Vector2d::Constant(half_m);
 }
 
-void AncestorMap::move_to(double x_m, double y_m) {
+void ReferenceMap::move_to(double x_m, double y_m) {
     if (!std::isfinite(x_m) || !std::isfinite(y_m)) return;
     const grid::Shift shift{grid::nearest_cells(x_m - position_m_.x(), geometry_.resolution_m),
                             grid::nearest_cells(y_m - position_m_.y(), geometry_.resolution_m)};
@@ -89,13 +89,13 @@ void AncestorMap::move_to(double x_m, double y_m) {
     }
 }
 
-void AncestorMap::add(std::span<const AncestorPoint> cloud, double time_s) {
+void ReferenceMap::add(std::span<const ReferencePoint> cloud, double time_s) {
     const auto since_start_s = static_cast<float>(time_s - config_.start_time_s);
-    for (const AncestorPoint& point : cloud) add_point(point, since_start_s);
+    for (const ReferencePoint& point : cloud) add_point(point, since_start_s);
     bound_variances();
 }
 
-void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
+void ReferenceMap::add_point(const ReferencePoint& point, float time_s) {
     // The reference implementation numbers cells from the corner of largest x and y. So a point
     // on a border between two cells belongs to the cell with the smaller coordinates.
     const double length_m = geometry_.nx * geometry_.resolution_m;
@@ -130,11 +130,11 @@ void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
     cell_time_s = time_s;
 }
 
-void AncestorMap::disagree(const AncestorPoint& point,
-                           float time_s,
-                           float& elevation_m,
-                           float& variance_m2,
-                           float cell_time_s) const {
+void ReferenceMap::disagree(const ReferencePoint& point,
+                            float time_s,
+                            float& elevation_m,
+                            float& variance_m2,
+                            float cell_time_s) const {
     const bool same_scan =  // false for a cell without a time
         static_cast<double>(time_s - cell_time_s) <= config_.scanning_duration_s;
     if (!same_scan) {
@@ -147,7 +147,7 @@ void AncestorMap::disagree(const AncestorPoint& point,
     variance_m2 = old_share * variance_m2 + (1.0F - old_share) * point.variance_m2;
 }
 
-void AncestorMap::bound_variances() {
+void ReferenceMap::bound_variances() {
     const auto min_m2 = static_cast<float>(config_.min_variance_m2);
     const auto max_m2 = static_cast<float>(config_.max_variance_m2);
     for (float* v = variance_m2_.data(); v != variance_m2_.data() + variance_m2_.size(); ++v) {
@@ -156,9 +156,9 @@ void AncestorMap::bound_variances() {
     }
 }
 
-std::vector<FuseStepResult> run_fuse_steps(const AncestorConfig& config,
+std::vector<FuseStepResult> run_fuse_steps(const ReferenceConfig& config,
                                            std::span<const FuseStep> steps) {
-    AncestorMap map(config);
+    ReferenceMap map(config);
     std::vector<FuseStepResult> results;
     results.reserve(steps.size());
     for (const FuseStep& step : steps) {

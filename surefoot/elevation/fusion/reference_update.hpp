@@ -13,7 +13,7 @@ namespace surefoot::elevation {
 
 /// Parameters of the elevation update of the reference implementation (ETH elevation_mapping); the
 /// defaults are those of the preset `ethz`.
-struct AncestorConfig {
+struct ReferenceConfig {
     double resolution_m = 0.05;
     double length_m = 2.0;
     double start_x_m = 0.0;
@@ -29,13 +29,13 @@ struct AncestorConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-struct AncestorPoint {
+struct ReferencePoint {
     float x_m = 0.0F;
     float y_m = 0.0F;
     float z_m = 0.0F;
     float variance_m2 = 0.0F;
 };
-static_assert(sizeof(AncestorPoint) == 16, "the files hold four float32 per point");
+static_assert(sizeof(ReferencePoint) == 16, "the files hold four float32 per point");
 
 /// Elevation update of the reference implementation, for comparison only; the live chain does not
 /// use it. It differs from ElevationMap. Every point updates its cell in file order and in
@@ -45,14 +45,14 @@ static_assert(sizeof(AncestorPoint) == 16, "the files hold four float32 per poin
 /// out.
 ///
 /// Grids are in our order: column = ix along +x, row = iy along +y.
-class AncestorMap {
+class ReferenceMap {
   public:
-    explicit AncestorMap(const AncestorConfig& config);
+    explicit ReferenceMap(const ReferenceConfig& config);
 
     /// Moves the map by whole cells. Half a cell rounds away from zero. New cells are NaN in all
     /// layers.
     void move_to(double x_m, double y_m);
-    void add(std::span<const AncestorPoint> cloud, double time_s);
+    void add(std::span<const ReferencePoint> cloud, double time_s);
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
     [[nodiscard]] const grid::SlidingLayer<float>& elevation_m() const noexcept {
@@ -66,8 +66,8 @@ class AncestorMap {
     }  ///< seconds since `start_time_s`
 
   private:
-    void add_point(const AncestorPoint& point, float time_s);
-    void disagree(const AncestorPoint& point,
+    void add_point(const ReferencePoint& point, float time_s);
+    void disagree(const ReferencePoint& point,
                   float time_s,
                   float& elevation_m,
                   float& variance_m2,
@@ -75,7 +75,7 @@ class AncestorMap {
     void bound_variances();
     void place(const Eigen::Vector2d& position_m);
 
-    AncestorConfig config_;
+    ReferenceConfig config_;
     grid::GridGeometry geometry_;
     Eigen::Vector2d position_m_;  ///< centre of the map
     grid::SlidingLayer<float> elevation_m_;
@@ -88,7 +88,7 @@ struct FuseStep {
     double time_s = 0.0;
     double move_x_m = 0.0;
     double move_y_m = 0.0;
-    std::vector<AncestorPoint> cloud;
+    std::vector<ReferencePoint> cloud;
 };
 
 /// The map after one step.
@@ -100,7 +100,7 @@ struct FuseStepResult {
 };
 
 /// Runs all steps on a fresh map and returns the map after each of them.
-[[nodiscard]] std::vector<FuseStepResult> run_fuse_steps(const AncestorConfig& config,
+[[nodiscard]] std::vector<FuseStepResult> run_fuse_steps(const ReferenceConfig& config,
                                                          std::span<const FuseStep> steps);
 
 }  // namespace surefoot::elevation

@@ -61,15 +61,15 @@ void expect_same(const grid::Layer& layer,
     EXPECT_GT(finite, 0) << name << " has no finite value: the file was not read";
 }
 
-TEST(Ancestor, ReproducesTheReferenceVectors) {
+TEST(Reference, ReproducesTheReferenceVectors) {
     if (!std::filesystem::exists(vectors_folder())) {
         std::printf("skipped 1 check: no %s (set SUREFOOT_DATA_DIR)\n", vectors_folder().c_str());
         return;
     }
     // Times and moves as in steps.txt of the vectors.
-    const std::vector<FuseStep> steps{{1000.1, 0.0, 0.0, read_raw<AncestorPoint>("cloud0.f32")},
-                                      {1000.12, 0.0, 0.0, read_raw<AncestorPoint>("cloud1.f32")},
-                                      {1000.3, 0.12, 0.0, read_raw<AncestorPoint>("cloud2.f32")}};
+    const std::vector<FuseStep> steps{{1000.1, 0.0, 0.0, read_raw<ReferencePoint>("cloud0.f32")},
+                                      {1000.12, 0.0, 0.0, read_raw<ReferencePoint>("cloud1.f32")},
+                                      {1000.3, 0.12, 0.0, read_raw<ReferencePoint>("cloud2.f32")}};
     const std::vector<FuseStepResult> results = run_fuse_steps({}, steps);
     ASSERT_EQ(results.size(), 3U);
     EXPECT_NEAR(results[2].geometry.origin_m.x(), 0.1 - 1.0, 1e-12) << "0.12 m moves by two cells";
@@ -83,21 +83,21 @@ TEST(Ancestor, ReproducesTheReferenceVectors) {
     }
 }
 
-TEST(Ancestor, ForgetsACellWhoseVarianceExceedsTheMaximum) {
-    AncestorMap map({});
-    const AncestorPoint vague[] = {{0.01F, 0.01F, 0.5F, 0.01F}};
+TEST(Reference, ForgetsACellWhoseVarianceExceedsTheMaximum) {
+    ReferenceMap map({});
+    const ReferencePoint vague[] = {{0.01F, 0.01F, 0.5F, 0.01F}};
     map.add(vague, 1000.1);
     const auto cell = map.geometry().cell_at(0.01, 0.01);
     ASSERT_TRUE(cell);
     EXPECT_TRUE(std::isinf(map.variance_m2().at(cell->ix, cell->iy)));
-    const AncestorPoint next[] = {{0.01F, 0.01F, 0.1F, 1e-4F}};
+    const ReferencePoint next[] = {{0.01F, 0.01F, 0.1F, 1e-4F}};
     map.add(next, 1000.2);
     EXPECT_EQ(map.elevation_m().at(cell->ix, cell->iy), 0.1F) << "the next point overwrites";
 }
 
-TEST(Ancestor, PointsOutsideAndNanMovesChangeNothing) {
-    AncestorMap map({});
-    const AncestorPoint outside[] = {{1.01F, 0.0F, 0.5F, 1e-4F}, {NAN, 0.0F, 0.5F, 1e-4F}};
+TEST(Reference, PointsOutsideAndNanMovesChangeNothing) {
+    ReferenceMap map({});
+    const ReferencePoint outside[] = {{1.01F, 0.0F, 0.5F, 1e-4F}, {NAN, 0.0F, 0.5F, 1e-4F}};
     map.add(outside, 1000.1);
     map.move_to(NAN, 0.0);
     for (std::size_t i = 0; i < map.elevation_m().size(); ++i) {

@@ -24,6 +24,7 @@ constexpr std::array kRenamed{
     Renamed{"sim.carrier", "sim.motion_model"},
     Renamed{"specular.forget_looks", "specular.forget_observations"},
     Renamed{"sim.optics.smudge_eye", "sim.optics.smudge_camera"},
+    Renamed{"ancestor", "reference"},
 };
 
 bool is_at_or_below(std::string_view key, std::string_view group) {
