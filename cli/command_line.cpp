@@ -43,7 +43,9 @@ CLI::App* add_subcommand(CLI::App& app, const char* name, const char* what, cons
 }
 
 void add_common(Verb verb, CommonOptions& common) {
-    verb.option("--config", common.config_file, "YAML file of settings; an unknown key is an error")
+    verb.option("--config",
+                common.config_file,
+                "read settings from this YAML file; an unknown key in the file is an error")
         .value("FILE");
     verb.option("--set",
                 common.settings,
@@ -58,7 +60,8 @@ void add_common(Verb verb, CommonOptions& common) {
     verb.flag("--json", common.json, "print the result as one JSON object on stdout");
     verb.option("--threads",
                 common.threads,
-                "number of threads, 0 = all cores (default 0); the results do not depend on it")
+                "number of threads, 0 = all cores (default 0); the results do not depend on this "
+                "number")
         .in(0, 256);
     verb.option(
         "--seed", common.seed, "seed of the random numbers of simulated scenes (default 1)");
@@ -267,18 +270,19 @@ void add_reading(Verb verb, ReadingOptions& reading) {
     verb.option("--pair-tolerance",
                 reading.pair_tolerance_s,
                 "largest time difference between the two images of a frame, in s (default: 1/5 of "
-                "the frame time; TUM RGB-D: 0.02)")
+                "the time between two frames; 0.02 for TUM RGB-D folders)")
         .value("S")
         .in(0.0, 10.0);
-    verb.option(
-            "--depth-factor",
-            reading.depth_codes_per_m,
-            "RGB-D: value of a depth image for a distance of 1 m (TUM: 5000; images in mm: 1000)")
+    verb.option("--depth-factor",
+                reading.depth_codes_per_m,
+                "pixel value of an RGB-D depth image that means a distance of 1 m (5000 in TUM "
+                "folders, 1000 if the values are mm)")
         .value("N")
         .in(1.0, 1e6);
     verb.option("--image-bits",
                 reading.image_bits,
-                "16-bit camera images: number of bits in use; Surefoot reads the upper 8 of them")
+                "number of used bits in a 16-bit camera image; Surefoot reads the upper 8 of the "
+                "used bits")
         .value("N")
         .in(9, 16);
 }
@@ -292,12 +296,14 @@ void add_skip_broken(Verb verb, ReadingOptions& reading) {
 void add_source_options(Verb verb, SourceOptions& source) {
     verb.option("--rig",
                 source.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the source")
+                "calibration file; it replaces the calibration of the source. For a simulated "
+                "scene also the name of a built-in rig, for example zed_vga")
         .value("FILE|NAME");
     verb.option("--imu",
                 source.imu_file,
-                "EuRoC IMU csv, or a FIFO of such rows; its time stamps use the clock of the "
-                "frames (CLOCK_MONOTONIC for a live camera)")
+                "IMU samples: an EuRoC csv file, or a FIFO that delivers the rows of such a file. "
+                "Their time stamps must use the clock of the frames (CLOCK_MONOTONIC for a live "
+                "camera)")
         .value("FILE");
     verb.option("--rate", source.rate_hz, "frame rate of a source without time stamps, in Hz")
         .value("HZ")
@@ -310,11 +316,11 @@ void add_source_options(Verb verb, SourceOptions& source) {
 int run_command_line(int argc, char** argv) {
     cv::setNumThreads(1);  // only the executor creates threads
     CLI::App app{
-        "surefoot: is it safe to step there? Depth, odometry, elevation map, stairs and gate for a "
-        "stereo camera on a walking machine"};
+        "Surefoot answers: is it safe to step there? It computes depth, odometry, an elevation "
+        "map, stairs and the verdict of the gate for a stereo camera on a walking machine"};
     app.set_version_flag("--version", SUREFOOT_VERSION);
     app.require_subcommand(1);
-    app.footer("Run 'surefoot VERB --help' to see the options and an example of a verb.");
+    app.footer("Run 'surefoot VERB --help' to see the options of one verb and an example.");
 
     int exit_code = kExitOk;
     add_all_verbs(VerbGroup(&app, exit_code));

@@ -229,14 +229,16 @@ int bench(const BenchOptions& options) {
         print_answer(bench_json(all));
         return kExitOk;
     }
-    fmt::print("{:<46}{:>12}{:>10}{:>14}{:>14}{:>18}{:>16}\n",
-               "what",
-               "median ms",
-               "p99 ms",
-               "least CPU ms",
-               "peer ms",
-               "its least CPU ms",
-               "median CPU ms");
+    fmt::print(
+        "peer = another implementation of the same work in the same run (OpenCV or plain code)\n"
+        "{:<46}{:>12}{:>10}{:>14}{:>14}{:>18}{:>16}\n",
+        "benchmark",
+        "median ms",
+        "p99 ms",
+        "least CPU ms",
+        "peer ms",
+        "peer least CPU ms",
+        "median CPU ms");
     // Times below 10 us are printed to the nanosecond.
     const auto in_ms = [](const std::optional<double>& value_ms) {
         if (!value_ms) return std::string("-");

@@ -82,27 +82,29 @@ void print(const RigView& view) {
     for (const auto& depth : view.depths)
         fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * depth.sigma_m, depth.z_m);
     fmt::print(
-        "\nblind zone: the camera never sees floor nearer than {:.2f} m ahead of base_link; its "
-        "view ends at {:.2f} m\n",
+        "\nblind zone: the camera never sees floor nearer than {:.2f} m ahead of base_link; the "
+        "view of the floor ends at {:.2f} m\n",
         view.floor.near_m,
         view.floor.far_m);
     for (const auto& step : view.steps) {
-        fmt::print("command {} ({}): the foot lands up to {:.2f} m ahead, {}\n",
-                   step.command,
-                   step.name,
-                   step.toe_m,
-                   step.remembered ? "all of it on ground that only the map remembers"
-                                   : "partly on ground that the camera sees now");
+        fmt::print(
+            "command {} ({}): the foot lands up to {:.2f} m ahead of base_link; {}\n",
+            step.command,
+            step.name,
+            step.toe_m,
+            step.remembered
+                ? "the whole foot lands in the blind zone, on ground that only the map contains"
+                : "a part of the foot lands on ground that the camera sees now");
     }
 }
 
 void print(const std::vector<CameraNode>& cameras) {
-    if (cameras.empty()) fmt::print("cameras: no camera found (no /dev/video*)\n");
+    if (cameras.empty()) fmt::print("cameras: no camera found (there is no /dev/video*)\n");
     for (const CameraNode& node : cameras) {
         if (node.problem.empty()) {
             fmt::print("camera {}: {}\n", node.device, node.card);
         } else {
-            fmt::print("not a usable camera: {}\n", node.problem);
+            fmt::print("this device is not a usable camera: {}\n", node.problem);
         }
     }
 }
@@ -136,13 +138,16 @@ int doctor(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<DoctorOptions>("doctor",
-                                              "check the computer, the settings, the cameras and "
-                                              "the machine file; print the blind zone of each rig",
-                                              "surefoot doctor --machine rex",
-                                              doctor);
-    verb.option("--rig", o.rig_file, "calibration file").value("FILE");
-    verb.option("--machine", o.machine, "machine file, or name of a built-in machine")
+    auto [verb, o] =
+        verbs.add<DoctorOptions>("doctor",
+                                 "check the computer, the settings, the cameras and the machine "
+                                 "file; print the blind zone and the depth precision of one rig",
+                                 "surefoot doctor --machine rex",
+                                 doctor);
+    verb.option(
+            "--rig", o.rig_file, "calibration file of the rig (default: the built-in rig zed_vga)")
+        .value("FILE");
+    verb.option("--machine", o.machine, "machine file, or name of a built-in machine (default rex)")
         .value("FILE|NAME");
 }
 
