@@ -88,9 +88,10 @@ Result<GreyImage> read_mask(const std::string& path) {
 
 void print_errors(const eval::DepthErrors& errors) {
     fmt::print(
-        "{} pixels have a true disparity; {:.2f} % of them have an estimate\ngaps filled: {:.2f} % "
-        "over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\nestimates only: {:.2f} % over 0.5 "
-        "px, {:.2f} % over 1 px, {:.2f} % over 2 px; median {:.3f} px\n",
+        "{} pixels have a true disparity; {:.2f} % of these pixels have an estimate\nerrors with "
+        "gaps filled: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\nerrors of the "
+        "estimates only: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px; median "
+        "{:.3f} px\n",
         errors.counted,
         errors.density_percent,
         errors.bad.over_0_5_percent,
@@ -102,8 +103,9 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.known.median_abs);
     if (errors.coverage.count == 0) return;
     fmt::print(
-        "within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} %; sparsification {:.3f} (0 = sigma orders "
-        "the errors perfectly, 1 = no better than chance)\n",
+        "errors within 1 sigma: {:.1f} %, within 2 sigma: {:.1f} %, within 3 sigma: {:.1f} %; "
+        "sparsification {:.3f} (0 = sigma sorts the errors perfectly, 1 = sigma sorts them no "
+        "better than chance)\n",
         100.0 * errors.coverage.within_1_sigma,
         100.0 * errors.coverage.within_2_sigma,
         100.0 * errors.coverage.within_3_sigma,
@@ -124,8 +126,8 @@ void warn_of_scale(const EvalDepthOptions& options,
                    double scale) {
     log_warning(
         fmt::format("{}: after division by {:g}, its disparities are {:.3g} times those of {} "
-                    "(median). If the file stores {:g} times the disparity, the figures below are "
-                    "wrong: run again with --scale {:g}",
+                    "(median). If the file stores {:g} times the disparity, the figures of this "
+                    "call are wrong: run again with --scale {:g}",
                     options.truth,
                     truth.scale,
                     ratio,
@@ -149,9 +151,9 @@ int eval_depth(const EvalDepthOptions& options) {
     if (!errors) return report(errors.error());
     if (errors->counted == 0) {
         return report(input_error(
-            fmt::format("{}: no pixel has a true disparity{}",
+            fmt::format("{}: no pixel has a true disparity{}; check the file of the true disparity",
                         options.truth,
-                        options.mask.empty() ? "" : " inside the mask; check both files")));
+                        options.mask.empty() ? "" : " inside the mask (--mask)")));
     }
     const auto suspected = suspected_scale(*errors, truth->scale);
     if (suspected) warn_of_scale(options, *truth, errors->truth_over_estimate, *suspected);
@@ -168,28 +170,36 @@ int eval_depth(const EvalDepthOptions& options) {
 void add_eval_depth(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<EvalDepthOptions>("depth",
-                                    "compare a disparity image with the true one",
+                                    "compare a disparity image with the true disparity",
                                     "surefoot eval depth tests/conformance/depth/disparity.pfm "
                                     "tests/conformance/depth/truth.pfm --sigma "
                                     "tests/conformance/depth/sigma.pfm --json",
                                     eval_depth,
                                     Reads::no_settings);
-    verb.option("estimate", o.estimate, "estimated disparity, in px; unknown = +inf")
+    verb.option(
+            "estimate", o.estimate, "file of the estimated disparity, in px; +inf means unknown")
         .required()
         .value("EST.pfm");
-    verb.option("truth", o.truth, "true disparity: PFM, or a grey PNG in which 0 means unknown")
+    verb.option("truth",
+                o.truth,
+                "file of the true disparity: a PFM, or a grey PNG in which 0 means unknown")
         .required()
         .value("TRUTH");
     verb.option("--scale",
                 o.scale,
-                "factor between stored values and disparities in px (default: 256 for 16-bit "
-                "images, as in KITTI; 1 for others)")
+                "value that a disparity of 1 px has in the file of the true disparity (default: "
+                "256 for 16-bit images, as in KITTI; 1 for other files)")
         .value("S")
         .positive();
-    verb.option(
-            "--mask", o.mask, "mask image; only pixels above 200 (visible in both cameras) count")
+    verb.option("--mask",
+                o.mask,
+                "mask image: only pixels with a mask value above 200 are compared, which means "
+                "visible in both cameras")
         .value("M");
-    verb.option("--sigma", o.sigma, "standard deviation of the estimate, in px").value("SIGMA.pfm");
+    verb.option("--sigma",
+                o.sigma,
+                "file with the standard deviation of the estimated disparity, in px")
+        .value("SIGMA.pfm");
 }
 
 }  // namespace surefoot::app

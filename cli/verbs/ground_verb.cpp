@@ -49,11 +49,10 @@ std::string failure(const GroundOptions& options,
                     bool optical) {
     if (optical)
         return fmt::format(
-            "{}: no ground plane: {}: the search covers tilts of 0-{:g} deg; {:.0f} % of the "
-            "points look like floor. Check that --origin ({}) is the position of the sensor and "
-            "that the cloud has optical axes as recorded (--frame). You can relax "
-            "ground.search_down_deg, ground.min_image_share = {:g} and ground.max_search_rms_m = "
-            "{:g}",
+            "{}: no ground plane: {}. The search covers tilts of 0-{:g} deg; {:.0f} % of the "
+            "points look like floor. Check that --origin ({}) is the position of the sensor, and "
+            "that the cloud has optical axes (--frame). You can increase ground.search_down_deg, "
+            "decrease ground.min_image_share = {:g} or increase ground.max_search_rms_m = {:g}",
             options.cloud,
             to_string(sighting.reason),
             config.search_down_deg,
@@ -62,9 +61,9 @@ std::string failure(const GroundOptions& options,
             config.min_image_share,
             config.max_search_rms_m);
     return fmt::format(
-        "{}: no ground plane: {}. Check that --origin ({}) is the position of the sensor and that "
-        "the cloud has body axes as recorded (--frame). You can relax ground.max_tilt_deg = {:g}, "
-        "ground.max_range_m = {:g} and ground.tolerance_m = {:g}",
+        "{}: no ground plane: {}. Check that --origin ({}) is the position of the sensor, and that "
+        "the cloud has body axes with z up (--frame). You can increase ground.max_tilt_deg = {:g}, "
+        "ground.max_range_m = {:g} or ground.tolerance_m = {:g}",
         options.cloud,
         to_string(sighting.reason),
         options.origin,
@@ -94,11 +93,13 @@ int ground(const GroundOptions& options) {
     if (options.common.json) {
         print_answer(ground_json(sighting));
     } else if (sighting.observation.accepted) {
-        fmt::print("tilt {:.2f} deg, height {:.3f} m, {:.0f} % inliers, rms {:.1f} mm\n",
-                   sighting.tilt_rad * 180.0 / M_PI,
-                   sighting.observation.height_m,
-                   100.0 * sighting.observation.inlier_ratio,
-                   1e3 * sighting.observation.rms_m);
+        fmt::print(
+            "ground plane: tilt {:.2f} deg, height {:.3f} m, {:.0f} % of the points are inliers, "
+            "rms distance of the inliers {:.1f} mm\n",
+            sighting.tilt_rad * 180.0 / M_PI,
+            sighting.observation.height_m,
+            100.0 * sighting.observation.inlier_ratio,
+            1e3 * sighting.observation.rms_m);
     }
     if (!sighting.observation.accepted) {
         return report(input_error(failure(options, config, sighting, optical)));
@@ -111,18 +112,19 @@ int ground(const GroundOptions& options) {
 void add_ground(VerbGroup verbs) {
     auto [verb, o] = verbs.add<GroundOptions>(
         "ground",
-        "estimate the ground plane of a point cloud: tilt, height, inliers",
+        "estimate the ground plane of a point cloud: its tilt, its height and the share of inliers",
         "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json",
         ground);
     verb.option("cloud", o.cloud, "point cloud: PCD, PLY or XYZ").required().value("CLOUD");
     verb.option("--origin",
                 o.origin,
-                "position of the sensor in the cloud, in m; the height of the ground is measured "
-                "from there (default 0,0,0)")
+                "position of the sensor in the coordinates of the cloud, in m (default 0,0,0); the "
+                "height of the ground is measured from the sensor")
         .value("X,Y,Z");
     verb.option("--frame",
                 o.frame,
-                "axes of the cloud (default: optical for organised clouds, else body)")
+                "axes of the cloud: optical (z forward, y down) or body (z up). Default: optical "
+                "for a cloud that is organised in image rows, otherwise body")
         .one_of({"optical", "body"});
 }
 

@@ -138,7 +138,7 @@ int map_export(const MapExportOptions& options) {
     if (options.common.json) {
         print_answer(map_export_json(region, out.files, options.out_dir));
     } else {
-        fmt::print("{} of {} cells known; {} files written to {}/\n",
+        fmt::print("the map has {} known cells of {}; {} files are written to {}/\n",
                    region.known_cells(),
                    region.height_m.size(),
                    out.files.size(),
@@ -150,18 +150,18 @@ int map_export(const MapExportOptions& options) {
 }  // namespace
 
 void add_map_export(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<MapExportOptions>("export",
-                                    "write every layer as .asc, the cells as a point cloud, and "
-                                    "pictures of elevation and its standard deviation",
-                                    "surefoot map export out/modelled/floor.region --out "
-                                    "out/floor_map",
-                                    map_export,
-                                    Reads::no_settings);
+    auto [verb, o] = verbs.add<MapExportOptions>(
+        "export",
+        "convert a saved map: write every layer as .asc, the known cells as a point cloud, and "
+        "pictures of the elevation and its standard deviation",
+        "surefoot map export out/modelled/floor.region --out "
+        "out/floor_map",
+        map_export,
+        Reads::no_settings);
     verb.option("file", o.file, "saved map, written by 'surefoot run --save-map'")
         .required()
         .value("FILE");
-    verb.option("--out", o.out_dir, "folder for the files").required().value("DIR");
+    verb.option("--out", o.out_dir, "folder for the written files").required().value("DIR");
 }
 
 }  // namespace surefoot::app

@@ -34,24 +34,26 @@ struct MapMergeOptions {
 
 void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     for (const std::string& layer : map.skipped_layers) {
-        log_warning(fmt::format(
-            "{}: layer {} belongs to the newer version {}.{} of the format and is left out",
-            file,
-            layer,
-            io::kMapFileMajor,
-            map.minor));
+        log_warning(
+            fmt::format("{}: this program does not know the layer {} of the newer format version "
+                        "{}.{} and ignores the layer",
+                        file,
+                        layer,
+                        io::kMapFileMajor,
+                        map.minor));
     }
 }
 
 /// Reads a horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
 Result<Matrix6> motion_covariance(const std::string& text) {
     const auto sigma = parse_three_numbers(
-        "--motion-sigma", text, "horizontal and vertical in metres, angle in degrees");
+        "--motion-sigma", text, "(horizontal in m, vertical in m, angle in deg)");
     if (!sigma) return sigma.error();
     const auto [horizontal_m, vertical_m, angle_deg] = *sigma;
     if (horizontal_m < 0.0 || vertical_m < 0.0 || angle_deg < 0.0)
-        return usage_error(
-            fmt::format("--motion-sigma {}: a standard deviation must not be negative", text));
+        return usage_error(fmt::format(
+            "--motion-sigma {}: a standard deviation is negative; give three numbers of at least 0",
+            text));
     const double angle_rad = angle_deg * kRadPerDeg;
     Vector6 sigmas;
     sigmas << horizontal_m, horizontal_m, vertical_m, angle_rad, angle_rad, angle_rad;
@@ -90,7 +92,7 @@ int map_info(const MapInfoOptions& options) {
     const grid::MapRegion& r = map->region;
     const Eigen::Vector2d origin_m = r.geometry().origin_m;
     const Eigen::Vector3d& body_m = r.T_frame_body.translation_m;
-    fmt::print("map region of version {}.{}: {} x {} cells of {:g} m, {} of them known\n",
+    fmt::print("saved map in format version {}.{}: {} x {} cells of {:g} m, {} cells are known\n",
                io::kMapFileMajor,
                map->minor,
                r.box.nx,
@@ -98,14 +100,15 @@ int map_info(const MapInfoOptions& options) {
                r.resolution_m,
                r.known_cells());
     fmt::print(
-        "in frame {} of the run that began at {:.3f} s; first corner at ({:.3f}, {:.3f}) m\n",
+        "the map uses the frame {} of the run that began at {:.3f} s; the corner with the smallest "
+        "x and y is at ({:.3f}, {:.3f}) m\n",
         r.frame,
         seconds_from_ns(r.frame_since_ns),
         origin_m.x(),
         origin_m.y());
     fmt::print(
-        "saved at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; settings "
-        "{:016x}\n",
+        "saved at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; hash of "
+        "the settings {:016x}\n",
         seconds_from_ns(r.stamp_ns),
         body_m.x(),
         body_m.y(),
@@ -146,12 +149,14 @@ int map_merge(const MapMergeOptions& options) {
     if (options.common.json) {
         print_answer(map_merge_json(merged, *counts, options.out_file));
     } else {
-        fmt::print("{} cells known in {}: {} only in the second map, {} agreed, {} disagreed\n",
-                   merged.known_cells(),
-                   options.out_file,
-                   counts->taken,
-                   counts->agreed,
-                   counts->disagreed);
+        fmt::print(
+            "{} known cells in {}: {} were known only in the second map; the heights of the two "
+            "maps agree in {} cells and disagree in {}\n",
+            merged.known_cells(),
+            options.out_file,
+            counts->taken,
+            counts->agreed,
+            counts->disagreed);
     }
     return kExitOk;
 }
@@ -171,27 +176,29 @@ void add_map_info(VerbGroup verbs) {
 }
 
 void add_map_merge(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<MapMergeOptions>("merge",
-                                   "merge two maps of one run, or of one frame, into one map",
-                                   "surefoot map merge out/modelled/floor.region "
-                                   "out/modelled/floor.region --out out/modelled/both.region",
-                                   map_merge);
-    verb.option("first", o.first, "first saved map").required().value("A");
-    verb.option("second", o.second, "second saved map; the order does not matter")
+    auto [verb, o] = verbs.add<MapMergeOptions>(
+        "merge",
+        "merge two saved maps of one run, or of two runs with the same odom frame, into one map",
+        "surefoot map merge out/modelled/floor.region "
+        "out/modelled/floor.region --out out/modelled/both.region",
+        map_merge);
+    verb.option("first", o.first, "first saved map, written by 'surefoot run --save-map'")
+        .required()
+        .value("A");
+    verb.option("second", o.second, "second saved map; the order of the two maps does not matter")
         .required()
         .value("B");
     verb.option("--out", o.out_file, "file for the merged map").required().value("C");
     verb.option("--motion-sigma",
                 o.motion_sigma,
-                "standard deviation of the motion from the older map's pose to the newer one: "
-                "horizontal and vertical in m, angle in deg (default 0,0,0). It is added to the "
-                "variances of the older map")
+                "standard deviation of the motion between the poses at which the two maps were "
+                "saved: horizontal in m, vertical in m, angle in deg (default 0,0,0). The verb "
+                "adds this uncertainty to the variances of the older map")
         .value("H,V,DEG");
     verb.flag("--independent",
               o.independent,
-              "the maps come from two runs, and you know that their odom frames are the same; "
-              "heights that agree are averaged");
+              "treat the maps as independent: they come from two runs, and you know that both runs "
+              "have the same odom frame. The verb averages heights that agree");
 }
 
 }  // namespace surefoot::app

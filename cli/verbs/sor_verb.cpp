@@ -82,8 +82,8 @@ int sor(const SorOptions& options) {
     const int others = options.counting == "others" ? options.neighbours : options.neighbours - 1;
     if (others < 1) {
         return report(
-            usage_error(fmt::format("--neighbours {}: give at least 2, because the point itself is "
-                                    "one of them; or add --counting others",
+            usage_error(fmt::format("--neighbours {}: give at least 2, because the point itself "
+                                    "counts as one neighbour; or add --counting others",
                                     options.neighbours)));
     }
     const auto executor = make_executor(options.common);
@@ -122,34 +122,37 @@ int sor(const SorOptions& options) {
 }  // namespace
 
 void add_sor(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<SorOptions>("sor",
-                                           "statistical outlier removal: remove points whose mean "
-                                           "distance to their neighbours is unusually large",
-                                           "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
-                                           sor,
-                                           Reads::no_settings);
+    auto [verb, o] =
+        verbs.add<SorOptions>("sor",
+                              "remove statistical outliers from a point cloud: points whose mean "
+                              "distance to their neighbours is unusually large",
+                              "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
+                              sor,
+                              Reads::no_settings);
     verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ")
         .required()
         .value("CLOUD");
-    verb.option("--neighbours",
-                o.neighbours,
-                "number of neighbours K whose distances are averaged (default 7)")
+    verb.option(
+            "--neighbours",
+            o.neighbours,
+            "number K of nearest neighbours of a point whose distances are averaged (default 7)")
         .value("K")
         .in(1, 1000);
     verb.option("--counting",
                 o.counting,
-                "self: the point is one of the K, as in CloudCompare and Open3D (default); "
-                "others: it is not, as in PCL")
+                "whether a point counts as one of its K neighbours. self (default): it counts, as "
+                "in CloudCompare and Open3D; others: it does not count, as in PCL")
         .value("self|others")
         .one_of({"self", "others"});
     verb.option("--sigmas",
                 o.sigmas,
-                "limit: number of standard deviations above the mean distance (default 4)")
+                "remove points whose mean neighbour distance is more than this number of standard "
+                "deviations above the average (default 4)")
         .value("S")
         .in(0.0, 1e6);
     verb.option("--out",
                 o.out_file,
-                "file for the remaining points: PLY, PCD or XYZ; colours and values are kept")
+                "file for the remaining points with their colours and values: PLY, PCD or XYZ")
         .required()
         .value("F.ply");
 }

@@ -57,7 +57,9 @@ void log_error(const std::string& message) {
 
 Status close_stdout() {
     const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-    return flushed ? Status() : Status(output_error("stdout: cannot write: is the disk full?"));
+    return flushed ? Status()
+                   : Status(output_error("stdout: cannot write the whole output; check whether the "
+                                         "disk is full and run again"));
 }
 
 const std::string& first_error() noexcept {

@@ -25,7 +25,11 @@ Result<std::array<double, N>> parse_numbers(const std::string& option,
                                : io::parse_double(text.substr(begin, end - begin));
         if (!value || !std::isfinite(*value)) {
             return usage_error(
-                fmt::format("{} '{}': give {} finite numbers {}", option, text, count, meaning));
+                fmt::format("{} '{}': give {} finite numbers separated by commas: {}",
+                            option,
+                            text,
+                            count,
+                            meaning));
         }
         values[i] = *value;
         begin = end + 1;

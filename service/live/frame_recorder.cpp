@@ -52,18 +52,25 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
         std::error_code error;
         if (std::filesystem::create_directory(folder, error)) return folder;
         if (error) {
-            return output_error(
-                fmt::format("{}: cannot make this folder: {}", folder, error.message()));
+            return output_error(fmt::format(
+                "{}: this folder cannot be created: {}; give another folder with --record-dir",
+                folder,
+                error.message()));
         }
     }
-    return output_error(fmt::format(
-        "{}: this folder and others of this name already exist; try again in a second", name));
+    return output_error(
+        fmt::format("{}: this folder and 99 folders with the same time in their names already "
+                    "exist; try again in a second",
+                    name));
 }
 
 /// Why a source cannot be recorded; empty if it can.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
-    if (config.record_dir.empty()) return "restart serve with --record-dir DIR";
-    if (source.modelled_depth) return "sim.sensor = analytic makes no images to record";
+    if (config.record_dir.empty())
+        return "recording is not allowed; to allow it, restart serve with --record-dir DIR";
+    if (source.modelled_depth)
+        return "this source has no images to record, because sim.sensor is analytic; restart serve "
+               "with another sim.sensor";
     return {};
 }
 
@@ -160,11 +167,11 @@ Result<io::Recorder> FrameRecorder::open(std::string& folder) const {
     if (auto made = io::make_folder(config_.record_dir); !made) return made.error();
     const auto free = io::free_bytes(config_.record_dir);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(
-            fmt::format("{}: the disk has {} free, and {} must stay free; free disk space",
-                        config_.record_dir,
-                        megabytes(*free),
-                        megabytes(config_.reserve_bytes)));
+        return output_error(fmt::format(
+            "{}: only {} are free on this disk, but {} must stay free; delete files and try again",
+            config_.record_dir,
+            megabytes(*free),
+            megabytes(config_.reserve_bytes)));
     }
     auto made = new_folder(config_.record_dir, config_.utc_now());
     if (!made) return made.error();
@@ -210,8 +217,9 @@ std::optional<StereoFrame> FrameRecorder::next_frame() {
 Status FrameRecorder::write(const StereoFrame& frame, io::Recorder& recorder) {
     const auto free = io::free_bytes(state_.folder);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(
-            fmt::format("the disk is full: {} must stay free", megabytes(config_.reserve_bytes)));
+        return output_error(fmt::format(
+            "the disk is almost full, and {} must stay free; delete files and record again",
+            megabytes(config_.reserve_bytes)));
     }
     if (auto added = recorder.add(frame); !added) return added;
     if (state_.frames == 0) first_stamp_ns_ = frame.time_ns;
@@ -238,9 +246,9 @@ void FrameRecorder::tell(page::RecordingStage stage, std::string text) {
 std::string FrameRecorder::reason_in_words() {
     const std::lock_guard lock(mutex_);
     switch (end_) {
-        case End::went_back: return "; the source went back in time, so the recording ended";
-        case End::source_ended: return "; the source has ended";
-        case End::service_ended: return "; the service has ended";
+        case End::went_back: return "; the recording ended, because the source went back in time";
+        case End::source_ended: return "; the recording ended with the source";
+        case End::service_ended: return "; the recording ended with the service";
         case End::none:
         case End::wished: break;
     }
@@ -264,8 +272,9 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
                                    state_.folder,
                                    outcome ? reason_in_words() : "; " + outcome.error().message);
     if (state_.left_out > 0)
-        text += fmt::format("; {} frames were left out, because the disk was too slow",
-                            state_.left_out);
+        text +=
+            fmt::format("; {} frames were left out of the recording, because the disk was too slow",
+                        state_.left_out);
     if (state_.frames == 0) {  // we created the folder, and it holds no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);

@@ -29,7 +29,8 @@ Result<std::string> find_program() {
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
     const auto gate = self.parent_path() / "surefoot-gate";
     if (::access(gate.c_str(), X_OK) == 0) return gate.string();
-    return input_error("the program surefoot-gate is missing in the folder of " + self.string());
+    return input_error("the program surefoot-gate is missing; install it in the folder of " +
+                       self.string());
 }
 
 /// Longest time until the gate has written its first line. After it the start has failed.
@@ -122,11 +123,15 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     // key.
     int line[2];
     if (::pipe2(output, O_CLOEXEC) != 0)
-        return input_error("the gate process cannot be started: the system gives no pipe");
+        return input_error(
+            "the gate process cannot be started, because the system refuses a pipe; close other "
+            "programs and start again");
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
         ::close(output[0]);
         ::close(output[1]);
-        return input_error("the gate process cannot be started: the system gives no socket pair");
+        return input_error(
+            "the gate process cannot be started, because the system refuses a socket pair; close "
+            "other programs and start again");
     }
     arguments.insert(arguments.end(), {"--parent-fd", std::to_string(line[1])});
     std::vector<char*> words{program_.data()};
@@ -150,7 +155,8 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     }
     process_ = -1;
     hang_up();
-    return input_error("the gate process did not start (see its message above): " + program_);
+    return input_error("the gate process did not start; its own message above gives the reason: " +
+                       program_);
 }
 
 Result<bool> GateChild::watch(std::int64_t now_ns) {

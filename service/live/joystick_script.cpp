@@ -37,12 +37,12 @@ Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                     : words.size() == 3 && add(script, words[0], words[2]) &&
                                           add(script, words[1], "0");
         if (!understood) {
-            return input_error(
-                fmt::format("{}:{}: {}: give a time in s, not before that of the previous line, "
-                            "and a code from 0 to 255; or time_s,end_s,command",
-                            name,
-                            lines.number(),
-                            io::quoted(line)));
+            return input_error(fmt::format(
+                "{}:{}: {} is not a valid line; give a time in s and a code from 0 to 255, or "
+                "time_s,end_s,command. Times must not decrease from line to line",
+                name,
+                lines.number(),
+                io::quoted(line)));
         }
     }
     return script;

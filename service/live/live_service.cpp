@@ -47,7 +47,8 @@ Status be_nice(int niceness) {
     }
     if (refusal == 0) return {};
     return usage_error(
-        fmt::format("service.niceness: the system refuses {}: {}; restart serve with --nice {}",
+        fmt::format("service.niceness: the system refuses the value {}: {}; to use this value, "
+                    "restart serve with --nice {}",
                     niceness,
                     std::strerror(refusal),
                     niceness));
@@ -123,7 +124,7 @@ void LiveService::look_after(GateChild& gate, MapChannel& channel) {
     if (!started || !*started) return;
     log_warning(
         fmt::format("the gate process ended and was restarted ({} restarts so far); no movement is "
-                    "allowed until it is ready",
+                    "allowed until the gate is ready",
                     gate.restarts()));
     tell_where(gate);
 }
@@ -235,7 +236,7 @@ Status LiveService::perceive(std::unique_ptr<camera::FrameSource> source,
         const auto end = perceive_anew(*source, writer);
         if (!end) return end.error();
         if (*end == LiveSession::End::restart_wanted) {
-            log_warning("the gate was re-armed: the map and the odom frame start again");
+            log_warning("the gate was re-armed, so the map and the odom frame start again");
         } else {
             const auto frame = next_jump(*end);
             if (!frame) return {};
@@ -325,9 +326,10 @@ Status LiveService::apply(const ServiceConfig& wanted) {
 Result<std::string> LiveService::change(const page::SettingWish& wish) {
     auto changed = service_settings_->change(wish);
     if (changed) {
-        log_info(fmt::format("{} is now {} (a page asked for it)", wish.key, *changed));
+        log_info(
+            fmt::format("{} is now {}, because a page changed this setting", wish.key, *changed));
     } else {
-        log_warning(fmt::format("{} (a page asked for it)", changed.error().message));
+        log_warning(fmt::format("a page cannot change a setting: {}", changed.error().message));
     }
     return changed;
 }
@@ -338,14 +340,14 @@ Status LiveService::steer(camera::FrameSource& source,
                           std::uint16_t gate_port) {
     if (options_.walk.empty() && !options_.joystick) return {};
     if (!options_.walk.empty() && options_.joystick)
-        return usage_error("give either --walk or --joystick, not both");
+        return usage_error("--walk and --joystick were both given; give one of them, not both");
     if (options_.joystick && options_.no_page)
-        return usage_error("--joystick needs the page; remove --no-page");
+        return usage_error("--joystick needs the page, on which the joystick is; remove --no-page");
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
     if (scene == nullptr || !scene->commanded())
         return usage_error(
-            "--walk and --joystick steer a simulated scene (sim:SCENE) only; no other source can "
-            "be steered");
+            "--walk and --joystick can steer only a simulated scene; give a source sim:SCENE, or "
+            "remove --walk and --joystick");
     std::unique_ptr<Walker> walker;
     if (options_.joystick) {
         walker = page_walker(page_->controls().steering);

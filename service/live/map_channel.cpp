@@ -48,7 +48,8 @@ void MapChannel::look_after(std::int64_t now_ns) {
     next_ns_ = now_ns + kMendEvery_ns;
     const auto mended = writer.mend();
     if (mended && *mended)
-        log_warning(fmt::format("the snapshot channel was damaged and is repaired: {}", **mended));
+        log_warning(fmt::format("the file of the map channel was damaged; serve repaired it: {}",
+                                **mended));
     if (!mended && mended.error().message != told_) log_error(mended.error().message);
     told_ = mended ? "" : mended.error().message;
 }

@@ -171,7 +171,7 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     if (report.motion.health != Health::ok)
         status.reasons.emplace_back(to_string(report.motion.reason));
     if (report.camera != CameraState::ok) status.reasons.emplace_back(to_string(report.camera));
-    status.text = report.known_cells == 0 ? "the map has no ground yet" : source_;
+    status.text = report.known_cells == 0 ? "the map does not contain ground yet" : source_;
     const double span_s = seconds_from_ns(lately_ns_.back() - lately_ns_.front());
     status.rate_hz = span_s > 0.0 ? static_cast<double>(lately_ns_.size() - 1) / span_s : 0.0;
     status.stages.clear();
@@ -238,7 +238,9 @@ void PageTelemetry::tell_the_end(const pipeline::Pipeline& pipeline) {
 
 void PageTelemetry::tell_new_beginning() {
     // The previous features lie in the old odom frame.
-    tell_state(page::SourceState::waiting, "the map and the position start again", {});
+    tell_state(page::SourceState::waiting,
+               "the map and the position start again; wait for the first frame",
+               {});
 }
 
 void PageTelemetry::tell_state(page::SourceState state,

@@ -85,8 +85,8 @@ Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
     const char* const end = at + text.size();
     const auto wrong = [&] {
         return usage_error(
-            fmt::format("--walk {}: give joystick codes such as 9,9,17,25*12 (25*12 repeats code "
-                        "25 twelve times)",
+            fmt::format("--walk {} is not a list of joystick codes; give codes from 0 to 255, for "
+                        "example 9,9,17,25*12 (25*12 repeats code 25 twelve times)",
                         text));
     };
     while (at != end) {

@@ -19,7 +19,7 @@ Result<TonePlayer> TonePlayer::open(const std::string& folder) {
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(file, ignored))
             return usage_error(
-                fmt::format("--tones: the file {} is missing; tools/tones creates it", file));
+                fmt::format("--tones: the file {} is missing; run tools/tones to create it", file));
     }
     return player;
 }

@@ -44,16 +44,18 @@ void FoxgloveClient::say(FoxgloveLevel level, const std::string& sentence) {
 
 Status FoxgloveClient::take(bool is_text, std::string_view bytes, std::int64_t now_ns) {
     if (replies_.size() >= kMostReplies)
-        return input_error("the client sends requests but does not read the replies");
+        return input_error(
+            "the client sends requests but does not read the replies; read each reply");
     if (!is_text) {
-        say(FoxgloveLevel::warning, "binary messages of clients are not supported");
+        say(FoxgloveLevel::warning, "a client cannot send binary messages; send text");
         return {};
     }
     const auto request = parse_foxglove_request(bytes);
     if (!request) {
         say(FoxgloveLevel::error, request.error().message);
         if (unreadable_.take(now_ns)) return {};
-        return input_error("too many unreadable messages: " + request.error().message);
+        return input_error("too many unreadable messages; the last problem: " +
+                           request.error().message);
     }
     std::visit([this](const auto& what) { take(what); }, *request);
     return {};
@@ -68,13 +70,18 @@ FoxgloveClient::Slot* FoxgloveClient::find(std::uint32_t id) {
 
 std::optional<std::string> FoxgloveClient::subscribe(FoxgloveSubscribe::Wish wish) {
     if (wish.channel == 0 || wish.channel > kFoxgloveChannelCount)
-        return fmt::format("subscribe: there is no channel {}", wish.channel);
+        return fmt::format(
+            "subscribe: there is no channel {}; use a channel id of the advertise message",
+            wish.channel);
     if (find(wish.subscription) != nullptr)
-        return fmt::format("subscribe: subscription {} already exists", wish.subscription);
+        return fmt::format("subscribe: subscription {} already exists; use another id",
+                           wish.subscription);
     Slot& slot = subscriptions_[wish.channel - 1];
     if (slot)
         return fmt::format(
-            "subscribe: channel {} already has subscription {}", wish.channel, slot->id);
+            "subscribe: this client already has a subscription to channel {}, with the id {}",
+            wish.channel,
+            slot->id);
     slot = Subscription{wish.subscription, {}, {}};
     return std::nullopt;
 }
@@ -98,12 +105,13 @@ void FoxgloveClient::take(const FoxgloveUnsubscribe& request) {
     }
     if (unknown)
         say(FoxgloveLevel::warning,
-            fmt::format("unsubscribe: there is no subscription {}", *unknown));
+            fmt::format("unsubscribe: this client has no subscription {}", *unknown));
 }
 
 void FoxgloveClient::take(const FoxgloveUnserved& request) {
     say(FoxgloveLevel::warning,
-        fmt::format("{}: only subscribe and unsubscribe are supported", request.operation));
+        fmt::format("{}: this operation is not supported; use subscribe or unsubscribe",
+                    request.operation));
 }
 
 void FoxgloveClient::send_time(FoxgloveShow& show, std::vector<SocketMessage>& out) {
