@@ -22,8 +22,8 @@
 namespace surefoot::app {
 namespace {
 
-/// CLI11's own range checks are not enough: they accept NaN in CLI::Range and infinity in
-/// CLI::PositiveNumber.
+/// Refuses numbers that are not finite. The range checks of CLI11 are not enough: CLI::Range
+/// accepts NaN, and CLI::PositiveNumber accepts infinity.
 CLI::Validator finite_number() {
     return {[](const std::string& text) {
                 double value = 0.0;
@@ -35,7 +35,7 @@ CLI::Validator finite_number() {
             ""};
 }
 
-/// A subcommand with an example under its help.
+/// Adds a subcommand and shows an example below its help text.
 CLI::App* add_subcommand(CLI::App& app, const char* name, const char* what, const char* example) {
     CLI::App* verb = app.add_subcommand(name, what);
     verb->footer(std::string("Example:\n  ") + example);
@@ -81,19 +81,19 @@ int check_settings(const CommonOptions& common, const std::string& verb, Reads r
     return kExitOk;
 }
 
-/// The innermost verb of this call: `eval maps`, not `eval`.
+/// Returns the innermost verb of this call, for example `maps` for `surefoot eval maps`.
 const CLI::App& verb_of_call(const CLI::App& app) {
     const auto verbs = app.get_subcommands();
     return verbs.empty() ? app : verb_of_call(*verbs.front());
 }
 
 /// Describes a wrong call in one sentence. The first unparsed word is a misspelled option if it
-/// starts with '-', otherwise a misspelled verb. For all other errors the text of CLI11 is clear
-/// enough.
+/// starts with '-', otherwise a misspelled verb. For all other errors the function returns the text
+/// of CLI11.
 std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& verb = verb_of_call(app);
     std::vector<std::string> words = app.remaining(true);
-    std::erase(words, "--json");  // --json is not the mistake: `eval --json` lacks a verb
+    std::erase(words, "--json");  // in `eval --json` the mistake is the missing verb, not --json
     if (words.empty()) return error.what();
     const std::string word = words.front().substr(0, words.front().find('='));
     std::vector<std::string> names;
@@ -140,7 +140,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamedO
     {"--thesis", "--lange2016"},
 }};
 
-/// The words of the call with today's option names. Warns about each old name.
+/// Returns the words of the call with the current option names. Warns about each old name.
 std::vector<std::string> words_of_call(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     for (std::string& word : words) {
@@ -327,13 +327,15 @@ int run_command_line(int argc, char** argv) {
     const bool json = wants_json(argc, argv);
     try {
         std::vector<std::string> words = words_of_call(argc, argv);
-        std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+        std::reverse(words.begin(), words.end());  // CLI11 reads the words from the last to the
+                                                   // first
         app.name(argv[0]);
         app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {
-        const bool is_output = std::ferror(stdout) != 0;  // fmt throws if writing to stdout fails
+        const bool is_output = std::ferror(stdout) != 0;  // fmt throws this error if a write to
+                                                          // stdout fails
         log_error(std::string(is_output ? "stdout: " : "internal error: ") + error.what());
         exit_code = kExitFailed;
     }

@@ -8,7 +8,7 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+// This JSON type keeps the order of the keys, so the same run always gives the same bytes.
 using Json = nlohmann::ordered_json;
 
 Json camera_fit_json(const CalibratedCamera& this_camera, calibration::LensKind kind) {
@@ -54,7 +54,7 @@ void add_stereo(const calibration::StereoCalibration& stereo, Json& json) {
     Json depth = Json::array();
     for (const calibration::DepthError& error : stereo.depth_errors)
         depth.push_back({{"distance_m", error.distance_m},
-                         {"sigma_m", error.sigma_m}});  // NaN is written as null
+                         {"sigma_m", error.sigma_m}});  // the JSON library writes NaN as null
     json["depth_errors"] = depth;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 struct AuditOptions {
     CommonOptions common;
-    std::string path;  ///< folder of a log, or one of its files
+    std::string path;  ///< folder of a log, or one file of the log
 };
 
 void say_what_is_missing(const gate_process::AuditSummary& summary) {
@@ -61,8 +61,8 @@ void print_act(const gate_process::Act& act) {
     fmt::print("\n");
 }
 
-/// `surefoot audit acts`: lists the attestations, the re-arming and the refused requests of the
-/// log.
+/// `surefoot audit acts`: lists the attestations, the re-armings, the shown tokens and the refused
+/// requests of the log.
 int audit_acts(const AuditOptions& options) {
     std::vector<gate_process::Act> acts;
     const auto summary = gate_process::read_audit(

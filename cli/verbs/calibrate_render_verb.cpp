@@ -25,7 +25,7 @@ struct BoardImagesOptions {
     int views = 20;
 };
 
-/// ASSUMPTION: a good camera in a well-lit room.
+/// ASSUMPTION: blur and noise of a good camera in a room with good light.
 sim::ImagingConditions room_look() {
     sim::ImagingConditions look;
     look.blur_sigma_px = 0.7;
@@ -38,7 +38,7 @@ Result<camera::StereoRig> rig_of(const std::string& path_or_name) {
     return read_noted_rig(path_or_name);
 }
 
-/// `surefoot calibrate render`: renders images of a board with known truth.
+/// `surefoot calibrate render`: renders images of a board with a known calibration.
 int render_boards(const BoardImagesOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board)

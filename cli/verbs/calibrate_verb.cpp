@@ -32,14 +32,14 @@ struct CalibrateOptions {
 };
 
 constexpr double kMillimetres = 1e3;
-/// If the standard deviation of a viewing direction exceeds this, the user gets an explanation.
+/// Largest standard deviation of a viewing direction that needs no explanation to the user.
 constexpr double kMostWorst_px = 1.0;
 
 std::string found_words(const calibration::BoardView& view, const std::string& problem) {
     return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
 }
 
-/// Detects the board in images taken at the same time and adds the view to `run`.
+/// Detects the board in images that were taken at the same time, and adds the view to `run`.
 void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     FoundView found;
     found.name = images.name;
@@ -64,7 +64,8 @@ void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     run.views.push_back(std::move(found));
 }
 
-/// Why an image does not fit this calibration. The first image sets the size.
+/// Returns the reason why the size of an image does not fit; empty if it fits. The first image sets
+/// `size`.
 std::string size_problem(const BoardImages& images, bool stereo, calibration::ImageSize& size) {
     if (size.width == 0) size = {images.left.width(), images.left.height()};
     const auto differs = [&](const GreyImage& image) {
@@ -81,7 +82,7 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
         size.height);
 }
 
-/// Takes images of a live camera and logs after each of them which views are still missing.
+/// Takes images of a live camera. Logs after each image which views are still missing.
 Result<BoardSource> show_live(const CalibrateOptions& options,
                               const CalibrationRun& run,
                               const std::function<void(BoardImages)>& use) {
@@ -135,7 +136,7 @@ Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
     return {};
 }
 
-/// An error if no image shows the board. The most frequent cause is a wrong --board.
+/// Returns an error if no image shows the board. The most frequent cause is a wrong --board.
 Status check_found(const CalibrationRun& run) {
     const bool found = std::any_of(run.views.begin(), run.views.end(), [](const FoundView& view) {
         return !view.left.ids.empty() || !view.right.ids.empty();
@@ -151,7 +152,8 @@ Status check_found(const CalibrationRun& run) {
                     run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
-/// Advice to use another lens model, if one fits the views of a camera far better; else empty.
+/// Returns advice to use another lens model, if another model fits the views of a camera far
+/// better; otherwise empty.
 std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     for (int camera = 0; camera < run.cameras(); ++camera) {
         std::vector<calibration::BoardView> views;
@@ -163,7 +165,8 @@ std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     return {};
 }
 
-/// The error of a failed calibration, replaced by lens advice if there is any.
+/// Returns the error of a failed calibration, or the advice to use another lens model, if there is
+/// such advice.
 Status with_advice(const Error& error, calibration::LensKind kind, const CalibrationRun& run) {
     if (error.message.find("--model") != std::string::npos) return error;
     const std::string advice = lens_advice(kind, run);
@@ -179,7 +182,9 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono) return mono.error();  // contains the lens advice already
+        if (!mono)
+            return mono.error();  // this error already contains the advice about the lens
+                                  // model
         run.mono = std::move(*mono);
     } else {
         auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
@@ -216,7 +221,8 @@ std::string depth_words(const calibration::DepthError& error) {
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
-/// Explains a large uncertainty in a part of the image; empty if it is small everywhere.
+/// Explains a large uncertainty in a part of the image; empty if the uncertainty is small in the
+/// whole image.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
     return ": this point is in an image corner in which no view shows the board. If you use that "
@@ -268,7 +274,7 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     fmt::print("\nreport: {}\n", io::join_path(folder, "report.html"));
 }
 
-/// `surefoot calibrate mono` and `surefoot calibrate stereo`.
+/// Runs `surefoot calibrate mono` and `surefoot calibrate stereo`.
 int calibrate(const CalibrateOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board) {
@@ -282,7 +288,7 @@ int calibrate(const CalibrateOptions& options) {
     }
     if (const Status status = calibration::check_detectable(*board); !status)
         return report(status.error());
-    // "pinhole" is the model with the fewest coefficients.
+    // The name "pinhole" means the pinhole model with the fewest coefficients.
     const std::string model = options.model == "pinhole" ? "pinhole4" : options.model;
     const auto* const kind = std::find(
         std::begin(calibration::kLensKindNames), std::end(calibration::kLensKindNames), model);
@@ -302,7 +308,7 @@ int calibrate(const CalibrateOptions& options) {
     if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);
     if (const Status status = solve(chosen, run); !status) return report(status.error());
-    // Print the result even if it cannot be written.
+    // Print the result on stdout even if the files cannot be written.
     const Status written = write_results(options, run);
     if (options.common.json) {
         print_answer(calibration_json(run));

@@ -21,7 +21,8 @@ struct DemOptions {
     std::string cloud;
     double resolution_m = 0.0;
     std::string reduce = "max";
-    std::optional<double> lowest_z_m;  ///< lower points are left out; only with reduce = "surface"
+    std::optional<double> lowest_z_m;  ///< points below this z are left out; only for reduce =
+                                       ///< "surface"
     std::optional<double> highest_z_m;
     std::string lattice = "cell";
     std::string out_file;
@@ -32,7 +33,7 @@ eval::Reduce reduce_named(const std::string& name) {
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
 }
 
-/// Height of each cell by --reduce max, mean or min.
+/// Computes the height of each cell as the largest, mean or smallest z of its points.
 Result<grid::Layer> heights_of(const DemOptions& options,
                                io::CloudStream& cloud,
                                const eval::DemGrid& grid) {

@@ -51,7 +51,8 @@ void print_table(const std::vector<std::string>& header, const Rows& rows) {
     for (const auto& row : rows) print(row);
 }
 
-/// Writes the report page with its table and plots, and also each of them as a separate file.
+/// Writes the report page with its table and plots. Also writes the table and each plot to separate
+/// files.
 Status write_page(const std::string& folder,
                   const std::string& name,
                   eval::ReportContent content,
@@ -115,7 +116,7 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
     return table;
 }
 
-/// Plot of our figures beside those that the reference thesis measured with its cameras.
+/// Plots our figures beside the figures of the cameras in the reference thesis (Lange 2016).
 eval::LinePlot accuracy_plot(const std::string& rig,
                              const std::vector<DistanceAccuracy>& rows,
                              const char* title,
@@ -305,8 +306,8 @@ int show_design(const DepthAccuracyOptions& options, const Settings& settings) {
     return kExitOk;
 }
 
-/// `surefoot depth-accuracy`: depth error by distance on a flat textured board or, with --design,
-/// the smallest step height that a rig resolves.
+/// `surefoot depth-accuracy`: measures the depth error by distance on a flat textured board. With
+/// --design, computes the smallest step height that a rig resolves.
 int depth_accuracy(const DepthAccuracyOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());

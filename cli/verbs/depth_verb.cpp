@@ -23,7 +23,7 @@ struct DepthOptions {
     CommonOptions common;
     std::string left;
     std::string right;
-    std::string rig;  ///< file or built-in name; empty = the pair is already rectified
+    std::string rig;  ///< calibration file or built-in name; empty = the pair is already rectified
     std::string out_dir;
 };
 
@@ -32,8 +32,8 @@ Status write_picture(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// Points with trusted depth in the left optical frame, with their grey value and the standard
-/// deviation of their depth.
+/// Returns the points with trusted depth in the left optical frame. Each point has a grey value and
+/// the standard deviation of its depth.
 io::PointCloud cloud_of(const MeasuredPair& measured, const camera::RectifiedRig& rig) {
     Image<Eigen::Vector3f> points_m;
     camera::Reprojector(rig).points(measured.depth.disparity_px.view(), points_m);
@@ -78,7 +78,7 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
     if (measured.rig) {
         writes += io::write_ply(at("cloud.ply"), cloud_of(measured, *measured.rig));
     } else {
-        // Remove the cloud of an earlier call; it would belong to other images.
+        // Remove the cloud of an earlier call, because it belongs to other images.
         writes += io::remove_file(at("cloud.ply"));
     }
     return writes.first();
@@ -92,7 +92,7 @@ void print_depth(const MeasuredPair& measured, const std::string& folder) {
         measured.depth.disparity_px.height(),
         figures.density_percent,
         figures.trusted_percent);
-    // Without matched pixels there is no median.
+    // The median does not exist if no pixel has a match.
     if (!std::isnan(figures.median_sigma_px))
         fmt::print("; median standard deviation of the disparity {:.3f} px",
                    figures.median_sigma_px);

@@ -27,7 +27,7 @@ struct DoctorOptions {
     std::string machine;
 };
 
-/// Part of the level floor that the middle column of the rectified camera sees.
+/// Returns the part of the level floor that the middle column of the rectified camera sees.
 FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     const auto floor_x_m = [&](double row_px) {
         const Eigen::Vector3d ray_camera(0.0, (row_px - rig.cy_px) / rig.fy_px, 1.0);
@@ -39,9 +39,9 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     return {floor_x_m(rig.height - 1.0), floor_x_m(0.0)};
 }
 
-/// Smallest standard deviation that the matcher reports, reached on well textured ground. The depth
-/// sigmas below and those of `depth-accuracy --design` assume it. The standard deviation of a
-/// typical pixel of a scene is 50 % larger.
+/// Smallest standard deviation that the matcher reports; it occurs on well textured ground.
+/// `doctor` and `depth-accuracy --design` compute the standard deviations of depth from this value.
+/// The standard deviation of a typical pixel of a scene is 50 % larger.
 constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,
@@ -109,8 +109,8 @@ void print(const std::vector<CameraNode>& cameras) {
     }
 }
 
-/// `surefoot doctor`: lists missing parts of the installation, or the blind zone of a rig on a
-/// machine.
+/// `surefoot doctor`: checks the installation, and prints the cameras and the blind zone of a rig
+/// on a machine.
 int doctor(const DoctorOptions& options) {
     const auto machine = load_machine(options.machine.empty() ? "rex" : options.machine);
     if (!machine) return report(machine.error());

@@ -22,11 +22,11 @@ struct EvalCloudsOptions {
     std::string compared;
     std::string method = "c2c";
     std::string cores;        ///< core points of M3C2; empty = all reference points
-    std::string values_file;  ///< one line per compared or core point; empty = not written
-    std::string out_dir;      ///< pictures and a coloured cloud; empty = not written
+    std::string values_file;  ///< file of all distances; empty = not written
+    std::string out_dir;      ///< folder for pictures and a coloured cloud; empty = not written
 };
 
-/// Distances at points, from which the values file is written.
+/// Distances at points. They are the source of the values file.
 struct Compared {
     CloudComparison comparison;
     std::vector<Eigen::Vector3f> points_m;
@@ -80,7 +80,8 @@ Result<Compared> compare_m3c2(const EvalCloudsOptions& options,
     return result;
 }
 
-/// A line of the values file: distance, or distance,lod,std1,std2,n1,n2,significant.
+/// Returns one line of the values file: `distance` for C2C, or
+/// `distance,lod,std1,std2,n1,n2,significant` for M3C2.
 std::string line_of(const Compared& result, std::size_t i) {
     if (result.m3c2.empty()) return fmt::format("{:.9g}\n", result.distances_m[i]);
     const eval::M3c2Value& v = result.m3c2[i];
@@ -120,7 +121,7 @@ std::string sentence_of(const CloudComparison& c) {
         f.count);
 }
 
-/// `surefoot eval clouds`: distances between two clouds by C2C or M3C2.
+/// `surefoot eval clouds`: computes the distances between two clouds by C2C or M3C2.
 int eval_clouds(const EvalCloudsOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());

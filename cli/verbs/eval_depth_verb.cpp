@@ -19,21 +19,23 @@ struct EvalDepthOptions {
     CommonOptions common;
     std::string estimate;
     std::string truth;
-    double scale = 0.0;  ///< value of 1 px disparity in the truth image; 0 = by the file type
-    std::string mask;    ///< image; pixels above 200 count; empty = all pixels
-    std::string sigma;   ///< standard deviation of the estimate [px], PFM; optional
+    double scale = 0.0;  ///< value that means 1 px of disparity in the truth image; 0 = by the file
+                         ///< type
+    std::string mask;    ///< mask image: pixels above 200 are compared; empty = all pixels
+    std::string sigma;   ///< PFM of the standard deviation of the estimate [px]; empty = none
 };
 
-/// Codes per pixel of disparity without --scale. KITTI's 16-bit images hold 1/256 px; 8-bit images
-/// hold whole pixels.
+/// Code that means 1 px of disparity, if --scale is not given. The unit of 16-bit images is 1/256
+/// px, as in KITTI; the unit of 8-bit images is 1 px.
 constexpr double kScale16 = 256.0;
 constexpr double kScale8 = 1.0;
-/// Smallest mask value that counts as valid. Middlebury's masks hold 255 = visible in both cameras,
-/// 128 = occluded in one, 0 = no ground truth; masks with two values hold 0 and 255.
+/// Smallest mask value of a pixel that is compared. Masks of Middlebury contain 255 = visible in
+/// both cameras, 128 = occluded in one camera, 0 = no ground truth. Other masks contain only 0 and
+/// 255.
 constexpr int kLeastMask = 201;
 
-/// Disparity [px] of an image of codes. Code 0 means "no ground truth" in every data set that
-/// stores disparities as images.
+/// Converts an image of codes to disparities [px]. Code 0 means "no ground truth" in every data set
+/// that stores disparities as images.
 template <typename Code>
 Image<float> disparity_of(const Image<Code>& codes, double scale) {
     Image<float> disparity_px(codes.width(), codes.height());
@@ -45,7 +47,7 @@ Image<float> disparity_of(const Image<Code>& codes, double scale) {
     return disparity_px;
 }
 
-/// Ground-truth disparity, and the divisor that was applied to its codes.
+/// Ground-truth disparity, and the divisor by which its codes were divided.
 struct Truth {
     Image<float> disparity_px;
     double scale = 1.0;
@@ -112,14 +114,14 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.sparsification.auc);
 }
 
-/// The --scale with which truth and estimate would agree, if they differ by a usual factor.
+/// Returns the --scale with which truth and estimate would agree, if they differ by a usual factor.
 std::optional<double> suspected_scale(const eval::DepthErrors& errors, double used) {
     const auto factor = eval::suspected_factor(errors.truth_over_estimate);
     return factor ? std::optional<double>(used * *factor) : std::nullopt;
 }
 
-/// Warns that the scale of the truth is probably wrong. The scale itself is not changed, because
-/// only the user can know it.
+/// Warns that the scale of the truth is probably wrong. The scale stays unchanged, because only the
+/// user can know the correct scale.
 void warn_of_scale(const EvalDepthOptions& options,
                    const Truth& truth,
                    double ratio,

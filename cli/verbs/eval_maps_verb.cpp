@@ -22,10 +22,10 @@ struct EvalMapsOptions {
     CommonOptions common;
     std::string live_dir;
     std::string truth_dir;
-    std::string out_dir;  ///< folder for pictures; optional
+    std::string out_dir;  ///< folder for pictures; empty = no pictures
 };
 
-/// Loads the settings of the live run, so that the true map is processed identically.
+/// Loads the settings of the run, so that the true map is rated with the same settings.
 Result<Settings> settings_of(const EvalMapsOptions& options) {
     CommonOptions common = options.common;
     const std::string used = options.live_dir + "/config.yaml";
@@ -33,7 +33,7 @@ Result<Settings> settings_of(const EvalMapsOptions& options) {
     return load_settings(common);
 }
 
-/// Traversability of the true heights under the settings of the live map.
+/// Rates the traversability of the true heights with the settings of the run.
 grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double resolution_m) {
     Serial serial;
     traversability::TraversabilityLayers layers;

@@ -12,12 +12,12 @@ namespace {
 
 struct EvalStairsOptions {
     CommonOptions common;
-    std::string found;  ///< stairs.json, or the folder of a run
+    std::string found;  ///< path of stairs.json, or of the folder that contains it
     std::string truth;
     eval::FeatureMatch match;
 };
 
-/// Reads stair features from a stairs.json, given by its path or by the folder of its run.
+/// Reads terrain features from a stairs.json. `path` is the file or the folder that contains it.
 Result<ListedFeatures> read_features(const std::string& path) {
     const std::string inside = path + "/stairs.json";
     const std::string& file = io::is_file(inside) ? inside : path;

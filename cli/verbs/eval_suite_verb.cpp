@@ -25,8 +25,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest distance at which the quick suite queries the gate. Half of its run time goes into these
-/// queries.
+/// Largest distance from the last pose at which the quick suite queries the gate. These queries
+/// take half of the run time of the quick suite.
 constexpr double kQuickReach_m = 0.6;
 
 sim::CameraProfile profile_of(const std::string& name) {
@@ -50,15 +50,16 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
     return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
 }
 
-/// Hash of all conditions, apart from the case itself, that the figures of a case depend on.
+/// Returns the hash of all conditions that determine the figures of a case, without the case
+/// itself.
 std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
     return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
                  hash_of(conditions.settings));
 }
 
 /// Runs the cases that the table lacks, one case per thread of the executor. A case that fails is
-/// logged and left out, and the others go on. After a failed write or an interrupt by the user no
-/// further case starts.
+/// logged and left out, and the other cases continue. After a failed write or an interrupt by the
+/// user no further case starts.
 class SuiteRun {
   public:
     SuiteRun(const SuiteConditions& conditions, SuiteTable& table)
@@ -156,8 +157,8 @@ void print_summary(std::span<const SuiteRow> rows) {
     fmt::print("(each figure is that of the worst case of its row)\n");
 }
 
-/// `surefoot eval suite`: runs scenes x motion models x seeds x noise levels through the pipeline
-/// and compares the results with the truth.
+/// `surefoot eval suite`: runs the pipeline on each combination of scene, motion model, seed and
+/// noise level, and compares the results with the truth.
 int eval_suite(const EvalSuiteOptions& options) {
     if (options.thesis) return eval_thesis(options);
     const auto conditions = conditions_of(options);

@@ -20,8 +20,8 @@ struct EvalTrajectoryOptions {
     std::string truth;
     std::string align = "se3";
     double rate_hz = 0.0;
-    std::string times_file;  ///< time stamps of KITTI poses; optional
-    /// Path lengths for relative errors; empty = 0.1, 0.5, 1, 2, 5 m.
+    std::string times_file;  ///< file of the time stamps of KITTI poses; empty = no file
+    /// Path lengths over which relative errors are computed; empty = 0.1, 0.5, 1, 2 and 5 m.
     std::vector<double> lengths_m;
     std::string plot_file;
 };
@@ -32,7 +32,7 @@ struct TrajectoryPair {
     io::TrajectoryFile truth;
 };
 
-/// Gives the stamps of the --times file to each trajectory that has none.
+/// Gives the stamps of the --times file to each trajectory that has no stamps.
 Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
     if (pair.estimate.has_stamps() && pair.truth.has_stamps()) {
         return usage_error(fmt::format(
@@ -63,9 +63,9 @@ Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair)
     return io::give_stamps(times_ns, fmt::format("--rate {:g}", options.rate_hz), pair.truth);
 }
 
-/// If one trajectory has stamps and the other has none but as many poses, pose i gets the stamp of
-/// the other's pose i. A truth of another length keeps 10 Hz from 0, the rate of KITTI's
-/// recordings.
+/// Handles the case that only one trajectory has stamps. If both have the same number of poses,
+/// pose i without a stamp gets the stamp of pose i of the other trajectory. A truth with another
+/// number of poses keeps stamps at 10 Hz from 0 s, the frame rate of KITTI.
 Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     const bool of_estimate = !pair.estimate.has_stamps();
     if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or both lack them
@@ -109,8 +109,8 @@ eval::Alignment alignment_named(const std::string& name) {
     return name == "yaw" ? eval::Alignment::yaw : eval::Alignment::se3;
 }
 
-/// Plots both trajectories from above, and the error over time below. The plot uses the estimate's
-/// frame, whose z axis points up (odom). The truth's frame may be that of a camera (KITTI) or of a
+/// Plots both trajectories from above, and the error over time below. The plot uses the frame of
+/// the estimate (odom), in which z points up. The frame of the truth may be a camera (KITTI) or a
 /// tracking target.
 Status write_plot(const EvalTrajectoryOptions& options,
                   const Trajectory& estimate,
@@ -164,7 +164,8 @@ void print_errors(const EvalTrajectoryOptions& options,
     fmt::print("drift {:.2f} %\n", errors.drift_percent);
 }
 
-/// `surefoot eval trajectory`: absolute error, relative error and drift of a trajectory.
+/// `surefoot eval trajectory`: computes the absolute error, the relative error and the drift of a
+/// trajectory.
 int eval_trajectory(const EvalTrajectoryOptions& options) {
     const auto pair = read_pair(options);
     if (!pair) return report(pair.error());

@@ -24,7 +24,7 @@ struct FuseOptions {
     std::string out_dir;
 };
 
-/// Settings of this verb: the group "ancestor" configures the map update of the reference
+/// Settings of this verb. The group "ancestor" configures the map update of the reference
 /// implementation (ETH elevation_mapping).
 struct FuseSettings {
     elevation::AncestorConfig ancestor;
@@ -76,8 +76,8 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     return points;
 }
 
-/// Parses the line of a step, "K time T move_to X Y ...". Its points are in the file cloudK.f32 of
-/// `folder`.
+/// Parses the line of a step, "K time T move_to X Y ...". The points of step K are in the file
+/// cloudK.f32 of `folder`.
 Result<elevation::FuseStep> parse_step(std::string_view line,
                                        const std::string& where,
                                        const std::string& folder) {
@@ -130,7 +130,8 @@ Result<std::vector<elevation::FuseStep>> read_steps(const std::string& path) {
     return steps;
 }
 
-/// `surefoot fuse`: runs only the elevation update, on given clouds.
+/// `surefoot fuse`: runs only the elevation map update of the reference implementation, on given
+/// clouds.
 int fuse(const FuseOptions& options) {
     const auto config = load(options.common);
     if (!config) return report(config.error());

@@ -23,11 +23,11 @@ constexpr const char* kUsualMachine = "rex";
 struct GateOptions {
     CommonOptions common;
     std::string map_dir;
-    std::string pose;     ///< base_link in odom: "x,y,yaw" [m, rad]
+    std::string pose;     ///< pose of base_link in odom: "x,y,yaw" [m, m, rad]
     std::string command;  ///< a joystick code
-    std::string machine;  ///< empty = rex, and the answer says so
+    std::string machine;  ///< empty = rex, listed in the answer as an assumption
     std::string explain_file;
-    /// Attested area around base_link; < 0 = as far as the standing feet reach.
+    /// Radius of the attested area around base_link; negative = as far as the standing feet reach.
     double attestation_radius_m = -1.0;
     std::string audit_dir;  ///< audit log to which the verdict is added; empty = no log
 };
@@ -41,7 +41,7 @@ int exit_code_of(gate::Decision decision) {
     return kExitGateError;
 }
 
-/// Answers a query without a usable map: the verdict is ERROR, with the reason in words.
+/// Answers a query without a usable map: the verdict is ERROR, and its text is the reason.
 int refuse(const GateOptions& options, std::uint8_t command, const Error& error) {
     log_error(error.message);
     gate::Verdict verdict;
@@ -68,7 +68,7 @@ Status write_audit(const std::string& folder,
     return output_error("the verdict was not written to the audit log: " + done.last_error);
 }
 
-/// The configured movements of a machine as text, for example "9 N, 25 left".
+/// Returns the configured movements of a machine as text, for example "9 N, 25 left".
 std::string movements_of(const Machine& machine) {
     std::string text;
     for (std::size_t code = 0; code < machine.movements.size(); ++code) {
@@ -137,7 +137,9 @@ int gate(const GateOptions& options) {
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status) log_error(status.error().message);  // nor does a failed log
+        if (!status)
+            log_error(status.error().message);  // a failed audit log does not change the
+                                                // verdict
     }
     return exit_code_of(verdict.decision);
 }

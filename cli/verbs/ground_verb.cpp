@@ -21,11 +21,11 @@ struct GroundOptions {
     CommonOptions common;
     std::string cloud;
     std::string origin = "0,0,0";  ///< position of the sensor, in the axes of the cloud [m]
-    std::string frame;  ///< axes of the cloud: optical | body; empty = detected from the cloud
+    std::string frame;             ///< axes of the cloud, optical or body; empty = detected
 };
 
-/// Searches the ground plane for a camera of unknown pitch (config.search_down_deg gives the
-/// range). Points and result are in the camera's optical axes.
+/// Searches the ground plane for a camera of unknown pitch. config.search_down_deg limits the
+/// pitch. Points and result are in the camera's optical axes.
 ground::GroundSighting searched(const ground::GroundConfig& config,
                                 const std::vector<Eigen::Vector3d>& points_optical_m,
                                 const Eigen::Vector3d& sensor_optical_m,
@@ -42,7 +42,8 @@ ground::GroundSighting searched(const ground::GroundConfig& config,
     return sighting;
 }
 
-/// Error message: why no ground was found, with the limits that the user can change.
+/// Returns the error message: the reason why no ground was found, and the limits that the user can
+/// change.
 std::string failure(const GroundOptions& options,
                     const ground::GroundConfig& config,
                     const ground::GroundSighting& sighting,
@@ -80,11 +81,12 @@ int ground(const GroundOptions& options) {
     if (!origin) return report(origin.error());
     auto cloud = io::read_cloud(options.cloud);
     if (!cloud) return report(cloud.error());
-    // Organised clouds come from a camera and have optical axes (y down). Others have z up.
+    // Organised clouds come from a camera and have optical axes (y down). Other clouds have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
     const Eigen::Vector3d sensor((*origin)[0], (*origin)[1], (*origin)[2]);
     const ground::GroundConfig& config = settings->pipeline.ground;
-    // With optical axes the mounting of the camera is unknown, so its tilt is searched.
+    // If the cloud has optical axes, the mounting of the camera is unknown, so the tilt is
+    // searched.
     const auto sighting =
         optical
             ? searched(config, cloud->points_m, sensor, options.common.seed)

@@ -22,12 +22,12 @@ struct IcpOptions {
     std::string reference;
     std::string moved;
     std::string guess;        ///< file with a 4x4 matrix, or "x,y,z,yaw" [m, deg]; empty = identity
-    double kept_share = 1.0;  ///< share of the pairs that count, nearest first
-    double reach_m = 0.0;     ///< pairs farther apart do not count; 0 = all count
-    int most_points = 100000;     ///< points of the moved cloud that are used
-    bool surfaces_alone = false;  ///< keep the guess along directions that no surface constrains
-    std::string out_file;         ///< the aligned cloud; empty = not written
-    std::string transform_file;   ///< 4x4 matrix as text; empty = not written
+    double kept_share = 1.0;  ///< share of the pairs that the alignment uses, nearest first
+    double reach_m = 0.0;     ///< largest distance of the points of a pair; 0 = no limit
+    int most_points = 100000;     ///< number of points of the moved cloud that are used
+    bool surfaces_alone = false;  ///< keep the guess where no surface determines a direction
+    std::string out_file;         ///< file for the aligned cloud; empty = not written
+    std::string transform_file;   ///< file for the 4x4 matrix; empty = not written
 };
 
 std::vector<double> numbers_of(const std::string& text) {
@@ -40,7 +40,7 @@ std::vector<double> numbers_of(const std::string& text) {
     return numbers;
 }
 
-/// Initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (metres, degrees).
+/// Reads the initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (m, deg).
 Result<Pose> parse_guess(const std::string& guess) {
     if (guess.empty()) return Pose{};
     if (!io::is_file(guess)) {
@@ -75,7 +75,8 @@ Result<Pose> parse_guess(const std::string& guess) {
     return Pose::from_matrix(T);
 }
 
-/// Expresses the motion T in coordinates whose origin is `shift_m`; with -shift_m it converts back.
+/// Expresses the motion T in coordinates whose origin is `shift_m`. A call with -shift_m converts
+/// back.
 Pose shifted(const Pose& T, const Eigen::Vector3d& shift_m) {
     return {T.rotation, T.translation_m + T.rotation * shift_m - shift_m};
 }
@@ -101,7 +102,7 @@ std::string matrix_text(const Pose& T) {
     return text;
 }
 
-/// Warns why the alignment did not converge, and what to do.
+/// Warns if the alignment did not converge. States the reason and the next action.
 void tell_outcome(const geometry::CloudAlignment& found) {
     using geometry::AlignmentOutcome;
     switch (found.outcome) {
@@ -131,7 +132,7 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     }
 }
 
-/// Warns of directions that the surfaces do not determine.
+/// Logs the directions that the surfaces do not determine.
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {

@@ -26,10 +26,10 @@ struct MapExportOptions {
     std::string out_dir;
 };
 
-/// A layer as floats, the type of grids and clouds in other programs.
+/// A layer as floats, because other programs read grids and clouds of floats.
 struct FloatLayer {
-    std::string name;    ///< name in the file name
-    std::string scalar;  ///< name in the cloud, with unit
+    std::string name;    ///< name in the name of the .asc file
+    std::string scalar;  ///< name in the point cloud, with its unit
     grid::Layer values;
 };
 
@@ -41,8 +41,8 @@ grid::Layer of_known_cells(const grid::MapRegion& region, const F& value_of) {
     return out;
 }
 
-/// Seconds from the last observation to the stamp of the map. A float cannot hold a time in
-/// nanoseconds.
+/// Returns the seconds from the last observation of each cell to the stamp of the map. A float
+/// cannot represent a time stamp in nanoseconds.
 FloatLayer age_of(const grid::MapRegion& region) {
     return {"age", "age_s", of_known_cells(region, [&](std::size_t i) {
                 const std::int64_t seen_ns = region.seen_ns.data()[i];
@@ -68,7 +68,7 @@ std::vector<FloatLayer> float_layers(const grid::MapRegion& region) {
     return layers;
 }
 
-/// One point per known cell. The elevation is z; every other layer is a scalar.
+/// Returns one point for each known cell. z is the elevation; every other layer is a scalar.
 io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLayer>& layers) {
     const grid::GridGeometry geometry = region.geometry();
     io::PointCloud cloud;
@@ -90,7 +90,7 @@ io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLa
     return cloud;
 }
 
-/// Attempts to write every file and records the names of the written files.
+/// Attempts to write every file, and collects the names of the written files.
 struct Export {
     std::string folder;
     Writes writes;

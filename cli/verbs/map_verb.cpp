@@ -28,7 +28,7 @@ struct MapMergeOptions {
     std::string second;
     std::string out_file;
     std::string motion_sigma = "0,0,0";  ///< one sigma of the motion between the poses of the maps:
-                                         ///< horizontal m, vertical m, angle deg
+                                         ///< horizontal [m], vertical [m], angle [deg]
     bool independent = false;            ///< the maps come from two runs with the same odom frame
 };
 
@@ -44,7 +44,7 @@ void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     }
 }
 
-/// Reads a horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
+/// Reads a horizontal [m], a vertical [m] and an angular [deg] sigma and returns their covariance.
 Result<Matrix6> motion_covariance(const std::string& text) {
     const auto sigma = parse_three_numbers(
         "--motion-sigma", text, "(horizontal in m, vertical in m, angle in deg)");
@@ -60,8 +60,8 @@ Result<Matrix6> motion_covariance(const std::string& text) {
     return Matrix6(sigmas.cwiseAbs2().asDiagonal());
 }
 
-/// Increases the variances of the older map by the uncertainty of the motion to the pose of the
-/// younger map.
+/// Increases the variances of the older map by the uncertainty of the motion from its pose to the
+/// pose of the younger map.
 Status pay_for_the_way(const Matrix6& covariance,
                        const MapMergeOptions& options,
                        grid::MapRegion& first,

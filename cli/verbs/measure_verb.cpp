@@ -20,14 +20,14 @@ namespace {
 struct MeasureOptions {
     CommonOptions common;
     std::string cloud;
-    std::string door;  ///< "x,y,yaw" of a doorway [m, deg]; empty = no door
+    std::string door;  ///< "x,y,yaw" of a doorway [m, m, deg]; empty = no door
     std::string box;   ///< "x0,y0,x1,y1" [m]; empty = the whole cloud
     double bin_m = 0.005;
-    std::string histogram_file;  ///< SVG picture; empty = not written
+    std::string histogram_file;  ///< file for an SVG picture; empty = not written
 };
 
-/// Reads the position of the door, relative to the shift of the cloud. The lowest level is the
-/// floor.
+/// Reads the position of the door and subtracts the shift of the cloud. The lowest level surface is
+/// the floor.
 Result<eval::DoorPlace> parse_door(const std::string& text,
                                    const eval::HeightHistogram& heights,
                                    const Eigen::Vector3d& shift_m) {

@@ -41,7 +41,7 @@ eval::LayerStyle style_of(const std::string& name, double safe_threshold) {
     return style;
 }
 
-/// The heights and all layers computed from them, side by side.
+/// Writes a picture that shows the heights and all computed layers side by side.
 Status write_sheet(const RateOptions& options,
                    const Settings& settings,
                    const io::Dem& dem,

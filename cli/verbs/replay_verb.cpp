@@ -29,7 +29,7 @@ struct ReplayOptions : SourceOptions {
     double speed = 1.0;
 };
 
-/// Schedules frames on the steady clock.
+/// Delays each frame until its time on the steady clock.
 class Schedule {
   public:
     Schedule(std::int64_t first_frame_ns, double speed)
@@ -88,7 +88,7 @@ Status play(const ReplayOptions& options,
         pipeline::align_when_ready(pipeline, next, source.info().T_odom_first_body);
     for (const StereoFrame& frame : start.frames) process(frame, Work::full);
     if (start.frames.empty()) return ended;
-    // The clock starts when odom is placed.
+    // Playback time starts when the frame odom is defined.
     const Schedule schedule(start.frames.back().time_ns, options.speed);
     while (const auto frame = next()) {
         // A late frame gets odometry only, as in a live run.

@@ -28,7 +28,7 @@ struct RexLinkOptions {
     std::string script_file;
     bool keys = false;
     std::string tones_dir;  ///< folder of the tones; empty = no sound
-    double step_s = 10.0;   ///< how long a movement takes
+    double step_s = 10.0;   ///< duration of a movement
 };
 
 using rex_link::LinkEvent;
@@ -36,7 +36,7 @@ using rex_link::LinkEventKind;
 
 constexpr int kNameWidth = 13;  // longest name of an event kind, plus a space
 
-/// Text of an event without its name, for the terminal.
+/// Returns the text of an event for the terminal, without the name of the event.
 std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     switch (event.kind) {
         case LinkEventKind::connected: return "";
@@ -59,8 +59,8 @@ std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     return "";
 }
 
-/// Joystick from the script or the keyboard. It returns an empty optional when the script has ended
-/// or the user pressed Ctrl-C.
+/// Returns a joystick that reads the script or the keyboard. The joystick returns an empty optional
+/// when the script has ended or the user pressed Ctrl-C.
 Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
     if (options.keys) {
         return rex_link::Joystick([keyboard = std::make_shared<KeyboardJoystick>()](std::int64_t) {
@@ -89,8 +89,8 @@ bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     return has(LinkEventKind::inhibited) && !has(LinkEventKind::connected);
 }
 
-/// `surefoot rex-link`: plays the REX side of the link to the gate. The namespace rex_link takes
-/// the plain name.
+/// `surefoot rex-link`: plays the REX side of the link to the gate. The namespace already has the
+/// name rex_link.
 int rex_link_verb(const RexLinkOptions& options) {
     if (options.keys == !options.script_file.empty())
         return report(usage_error("rex-link: give --script FILE or --keys, and only one of them"));

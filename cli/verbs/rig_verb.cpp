@@ -19,11 +19,11 @@ struct RigOptions {
     CommonOptions common;
     std::string file;
     std::string format = "surefoot";  ///< format of the written file
-    std::string resolution;           ///< "WxH"; empty = the resolution in the file
-    std::string out;                  ///< empty = print only, write no file
+    std::string resolution;           ///< image size "WxH" [px]; empty = the size in the file
+    std::string out;                  ///< file to write; empty = print only
 };
 
-/// Reads a size such as "672x376"; empty for an empty text.
+/// Reads an image size such as "672x376". Returns an empty optional for an empty text.
 Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
     if (text.empty()) return std::optional<io::ImageSize>{};
     const auto sides = io::split(text, "xX");
@@ -40,7 +40,7 @@ Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
                     text));
 }
 
-/// Reads the rig of a file, at the requested image size.
+/// Reads the rig of a file and scales it to the requested image size.
 Result<io::RigFile> load(const RigOptions& options) {
     const auto size = parse_size(options.resolution);
     if (!size) return size.error();

@@ -43,7 +43,7 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    // Remove results of an earlier run, so that nobody, above all the gate, takes them for results
+    // Remove the results of an earlier run. Otherwise the gate or a user could use them as results
     // of this run.
     std::vector<std::string> names{
         "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
@@ -76,8 +76,8 @@ int run(const RunOptions& options) {
         if (written)
             fmt::print("the results are in {0}/; open {0}/report.html first\n", options.out_dir);
     }
-    // The run and the writing may both have failed. Each error is reported once; the error of the
-    // run decides the exit code.
+    // The run and the writing may both have failed. Each error is reported once, and the error of
+    // the run determines the exit code.
     if (!written) {
         log_error(
             fmt::format("{}; {} contains only a part of the results: free disk space and run again",

@@ -29,7 +29,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Prints names and descriptions of the scenes; with a folder also writes a picture of each scene.
+/// Prints the names and descriptions of the scenes. If options.out_dir is set, also writes a
+/// picture of each scene.
 int list(const SimOptions& options) {
     const auto scenes = sim::list_scenes();
     if (options.common.json) {
@@ -43,7 +44,7 @@ int list(const SimOptions& options) {
     return status ? kExitOk : report(status.error());
 }
 
-/// Grid that covers the whole path and the area visible from it.
+/// Returns a grid that covers the whole path and 6 m around it.
 sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d high = -low;
@@ -63,8 +64,8 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     return lattice;
 }
 
-/// Writes groundtruth.tum, elevation.asc (highest surface) and labels.asc. For RGB-D also writes
-/// groundtruth.txt, where users of the TUM layout expect the poses of the camera.
+/// Writes groundtruth.tum, elevation.asc (highest surface) and labels.asc. For an RGB-D recording
+/// also writes groundtruth.txt: in the TUM layout this file contains the poses of the camera.
 Status write_truth(const std::string& out,
                    const sim::SceneTruth& truth,
                    std::size_t frames,
@@ -96,8 +97,8 @@ Status write_truth(const std::string& out,
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
 }
 
-/// joystick.csv: the requests of the user of a walking machine, with their times. No lines for
-/// other motion models.
+/// Writes joystick.csv: the movements that the user of a walking machine requests, with their
+/// times. The file has only a header for other motion models.
 Status write_joystick(const std::string& out,
                       const sim::SceneTruth& truth,
                       std::int64_t last_frame_ns) {
@@ -113,8 +114,8 @@ Status write_joystick(const std::string& out,
     return io::write_file(out + "/joystick.csv", joystick);
 }
 
-/// safety.csv: which movements would truly be safe at each stance before a step or, for a trolley,
-/// at its stops. A hand-held camera has no stance, so it has no lines.
+/// Writes safety.csv: which movements are truly safe at each stance before a step. A trolley has
+/// stops instead of stances. The file has no lines for a hand-held camera, which has no stance.
 Status write_safety(const std::string& out,
                     const sim::SceneTruth& truth,
                     std::int64_t last_frame_ns,
@@ -135,7 +136,7 @@ Status write_safety(const std::string& out,
     return io::write_file(out + "/safety.csv", sim::safety_csv(labels));
 }
 
-/// Writes the truth of the recorded frames, also if the recording ended early.
+/// Writes the ground truth of the recorded frames, even if the recording ended early.
 Status write_all_truth(const std::string& out,
                        const sim::SceneTruth& truth,
                        int frames,
@@ -150,7 +151,8 @@ Status write_all_truth(const std::string& out,
     return writes.first();
 }
 
-/// Starts the recording or continues one of the same call; writes config.yaml beside it.
+/// Starts a recording, or continues a recording of the same call. Also writes config.yaml to the
+/// folder.
 Result<io::Recorder> start_simulated(const SimOptions& options,
                                      const Settings& settings,
                                      const sim::SceneSource& source) {

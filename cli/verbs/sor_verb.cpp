@@ -21,13 +21,13 @@ struct SorOptions {
     int neighbours = 7;
     /// self: a point is its own neighbour (CloudCompare, Open3D); others: it is not (PCL).
     std::string counting = "self";
-    double sigmas = 4.0;  ///< kept range above the mean neighbour distance, in standard deviations
+    double sigmas = 4.0;  ///< limit above the mean neighbour distance, in standard deviations
     std::string out_file;
 };
 
-constexpr std::size_t kTaken = 2048;  ///< points per task of a thread
+constexpr std::size_t kTaken = 2048;  ///< number of points in one task of a thread
 
-/// The points of a block whose entry in `keep` is 1, with all their attributes.
+/// Returns the points of a block whose entry in `keep` is 1, with all their attributes.
 io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& keep) {
     io::PointCloud kept;
     for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -77,7 +77,7 @@ Result<Written> write_kept(const SorOptions& options,
     return written;
 }
 
-/// `surefoot sor`: statistical outlier removal.
+/// `surefoot sor`: removes statistical outliers from a point cloud.
 int sor(const SorOptions& options) {
     const int others = options.counting == "others" ? options.neighbours : options.neighbours - 1;
     if (others < 1) {

@@ -23,7 +23,7 @@ namespace {
 struct StairsOptions {
     CommonOptions common;
     TerrainRequest terrain;
-    std::string out_dir;  ///< empty = no files are written
+    std::string out_dir;  ///< folder for the results; empty = no files
 };
 
 /// Terrain features of a map, and the class of each cell.

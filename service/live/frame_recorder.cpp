@@ -67,7 +67,7 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
 /// Why a source cannot be recorded; empty if it can.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
     if (config.record_dir.empty())
-        return "recording is not allowed; to allow it, restart serve with --record-dir DIR";
+        return "to allow recordings, restart serve with --record-dir DIR";
     if (source.modelled_depth)
         return "this source has no images to record, because sim.sensor is analytic; restart serve "
                "with another sim.sensor";
@@ -193,7 +193,7 @@ void FrameRecorder::record() {
         last_taken_ns_.reset();
         taking_ = end_ == End::none;
     }
-    log_info(fmt::format("recording to {} (a page asked for it)", state_.folder));
+    log_info(fmt::format("recording to {}, because a page started a recording", state_.folder));
     tell(page::RecordingStage::recording);
     Status written;
     while (const auto frame = next_frame()) {

@@ -172,7 +172,7 @@ const Json* list_in(const Json& json, const char* key) {
 
 Result<FoxgloveRequest> read_subscribe(const Json& json) {
     const auto wrong = input_error(
-        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]}, 32-bit numbers)");
+        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]} with 32-bit numbers)");
     const Json* const list = list_in(json, "subscriptions");
     if (list == nullptr) return wrong;
     FoxgloveSubscribe request;
@@ -188,7 +188,7 @@ Result<FoxgloveRequest> read_subscribe(const Json& json) {
 
 Result<FoxgloveRequest> read_unsubscribe(const Json& json) {
     const auto wrong =
-        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]}, 32-bit numbers)");
+        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]} with 32-bit numbers)");
     const Json* const list = list_in(json, "subscriptionIds");
     if (list == nullptr) return wrong;
     FoxgloveUnsubscribe request;
@@ -388,7 +388,7 @@ Result<FoxgloveRequest> parse_foxglove_request(std::string_view text) {
     const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
-        return input_error("expected an object with an \"op\"");
+        return input_error("expected a JSON object with the key \"op\"");
     const auto op = json->at("op").get<std::string>();
     if (op == "subscribe") return read_subscribe(*json);
     if (op == "unsubscribe") return read_unsubscribe(*json);

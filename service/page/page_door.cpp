@@ -146,8 +146,8 @@ std::string wrong_host_text(const PageAddress& page) {
     const bool local = gate_process::is_loopback_address(page.bind_address);
     return std::string("This page is not served under the name and port of this request. Open ") +
            "http://" + (local ? "localhost" : "ADDRESS") + ":" + std::to_string(page.port) + "/" +
-           (local ? "" : ", where ADDRESS is the name of this computer or its address in numbers") +
-           ". A tunnel needs the same port number at both ends.\n";
+           (local ? "" : ", where ADDRESS is the name or the IP address of this computer") +
+           ". If you use a tunnel, give both ends the same port number.\n";
 }
 
 }  // namespace surefoot::page

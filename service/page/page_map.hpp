@@ -30,7 +30,7 @@ struct PageCell {
     std::uint8_t state = 0;
     friend bool operator==(const PageCell&, const PageCell&) = default;
 };
-static_assert(sizeof(PageCell) == 4, "cells leave as they lie in memory");
+static_assert(sizeof(PageCell) == 4, "map_message() copies each cell as 4 bytes");
 
 /// The map as the page shows it. The element of cell (ix, iy) is iy * nx + ix, in odom, as in
 /// MapSnapshot.

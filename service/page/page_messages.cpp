@@ -92,9 +92,9 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
 }
 
 Status read_layers(const Json& names, std::span<const std::string> layers, PageWish& wish) {
-    if (!names.is_array()) return input_error("layers: expected a list of names");
+    if (!names.is_array()) return input_error("layers: expected a list of layer names");
     for (const Json& name : names) {
-        if (!name.is_string()) return input_error("layers: expected a list of names");
+        if (!name.is_string()) return input_error("layers: expected a list of layer names");
         const auto found = std::find(layers.begin(), layers.end(), name.get<std::string>());
         if (found == layers.end())
             return input_error("layers: there is no '" + name.get<std::string>() + "'");
@@ -106,7 +106,8 @@ Status read_layers(const Json& names, std::span<const std::string> layers, PageW
 }
 
 Status read_images(const Json& names, PageWish& wish) {
-    if (!names.is_array()) return input_error("images: expected a list of names");
+    if (!names.is_array())
+        return input_error("images: expected a list of image names (left, disparity)");
     for (const Json& name : names) {
         const auto found = std::find_if(kImageNames.begin(), kImageNames.end(), [&](const char* n) {
             return name.is_string() && name.get<std::string>() == n;
@@ -176,7 +177,9 @@ Result<PageRequest> read_joystick(const Json& json) {
     constexpr int kMost = 255;
     const bool fits = json.size() == 2 && json.contains("command");
     const auto command = fits ? read_count(json.at("command"), kMost) : std::nullopt;
-    if (!command) return input_error("joystick: expected {\"command\": 0 to 255}; 0 = release");
+    if (!command)
+        return input_error(
+            "joystick: expected {\"command\": N} with N from 0 to 255; 0 releases the joystick");
     return PageRequest(JoystickWord{static_cast<std::uint8_t>(*command)});
 }
 
@@ -318,14 +321,15 @@ Result<PageRequest> parse_request(std::string_view text, std::span<const std::st
     const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
-        return input_error("expected an object with an \"op\"");
+        return input_error("expected a JSON object with the key \"op\"");
     const auto op = json->at("op").get<std::string>();
     if (op == "want") return read_wish(*json, layers);
     if (op == "joystick") return read_joystick(*json);
     if (op == "playback") return read_playback(*json);
     if (op == "set") return read_setting(*json);
     if (op == "record") return read_record(*json);
-    return input_error(fmt::format("there is no operation '{}'", op));
+    return input_error(
+        fmt::format("there is no operation '{}'; use want, joystick, playback, set or record", op));
 }
 
 }  // namespace surefoot::page

@@ -283,7 +283,9 @@ void Viewer::start() {
 void Viewer::on_request(error_code error) {
     if (ended_) return;
     if (is_malformed(error))
-        return answer(http::status::bad_request, "text/plain", "this is not an HTTP request\n");
+        return answer(http::status::bad_request,
+                      "text/plain",
+                      "this is not an HTTP request; open the page in a browser\n");
     if (error) return end();
     const auto& request = parser_->get();
     const std::string_view target = view(request.target());
@@ -293,7 +295,7 @@ void Viewer::on_request(error_code error) {
         if (!head && request.method() != http::verb::get)
             return answer(http::status::method_not_allowed,
                           "text/plain",
-                          "only GET and HEAD are supported\n");
+                          "only the HTTP methods GET and HEAD are supported\n");
         if (gate_process::path_of(target) == kModelPath) return send_model(head);
         return send_file(gate_process::path_of(target), head);
     }
@@ -303,15 +305,15 @@ void Viewer::on_request(error_code error) {
                               ? std::nullopt
                               : foxglove_protocol_of(view(offered->value()));
     if (!is_page && !foxglove)
-        return answer(
-            http::status::not_found,
-            "text/plain",
-            "the WebSocket of the page is at /page; Foxglove must offer its subprotocol\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no WebSocket at this path: a page must connect to /page, and a "
+                      "Foxglove client must offer a subprotocol of Foxglove\n");
     if (const auto refusal = refuse_socket(foxglove.has_value())) return answer(*refusal);
     if (!sockets_.enter(name_))
         return answer(http::status::service_unavailable,
                       "text/plain",
-                      "too many pages are open; close one and reload\n");
+                      "too many pages are open; close another page and reload this page\n");
     upgrade(foxglove);
 }
 
@@ -345,7 +347,7 @@ std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
     if (gate_process::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
         gate_process::Admission::welcome)
         return Refusal{http::status::unauthorized,
-                       "the address needs the token; add ?token=TOKEN to it\n"};
+                       "this address needs a token; add ?token=TOKEN to the address\n"};
     return std::nullopt;
 }
 
@@ -361,7 +363,9 @@ void Viewer::answer(http::status status, std::string_view type, std::string body
 void Viewer::send_file(std::string_view path, bool head) {
     const PageFile* const file = find_page_file(path);
     if (file == nullptr)
-        return answer(http::status::not_found, "text/plain", "there is no such file\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no file at this path; open the page at /\n");
     constexpr unsigned kHttp11 = 11;
     response_ = {http::status::ok, kHttp11};
     const std::string_view type = content_type_of(file->path);
@@ -389,7 +393,10 @@ void Viewer::send_response() {
 void Viewer::send_model(bool head) {
     const auto& machine = sockets_.show.hello.machine;
     if (!machine || machine->urdf.empty())
-        return answer(http::status::not_found, "text/plain", "there is no model of this machine\n");
+        return answer(
+            http::status::not_found,
+            "text/plain",
+            "there is no 3D model of this machine; to show one, start serve with --model FILE\n");
     answer(http::status::ok, "application/xml", head ? std::string() : machine->urdf);
 }
 
@@ -429,7 +436,8 @@ void Viewer::read() {
 }
 
 void Viewer::on_message() {
-    if (!messages_.take(steady_ns())) return say_goodbye("too many messages");
+    if (!messages_.take(steady_ns()))
+        return say_goodbye("too many messages: the limit is 40 in a second; reload the page");
     const auto bytes = buffer_.cdata();
     const Status heard = hear({static_cast<const char*>(bytes.data()), bytes.size()});
     buffer_.clear();
@@ -459,7 +467,8 @@ Demand Viewer::demand() const {
 }
 
 void Viewer::take(const PageWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     wish_ = wish;
     // Everything wanted is sent again.
     map_.reset();
@@ -469,26 +478,31 @@ void Viewer::take(const PageWish& wish) {
 
 void Viewer::take(const JoystickWord& word) {
     if (!sockets_.show.hello.can_steer)
-        return say_goodbye("joystick: pages cannot steer this source");
+        return say_goodbye(
+            "joystick: pages cannot steer this source; start serve with sim:SCENE and --joystick");
     // A page that may not hold the joystick learns it from the next "steer" message.
     sockets_.controls.steering.hold(name_, word.command, steady_ns());
 }
 
 void Viewer::take(const PlaybackWish& wish) {
     if (!sockets_.controls.playback.state())
-        return say_goodbye("playback: this source is not a recording");
+        return say_goodbye(
+            "playback: this source is not a recording, so a page cannot pause it or change its "
+            "speed");
     sockets_.controls.playback.ask(wish);
     sockets_.tell_status();
 }
 
 void Viewer::take(const SettingWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     say(setting_text(sockets_.controls.settings.ask(wish)));
     write();
 }
 
 void Viewer::take(const RecordWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     if (!sockets_.controls.recording.ask(wish))
         say_goodbye("record: " + sockets_.controls.recording.state().text);
 }
@@ -655,10 +669,12 @@ Status PageSockets::listen() {
          ++more)
         error = listen_at(address, static_cast<std::uint16_t>(config.port + more));
     if (error) {
-        return input_error(fmt::format("the page cannot be served at {} port {}: {}",
-                                       config.bind_address,
-                                       config.port,
-                                       error.message()));
+        return input_error(
+            fmt::format("the page cannot be served at the address {}, port {}: {}; give another "
+                        "--bind or --page-port",
+                        config.bind_address,
+                        config.port,
+                        error.message()));
     }
     port_ = acceptor_.local_endpoint().port();
     return config.tls.empty() ? Status{} : listen_with_tls();
@@ -779,15 +795,17 @@ std::size_t PageSockets::viewers() const {
 
 const char* PageServerConfig::problem() const {
     if (!gate_process::is_loopback_address(bind_address) && token.empty())
-        return "beyond this machine the page needs a token (--token-file)";
+        return "a page at an address beyond loopback needs a token; give its file with "
+               "--token-file";
     if (tls.certificate_file.empty() != tls.key_file.empty())
-        return "TLS needs both files: --certificate FILE and --key FILE";
+        return "TLS needs both files; give --certificate FILE and --key FILE";
     if (!gate_process::is_loopback_address(bind_address) && tls.empty() &&
         insecure != gate_process::kInsecureSentence)
-        return "beyond this machine the page needs TLS (--certificate FILE --key FILE), or the "
-               "sentence that allows it without TLS (--insecure)";
+        return "a page at an address beyond loopback needs TLS; give --certificate FILE and --key "
+               "FILE. To allow the page without TLS, give the confirmation sentence with "
+               "--insecure";
     if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)
-        return "header_ms, answer_ms and write_ms must be above 0";
+        return "header_ms, answer_ms and write_ms must each be above 0 ms";
     return slots.problem();
 }
 
