@@ -13,7 +13,7 @@ static_assert(std::atomic<bool>::is_always_lock_free,
 
 void on_signal(int signal) {
     if (!interrupt_seen.exchange(true)) return;
-    std::signal(signal, SIG_DFL);  // the second signal of either kind ends the program
+    std::signal(signal, SIG_DFL);  // the second signal, SIGINT or SIGTERM, ends the program
     std::raise(signal);
 }
 

@@ -10,7 +10,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Reads exactly N finite numbers separated by commas. `count` is N as a word.
+/// Reads exactly N finite numbers separated by commas. `count` is N as a word, for the error
+/// message.
 template <std::size_t N>
 Result<std::array<double, N>> parse_numbers(const std::string& option,
                                             const std::string& text,

@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// The settings-related part of the command line.
+/// Returns the options of the command line that affect settings.
 [[nodiscard]] inline SettingsRequest settings_request(const CommonOptions& options) {
     return {options.preset, options.config_file, options.settings};
 }

@@ -41,8 +41,8 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
-/// Logs the notes of the calibration reader. A recording passes on only its rig, without notes, so
-/// the small file of --rig is read a second time, for the size of the images.
+/// Logs the notes of the calibration reader. A recording returns only its rig, without the notes.
+/// So this function reads the small file of --rig a second time, with the image size of the rig.
 void log_rig_notes(const SourceRequest& request, const camera::StereoRig& rig) {
     std::vector<std::string> notes;
     if (!request.rig_file.empty()) {

@@ -28,7 +28,8 @@ std::size_t bytes_of(const StereoFrame& frame) {
     return frame.left.size() + frame.right.size() + sizeof(float) * frame.depth_m.size();
 }
 
-/// Copy of the parts of a frame that a recording stores; `imu_before` precedes its IMU samples.
+/// Returns a copy of the parts of a frame that a recording stores. The samples `imu_before` come
+/// before the IMU samples of the frame.
 StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_before) {
     StereoFrame part;
     part.time_ns = frame.time_ns;
@@ -41,7 +42,7 @@ StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_b
     return part;
 }
 
-/// Creates a new folder in `parent`, named by the time in UTC.
+/// Creates a new folder in `parent`. The name is the time in UTC.
 Result<std::string> new_folder(const std::string& parent, std::time_t now) {
     if (auto made = io::make_folder(parent); !made) return made.error();
     const std::string name =
@@ -64,7 +65,7 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
                     name));
 }
 
-/// Why a source cannot be recorded; empty if it can.
+/// Returns the reason why the source cannot be recorded; empty if recording is possible.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
     if (config.record_dir.empty())
         return "to allow recordings, restart serve with --record-dir DIR";
@@ -156,7 +157,7 @@ void FrameRecorder::run() {
     }
 }
 
-/// Waits for a request to record; false when the service ends.
+/// Waits for a request to record. Returns false when the service ends.
 bool FrameRecorder::wait_for_wish() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return wanted_ || stopped_; });
@@ -203,7 +204,8 @@ void FrameRecorder::record() {
     conclude(written, *recorder);
 }
 
-/// Waits for the next queued frame; nullopt when the recording ends and the queue is empty.
+/// Waits for the next queued frame and returns it. Returns nullopt when the recording ends and the
+/// queue is empty.
 std::optional<StereoFrame> FrameRecorder::next_frame() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return !queue_.empty() || end_ != End::none; });
@@ -255,8 +257,8 @@ std::string FrameRecorder::reason_in_words() {
     return {};
 }
 
-/// Closes the recording and reports it. After a failed write, the frames before it form a valid
-/// recording.
+/// Closes the recording and reports its result. After a failed write, the earlier frames form a
+/// valid recording.
 void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
     {
         const std::lock_guard lock(mutex_);
@@ -275,7 +277,7 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
         text +=
             fmt::format("; {} frames were left out of the recording, because the disk was too slow",
                         state_.left_out);
-    if (state_.frames == 0) {  // we created the folder, and it holds no frame
+    if (state_.frames == 0) {  // this class created the folder, and the folder contains no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);
         text = outcome ? "no frame arrived, so there is no recording" : outcome.error().message;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kRestartEvery_ns = 500'000'000;
 
-/// Path of surefoot-gate, which lies in the folder of this program.
+/// Returns the path of surefoot-gate, which must be in the folder of this program.
 Result<std::string> find_program() {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -33,11 +33,12 @@ Result<std::string> find_program() {
                        self.string());
 }
 
-/// Longest time until the gate has written its first line. After it the start has failed.
+/// Longest time that the gate may need to write its first line. After this time the start counts as
+/// failed.
 constexpr std::chrono::seconds kLongestStart{20};
 
-/// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait
-/// ran out.
+/// Returns the first line that the gate writes. The line may be incomplete if the gate closed the
+/// pipe or the time ran out.
 std::string first_line(int file) {
     const auto end = std::chrono::steady_clock::now() + kLongestStart;
     std::string line;
@@ -58,7 +59,8 @@ std::string first_line(int file) {
     return line;
 }
 
-/// "listening on ws://127.0.0.1:9090" -> 9090; 0 for any other text.
+/// Reads the port from a line such as "listening on ws://127.0.0.1:9090". Returns 0 for other
+/// texts.
 std::uint16_t port_of(const std::string& line) {
     const auto colon = line.rfind(':');
     std::uint16_t port = 0;
@@ -71,9 +73,10 @@ std::uint16_t port_of(const std::string& line) {
 [[noreturn]] void become_gate(
     const char* program, char* const* words, int output, int line, pid_t parent) {
     ::dup2(output, STDOUT_FILENO);
-    ::fcntl(line, F_SETFD, 0);  // keep it open across execv
-    // A session of its own: Linux shares the processor among sessions before it compares nice
-    // values, so load from perception must not delay the gate. Ctrl-C then reaches only serve.
+    ::fcntl(line, F_SETFD, 0);  // keep the socket open across execv
+    // Give the gate a session of its own, so that the load of perception cannot delay it. Linux
+    // shares the processor among sessions before it compares nice values. Ctrl-C then reaches only
+    // serve.
     ::setsid();
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() == parent) ::execv(program, words);
@@ -119,8 +122,8 @@ void GateChild::hang_up() noexcept {
 Status GateChild::launch(std::vector<std::string> arguments) {
     hang_up();
     int output[2];
-    // A socket pair, because another process of this user could open a pipe in /proc and read the
-    // key.
+    // Use a socket pair for the key: another process of this user could open a pipe in /proc and
+    // read the key.
     int line[2];
     if (::pipe2(output, O_CLOEXEC) != 0)
         return input_error(

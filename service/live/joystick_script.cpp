@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kHeader = "time_s,end_s,command";
 
-/// Adds a line; false if its time or code is invalid, or its time is before the previous line's.
+/// Adds a line. Returns false if its time or code is invalid, or if its time is before the time of
+/// the previous line.
 bool add(std::vector<JoystickLine>& script, std::string_view time_s, std::string_view command) {
     const auto time_ns = io::parse_seconds_as_ns(time_s);
     const auto code = io::parse_int64(command);

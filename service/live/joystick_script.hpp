@@ -10,9 +10,9 @@
 
 namespace surefoot::app {
 
-/// From `time_ns` until the next line the joystick sends `code`.
+/// A line of the script: from `time_ns` until the next line the joystick sends `code`.
 struct JoystickLine {
-    std::int64_t time_ns = 0;  ///< since the start of the script
+    std::int64_t time_ns = 0;  ///< time since the start of the script
     std::uint8_t code = 0;     ///< 0 = at rest
 };
 
@@ -24,7 +24,7 @@ struct JoystickLine {
 [[nodiscard]] Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                                                       const std::string& name);
 
-/// The code that the joystick sends at a time since the start; 0 (at rest) before the first line.
+/// Returns the code at a time after the start of the script; 0 (at rest) before the first line.
 [[nodiscard]] std::uint8_t code_at(const std::vector<JoystickLine>& script, std::int64_t time_ns);
 
 }  // namespace surefoot::app

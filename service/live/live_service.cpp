@@ -29,7 +29,8 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRemembered_s = 10.0;  ///< of a simulated walk; no frame shows an older motion
+constexpr double kRemembered_s = 10.0;  ///< length of the stored motion of a simulated walk; no
+                                        ///< frame shows an older motion
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
 /// Sets the niceness of all threads except the first one. The answers of the gate have the highest
@@ -129,7 +130,7 @@ void LiveService::look_after(GateChild& gate, MapChannel& channel) {
     tell_where(gate);
 }
 
-/// Applies the operator attestation to the pictures as the gate does: from the first map on.
+/// Applies the operator attestation to the pictures from the first map on, as the gate does.
 void LiveService::remember_word(const LiveSession& session) {
     if (session.published() == 0) return;
     if (!word_given_) {
@@ -190,7 +191,8 @@ bool LiveService::follow_pages(LiveSession& session, const gate_process::Snapsho
     return !playback.jump_wanted();
 }
 
-/// Processes the source with a new pipeline (one map, one odom frame), from its next frame on.
+/// Processes the source from its next frame on with a new pipeline, which has a new map and a new
+/// odom frame.
 Result<LiveSession::End> LiveService::perceive_anew(camera::FrameSource& source,
                                                     gate_process::SnapshotWriter& writer) {
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
@@ -221,7 +223,8 @@ Result<LiveSession::End> LiveService::perceive_anew(camera::FrameSource& source,
     return end;
 }
 
-/// The frame to continue from. At the end of a recording waits for a jump of a page.
+/// Returns the frame to continue from. At the end of a recording, waits until a page jumps to a
+/// frame.
 std::optional<int> LiveService::next_jump(LiveSession::End end) {
     page::Playback& playback = page_->controls().playback;
     if (end == LiveSession::End::source_ended && playback.state() && !options_.once) {
@@ -399,7 +402,8 @@ Status LiveService::run() {
     Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
     walk_.reset();
     if (!perceived) return perceived;
-    while (!options_.once && !interrupted()) {  // the gate keeps answering that the frames are old
+    while (!options_.once && !interrupted()) {  // without new frames the gate answers that the
+                                                // frames are old
         look_after(*gate, channel);
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }

@@ -23,8 +23,8 @@ std::string channel_begin() {
     return fmt::format("surefoot-{}-", ::getuid());
 }
 
-/// Removes channel files that killed services of this user left behind: the process id in the name
-/// no longer exists.
+/// Removes the channel files of killed services of this user. No process has the process id in the
+/// name of such a file.
 void remove_orphaned_channels() {
     const std::string begin = channel_begin();
     std::error_code error;

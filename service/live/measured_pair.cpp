@@ -13,13 +13,13 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest disparity of the corner search, to limit its run time. Below this value the search uses
-/// the disparity range of the matcher.
+/// Largest disparity of the corner search; it limits the run time. If the disparity range of the
+/// matcher is smaller, the search uses the range of the matcher.
 constexpr int kMaxCornerDisparity_px = 256;
-/// Rows to search up and down: unrectified images of real rigs differ by tens of rows.
+/// Number of rows to search up and down: unrectified images of real rigs differ by tens of rows.
 constexpr int kFarRows_px = 32;
-/// Largest acceptable median row difference. Above it, a matcher that searches along rows loses
-/// accuracy and matches.
+/// Largest acceptable median row difference. If the difference is larger, a matcher that searches
+/// along rows loses accuracy and matches.
 constexpr double kMaxRowError_px = 0.5;
 
 std::string size_text(const GreyImage& image) {

@@ -21,7 +21,7 @@ constexpr double kStairs_hz = 3.0;
 constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
-/// Layers that need only a copy, no computation.
+/// Layers that a page can show. The pipeline has them ready; they are only copied.
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
 std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {
@@ -44,7 +44,7 @@ const char* kind_of(const camera::SourceInfo& info) {
     return info.steady_stamps ? "live" : "recording";
 }
 
-/// True if `due_ns` has passed; then sets `due_ns` one period later.
+/// Returns true if `due_ns` has passed, and then sets `due_ns` to one period from now.
 bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
     if (now_ns < due_ns) return false;
     // in range: a page cannot wish for less than PageWish::kSlowest_hz
@@ -56,9 +56,9 @@ double median(const std::deque<double>& values) {
     return upper_median(std::vector<double>(values.begin(), values.end()));
 }
 
-/// The part of a map that is shown. A small map is shown whole; of a large map, only the 64 x 64
-/// cell blocks around its known cells. Whole blocks keep the size of the picture
-/// stable while cells are added.
+/// Returns the part of a map that is shown. A small map is shown completely. Of a large map only
+/// the rectangle of blocks of 64 x 64 cells around the known cells is shown. Whole blocks keep the
+/// size of the picture stable while cells are added.
 eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer& height_m) {
     constexpr int kLarge = 512;
     constexpr int kBlock = 64;
@@ -184,8 +184,8 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     }
 }
 
-/// Copies images, layers and features, only if a page wants them and not faster than pages are
-/// served.
+/// Copies images, layers and features if a page wants them, but not more often than pages receive
+/// them.
 void PageTelemetry::fill_extras(const pipeline::Pipeline& pipeline,
                                 const FrameReport& report,
                                 std::uint64_t map_version,

@@ -35,17 +35,17 @@ struct ServeOptions : SourceOptions {
     std::string walk;       ///< joystick codes for a simulated REX; empty = no scripted walk
     bool joystick = false;  ///< a web page steers a simulated REX
     std::string out_dir;    ///< folder for a picture of each requested movement
-    std::string channel;    ///< map channel in shared memory; empty = a new file
+    std::string channel;    ///< file of the map channel; empty = a new file
     /// File with the key of the map channel; empty = a new key at every start.
     std::string channel_key;
-    int niceness = 10;     ///< process niceness of perception, so that the gate answers in time
+    int niceness = 10;     ///< niceness of perception; the gate gets more processor time
     int page_port = 8080;  ///< TCP port of the live page; 0 = any free port
     /// Web origins of Foxglove that may read but not steer.
     std::vector<std::string> foxglove_origins;
     bool no_page = false;
-    /// Pages may start recordings in new folders below it; empty = not allowed.
+    /// Parent folder of recordings that pages start; empty = pages cannot record.
     std::string record_dir;
-    bool once = false;  ///< exit when the source or the walk ends
+    bool once = false;  ///< stop when the source or the walk ends
 };
 
 }  // namespace surefoot::app

@@ -14,7 +14,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Longer suffixes first, because "_m_s2" also ends with "_s2".
+/// Units by the suffix of a name. A longer suffix comes first, because "_m_s" also ends with "_s".
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kUnits{
     {{"_m_s2", "m/s\u00b2"},
      {"_deg_s", "deg/s"},

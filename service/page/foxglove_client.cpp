@@ -12,7 +12,8 @@
 namespace surefoot::page {
 namespace {
 
-/// Limit of unreadable texts. A few may come from a client of another version; more are a flood.
+/// Rate limit of unreadable texts. A client of another version may send a few; more are an attack
+/// or a fault.
 constexpr gate_process::RateLimit kUnreadable{1, 8};
 constexpr std::size_t kMostReplies = 64;
 
@@ -86,7 +87,7 @@ std::optional<std::string> FoxgloveClient::subscribe(FoxgloveSubscribe::Wish wis
     return std::nullopt;
 }
 
-// One status message per request, however long its list is.
+// Sends one status message for a request, even if its list has several problems.
 void FoxgloveClient::take(const FoxgloveSubscribe& request) {
     std::optional<std::string> first_problem;
     for (const FoxgloveSubscribe::Wish wish : request.wishes) {
@@ -157,7 +158,8 @@ std::optional<FoxgloveChannel> FoxgloveClient::large_one_due(const FoxgloveShow&
         const std::uint64_t serial = show.serial(large.channel);
         if (!slot || serial == 0 || slot->seen == serial) continue;
         if (slot->sent_ns && now_ns - *slot->sent_ns < large.every_ns) continue;
-        // An empty optional is less than any time: a channel never sent before comes first.
+        // An empty optional is less than any time, so a channel without an earlier message comes
+        // first.
         if (first && first_sent_ns <= slot->sent_ns) continue;
         first = large.channel;
         first_sent_ns = slot->sent_ns;

@@ -45,21 +45,21 @@ class FoxgloveClient {
     /// sentence. An error means that the client sent too many unreadable texts, or too many
     /// requests before it received the replies.
     [[nodiscard]] Status take(bool is_text, std::string_view bytes, std::int64_t now_ns);
-    /// The messages to send now, in order. Call it only after all earlier messages have left: a
-    /// slow client then gets fewer messages, but never an old one.
+    /// Returns the messages to send now, in order. Call it only after all earlier messages have
+    /// left: a slow client then gets fewer messages, but never an old one.
     [[nodiscard]] std::vector<SocketMessage> next(FoxgloveShow& show, std::int64_t now_ns);
 
     [[nodiscard]] bool listens_to(FoxgloveChannel channel) const { return of(channel).has_value(); }
-    /// The topics of the gate that this client needs.
+    /// Returns the topics of the gate that this client needs.
     [[nodiscard]] GateTopics gate_topics() const {
         return {listens_to(FoxgloveChannel::verdict), listens_to(FoxgloveChannel::outlook)};
     }
 
   private:
     struct Subscription {
-        std::uint32_t id = 0;                 ///< chosen by the client
-        std::optional<std::uint64_t> seen;    ///< serial of the last message sent
-        std::optional<std::int64_t> sent_ns;  ///< time at which that message was sent
+        std::uint32_t id = 0;                 ///< id that the client chose
+        std::optional<std::uint64_t> seen;    ///< serial of the last sent message
+        std::optional<std::int64_t> sent_ns;  ///< time at which the last message was sent
     };
     using Slot = std::optional<Subscription>;
 

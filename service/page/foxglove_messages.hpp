@@ -26,9 +26,9 @@ enum class FoxgloveChannel : std::uint8_t {
     camera,         ///< foxglove.CompressedImage
     transforms,     ///< foxglove.FrameTransforms
     pose,           ///< foxglove.PoseInFrame
-    status,         ///< own schema: health, and the duration of each stage
-    verdict,        ///< own schema: each verdict of the gate
-    outlook,        ///< own schema: the verdict that the gate would give each movement
+    status,         ///< Surefoot schema: health, and duration of each stage
+    verdict,        ///< Surefoot schema: each verdict of the gate
+    outlook,        ///< Surefoot schema: the verdict that each movement would get
 };
 inline constexpr std::size_t kFoxgloveChannelCount = 8;
 inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
@@ -41,15 +41,15 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
                                               FoxgloveChannel::outlook};
 static_assert(kFoxgloveChannels.size() == kFoxgloveChannelCount);
 
-/// The channel's number in the protocol, from 1.
+/// Returns the number of the channel in the protocol; the first channel has the number 1.
 [[nodiscard]] constexpr std::uint32_t id_of(FoxgloveChannel channel) noexcept {
     return static_cast<std::uint32_t>(channel) + 1;
 }
 [[nodiscard]] const char* topic_of(FoxgloveChannel channel) noexcept;
 
-/// The subprotocol to answer with: the newest one that both sides support. `offered` is the value
-/// of the header Sec-WebSocket-Protocol, for example "foxglove.websocket.v1, foxglove.sdk.v1".
-/// Empty if the client offers no supported subprotocol.
+/// Returns the subprotocol to answer with: the newest that both sides support. `offered` is the
+/// value of the header Sec-WebSocket-Protocol, for example "foxglove.websocket.v1,
+/// foxglove.sdk.v1". Empty if the client offers no supported subprotocol.
 [[nodiscard]] std::optional<std::string_view> foxglove_protocol_of(
     std::string_view offered) noexcept;
 
@@ -72,20 +72,20 @@ enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
 /// one cell, in the plane z = 0 of odom. Each cell has height_m (float32, NaN = unknown), sigma_mm
 /// and state (both as in PageCell) and a colour, which is transparent where the ground is unknown.
 [[nodiscard]] std::string ground_payload(const PageMap& map);
-/// foxglove.PointCloud: one coloured point at the centre of each known cell.
+/// Returns a foxglove.PointCloud with one coloured point at the centre of each known cell.
 [[nodiscard]] std::string ground_points_payload(const PageMap& map);
-/// foxglove.CompressedImage of the rectified left camera.
+/// Returns a foxglove.CompressedImage of the rectified left camera.
 [[nodiscard]] std::string camera_payload(std::int64_t time_ns, std::string_view jpeg);
-/// foxglove.FrameTransforms: odom -> base_link, and base_link -> camera if it is known.
+/// Returns foxglove.FrameTransforms: odom -> base_link and, if known, base_link -> camera.
 [[nodiscard]] std::string transforms_payload(const PagePose& pose,
                                              const std::optional<Pose>& T_body_camera);
 [[nodiscard]] std::string pose_payload(const PagePose& pose);
 [[nodiscard]] std::string status_payload(const PageStatus& status, CameraState camera);
 
-// Requests of a client.
+// Requests that a client sends.
 struct FoxgloveSubscribe {
     struct Wish {
-        std::uint32_t subscription = 0;  ///< chosen by the client
+        std::uint32_t subscription = 0;  ///< id that the client chose
         std::uint32_t channel = 0;
     };
     std::vector<Wish> wishes;
