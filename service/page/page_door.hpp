@@ -16,7 +16,7 @@ namespace surefoot::page {
 struct PageAddress {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 0;
-    std::vector<std::string> names;    ///< names of this computer, e.g. "robot.local"; lower case
+    std::vector<std::string> names;    ///< names of this computer in lower case: "robot.local"
     std::vector<std::string> origins;  ///< origins of a proxy or tunnel: "https://a.example:444"
 };
 

@@ -8,7 +8,7 @@ namespace surefoot::page {
 
 /// A file of the page, embedded when the program was built (tools/embed_page).
 struct PageFile {
-    std::string_view path;  ///< "/index.html"
+    std::string_view path;  ///< for example "/index.html"
     std::string_view gzip;  ///< content of the file, compressed with gzip
 };
 /// Returns all embedded files. If the page was not built (tools/build_page), the only file says how

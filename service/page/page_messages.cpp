@@ -15,13 +15,14 @@ namespace {
 
 using gate_process::Json;
 
-/// A division, not a product with 1e-4: so 9900 is written exactly as 0.99.
+/// Divides by 1e4 instead of multiplying by 1e-4, so that 9900 is written exactly as 0.99.
 double metres(std::int32_t tenth_mm) noexcept {
     constexpr double kTenthMmPerMetre = 1e4;
     return tenth_mm / kTenthMmPerMetre;
 }
 
-/// In messages a larger value is better, as in the snapshot; the enum is the other way round.
+/// In messages and in the snapshot a larger value means better health. In the enum a smaller value
+/// means better health.
 std::uint8_t health_code(Health health) noexcept {
     switch (health) {
         case Health::ok: return 2;
@@ -167,7 +168,7 @@ Result<PageRequest> read_record(const Json& json) {
     return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
-/// An integer from 0 to `most`; empty for all other values.
+/// Reads an integer from 0 to `most`. Returns empty for all other values.
 std::optional<int> read_count(const Json& value, int most) {
     if (!value.is_number_integer() || value < 0 || value > most) return std::nullopt;
     return value.get<int>();
