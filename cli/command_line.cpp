@@ -147,11 +147,10 @@ std::vector<std::string> words_of_call(int argc, char** argv) {
         for (const auto& [old_name, new_name] : kRenamedOptions) {
             const std::size_t end = std::min(word.find('='), word.size());
             if (word.substr(0, end) != old_name) continue;
-            log_warning(
-                fmt::format("{} is now called {}. Use the new name: version 0.3 refuses "
-                            "the old one",
-                            old_name,
-                            new_name));
+            log_warning(fmt::format(
+                "{} is now called {}. Use the new name: version 0.3 refuses the old name",
+                old_name,
+                new_name));
             word.replace(0, end, new_name);
             break;
         }
@@ -327,15 +326,15 @@ int run_command_line(int argc, char** argv) {
     const bool json = wants_json(argc, argv);
     try {
         std::vector<std::string> words = words_of_call(argc, argv);
-        std::reverse(words.begin(), words.end());  // CLI11 reads the words from the last to the
-                                                   // first
+        // CLI11 reads the words from the last to the first.
+        std::reverse(words.begin(), words.end());
         app.name(argv[0]);
         app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {
-        const bool is_output = std::ferror(stdout) != 0;  // fmt throws this error if a write to
-                                                          // stdout fails
+        // fmt throws this error if a write to stdout fails.
+        const bool is_output = std::ferror(stdout) != 0;
         log_error(std::string(is_output ? "stdout: " : "internal error: ") + error.what());
         exit_code = kExitFailed;
     }

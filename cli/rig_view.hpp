@@ -22,8 +22,8 @@ struct RigView {
         int command = 0;
         std::string name;
         double toe_m = 0.0;       ///< farthest point of the landed foot, ahead of base_link
-        bool remembered = false;  ///< the whole landing area is in the blind zone, so the map must
-                                  ///< contain it from earlier frames
+        bool remembered = false;  ///< true = the whole landing area is in the blind zone
+                                  ///< (then the map must contain it from earlier frames)
     };
     std::string name;
     int width = 0;

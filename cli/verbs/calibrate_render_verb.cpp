@@ -94,7 +94,7 @@ void add_calibrate_render(VerbGroup verbs) {
     auto [verb, o] = verbs.add<BoardImagesOptions>(
         "render",
         "render images of a calibration board in varied positions, and write the true calibration "
-        "beside them",
+        "to the same folder",
         "surefoot calibrate render --board chessboard:8x5:0.03 --rig zed_vga --views "
         "12 --out out/chess",
         render_boards,

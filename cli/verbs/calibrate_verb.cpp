@@ -182,9 +182,7 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono)
-            return mono.error();  // this error already contains the advice about the lens
-                                  // model
+        if (!mono) return mono.error();  // this error contains the lens advice
         run.mono = std::move(*mono);
     } else {
         auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);

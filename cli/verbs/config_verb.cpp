@@ -43,9 +43,10 @@ void add_config(VerbGroup verbs) {
                                               "surefoot config --set elevation.length_m=8",
                                               config,
                                               Reads::own_settings);
-    verb.flag("--check",
-              o.check_only,
-              "check the settings and print whether they are valid; do not list them");
+    verb.flag(
+        "--check",
+        o.check_only,
+        "check the settings and print whether they are valid, without the list of all settings");
 }
 
 }  // namespace surefoot::app

@@ -21,8 +21,9 @@ struct DemOptions {
     std::string cloud;
     double resolution_m = 0.0;
     std::string reduce = "max";
-    std::optional<double> lowest_z_m;  ///< points below this z are left out; only for reduce =
-                                       ///< "surface"
+    /// Points below this z are left out; only for reduce = "surface".
+    std::optional<double> lowest_z_m;
+    /// Points above this z are left out; only for reduce = "surface".
     std::optional<double> highest_z_m;
     std::string lattice = "cell";
     std::string out_file;

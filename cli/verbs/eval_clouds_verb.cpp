@@ -209,8 +209,8 @@ void add_eval_clouds(VerbGroup verbs) {
         .value("CLOUD");
     verb.option("--values",
                 o.values_file,
-                "file for all distances, in m. With c2c, one line for each compared point holds "
-                "the distance. With m3c2, one line for each core point holds "
+                "file for all distances, in m. With c2c, each compared point has a line with its "
+                "distance. With m3c2, each core point has a line "
                 "distance,lod,std1,std2,n1,n2,significant")
         .value("F.csv");
     verb.option("--out",

@@ -19,10 +19,10 @@ struct EvalDepthOptions {
     CommonOptions common;
     std::string estimate;
     std::string truth;
-    double scale = 0.0;  ///< value that means 1 px of disparity in the truth image; 0 = by the file
-                         ///< type
-    std::string mask;    ///< mask image: pixels above 200 are compared; empty = all pixels
-    std::string sigma;   ///< PFM of the standard deviation of the estimate [px]; empty = none
+    /// Value that means 1 px of disparity in the truth image; 0 = by the file type.
+    double scale = 0.0;
+    std::string mask;   ///< mask image: pixels above 200 are compared; empty = all pixels
+    std::string sigma;  ///< PFM of the standard deviation of the estimate [px]; empty = none
 };
 
 /// Code that means 1 px of disparity, if --scale is not given. The unit of 16-bit images is 1/256
@@ -106,7 +106,7 @@ void print_errors(const eval::DepthErrors& errors) {
     if (errors.coverage.count == 0) return;
     fmt::print(
         "errors within 1 sigma: {:.1f} %, within 2 sigma: {:.1f} %, within 3 sigma: {:.1f} %; "
-        "sparsification {:.3f} (0 = sigma sorts the errors perfectly, 1 = sigma sorts them no "
+        "sparsification {:.3f} (0 = sigma sorts the errors perfectly, 1 = a sort by sigma is no "
         "better than chance)\n",
         100.0 * errors.coverage.within_1_sigma,
         100.0 * errors.coverage.within_2_sigma,
@@ -127,9 +127,9 @@ void warn_of_scale(const EvalDepthOptions& options,
                    double ratio,
                    double scale) {
     log_warning(
-        fmt::format("{}: after division by {:g}, its disparities are {:.3g} times those of {} "
-                    "(median). If the file stores {:g} times the disparity, the figures of this "
-                    "call are wrong: run again with --scale {:g}",
+        fmt::format("{}: after division by {:g}, its disparities are {:.3g} times the disparities "
+                    "of {} (median). If the file stores {:g} times the disparity, the figures of "
+                    "this call are wrong: run again with --scale {:g}",
                     options.truth,
                     truth.scale,
                     ratio,

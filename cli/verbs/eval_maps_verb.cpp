@@ -145,10 +145,10 @@ Status write_pictures(const EvalMapsOptions& options,
 
 void print_figures(const eval::MapComparison& result) {
     fmt::print(
-        "elevation error: median magnitude {:.1f} mm, 90 % of the cells at most {:.1f} mm, {} "
-        "cells; away from edges {:.2f} % of the cells are above 50 mm\ntraversability: {:.2f} % of "
-        "the unsafe cells called safe, {:.2f} % of the safe cells called unsafe\n{:.1f} % of the "
-        "cells of the true map are known in the map of the run\n",
+        "elevation error: median magnitude {:.1f} mm, 90 % of the cells at most {:.1f} mm, number "
+        "of cells {}; {:.2f} % of the cells away from edges have an error above 50 "
+        "mm\ntraversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe cells "
+        "called unsafe\n{:.1f} % of the cells of the true map are known in the map of the run\n",
         1e3 * result.elevation.median_abs_m,
         1e3 * result.elevation.p90_abs_m,
         result.elevation.count,

@@ -154,7 +154,7 @@ void print_summary(std::span<const SuiteRow> rows) {
                    worst("missed_hazards"),
                    100.0 * worst("allowed"));
     }
-    fmt::print("(each figure is that of the worst case of its row)\n");
+    fmt::print("(each figure belongs to the worst case of its row)\n");
 }
 
 /// `surefoot eval suite`: runs the pipeline on each combination of scene, motion model, seed and
@@ -212,7 +212,7 @@ void add_eval_suite(VerbGroup verbs) {
         suite.flag("--lange2016",
                    s.thesis,
                    "run the experiments of the reference thesis (Lange 2016) on rebuilt scenes "
-                   "instead of the suite, and compare the values of the thesis with those of "
+                   "instead of the suite, and compare the values of the thesis with the values of "
                    "Surefoot; writes thesis.html, thesis.json and thesis.csv");
     suite
         .option(

@@ -68,7 +68,9 @@ Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair)
 /// number of poses keeps stamps at 10 Hz from 0 s, the frame rate of KITTI.
 Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     const bool of_estimate = !pair.estimate.has_stamps();
-    if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or both lack them
+    if (of_estimate == !pair.truth.has_stamps())
+        return {};  // both trajectories have stamps, or
+                    // both have none
     io::TrajectoryFile& bare = of_estimate ? pair.estimate : pair.truth;
     const io::TrajectoryFile& other = of_estimate ? pair.truth : pair.estimate;
     if (bare.rows == other.poses.size()) {
@@ -78,8 +80,8 @@ Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair
     }
     if (!of_estimate) return {};
     return input_error(
-        fmt::format("{}: {} poses have no time stamps, and their number differs from that of {} "
-                    "with {} poses; give the time stamps with --times",
+        fmt::format("{}: {} poses have no time stamps, and {} has another number of poses, {}; "
+                    "give the time stamps with --times",
                     options.estimate,
                     bare.rows,
                     options.truth,

@@ -113,7 +113,7 @@ int gate(const GateOptions& options) {
         assumed.push_back(
             fmt::format("the machine is {}, because --machine was not given", kUsualMachine));
     for (const io::Deviation& deviation : machine->value().deviations)
-        assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
+        assumed.push_back("the machine file exceeds a rated limit: " + io::text_of(deviation));
     if (options.attestation_radius_m != 0.0) {
         const auto attested = attest_start(
             machine->value().machine, query, *map->snapshot, options.attestation_radius_m, assumed);
@@ -137,9 +137,7 @@ int gate(const GateOptions& options) {
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status)
-            log_error(status.error().message);  // a failed audit log does not change the
-                                                // verdict
+        if (!status) log_error(status.error().message);  // a failed log does not change it
     }
     return exit_code_of(verdict.decision);
 }

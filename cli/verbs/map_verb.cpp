@@ -27,9 +27,10 @@ struct MapMergeOptions {
     std::string first;
     std::string second;
     std::string out_file;
-    std::string motion_sigma = "0,0,0";  ///< one sigma of the motion between the poses of the maps:
-                                         ///< horizontal [m], vertical [m], angle [deg]
-    bool independent = false;            ///< the maps come from two runs with the same odom frame
+    /// One sigma of the motion between the poses of the maps: horizontal [m], vertical [m], angle
+    /// [deg].
+    std::string motion_sigma = "0,0,0";
+    bool independent = false;  ///< the maps come from two runs with the same odom frame
 };
 
 void warn_of_skipped(const io::MapFile& map, const std::string& file) {
@@ -71,11 +72,12 @@ Status pay_for_the_way(const Matrix6& covariance,
     grid::MapRegion& older = first_is_older ? first : second;
     const grid::MapRegion& younger = first_is_older ? second : first;
     if (covariance.isZero(0.0)) {
-        log_warning(fmt::format(
-            "{}: this map is {:.3f} s older than the other one, and its variances do not include "
-            "the motion between them; give the uncertainty of this motion with --motion-sigma",
-            first_is_older ? options.first : options.second,
-            seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
+        log_warning(
+            fmt::format("{}: this map is {:.3f} s older than the other map, and its variances do "
+                        "not include the motion between the two maps; give the uncertainty of this "
+                        "motion with --motion-sigma",
+                        first_is_older ? options.first : options.second,
+                        seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
         return {};
     }
     return elevation::pay_for_motion(older, younger.T_frame_body, covariance);

@@ -93,7 +93,8 @@ bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
 /// name rex_link.
 int rex_link_verb(const RexLinkOptions& options) {
     if (options.keys == !options.script_file.empty())
-        return report(usage_error("rex-link: give --script FILE or --keys, and only one of them"));
+        return report(
+            usage_error("rex-link: give either --script FILE or --keys, and not both options"));
     const auto gate = rex_link::parse_gate_url(options.url);
     if (!gate) return report(usage_error("--url: " + gate.error().message));
     auto tones = TonePlayer::open(options.tones_dir);

@@ -33,8 +33,8 @@ struct FrameRecorderConfig {
 /// of `surefoot record`.
 ///
 /// A separate thread of low priority writes to the disk. `take` only copies the frame into a queue
-/// and never waits for the disk. A frame that does not fit into the queue is left out and counted;
-/// its IMU samples are stored with the next frame. All public functions are thread-safe.
+/// and never waits for the disk. A frame that does not fit into the queue is left out and counted.
+/// Its IMU samples are stored with the next frame. All public functions are thread-safe.
 class FrameRecorder {
   public:
     /// Tells the desk whether recording is possible. If not, also gives the reason.

@@ -14,10 +14,10 @@ namespace surefoot::app {
 
 /// Starts the gate process (surefoot-gate) and restarts it when it dies.
 ///
-/// While the gate process is down its clients get no answer, so no step is allowed. A restarted
+/// While the gate process does not run, its clients get no answer, so no step is allowed. A new
 /// gate begins in state INIT. The gate process inherits the priority of the thread that starts it.
-/// It ends when this process ends, even after a crash: it sees its end of a socket pair close, and
-/// the kernel sends it SIGTERM.
+/// The gate process ends when this process ends, even after a crash: the socket pair between both
+/// processes closes, and the kernel sends SIGTERM to the gate process.
 class GateChild {
   public:
     /// Arguments and key for the gate process.

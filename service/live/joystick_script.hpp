@@ -16,11 +16,11 @@ struct JoystickLine {
     std::uint8_t code = 0;     ///< 0 = at rest
 };
 
-/// Parses a joystick script. Errors name `name` (the file) and the line.
+/// Parses a joystick script. Errors contain `name` (the file) and the number of the line.
 ///
-/// A line is `time_s code`, separated by white space or a comma, or `time_s,end_s,command` as in
-/// the joystick.csv of `surefoot sim` (at rest from end_s on). Times must not decrease. Empty
-/// lines, lines that begin with '#' and the header of joystick.csv are skipped.
+/// A line is `time_s code`, separated by white space or a comma. A line of the joystick.csv of
+/// `surefoot sim` is `time_s,end_s,command`; the joystick is at rest from end_s on. Times must not
+/// decrease. Empty lines, lines that begin with '#' and the header of joystick.csv are skipped.
 [[nodiscard]] Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                                                       const std::string& name);
 

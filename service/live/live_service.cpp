@@ -29,15 +29,15 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRemembered_s = 10.0;  ///< length of the stored motion of a simulated walk; no
-                                        ///< frame shows an older motion
+/// Length of the stored motion of a simulated walk. No frame shows an older motion.
+constexpr double kRemembered_s = 10.0;
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
-/// Sets the niceness of all threads except the first one. The answers of the gate have the highest
-/// priority, then the first thread, which restarts the gate with its own priority. Linux stores the
-/// priority per thread, so this function sets it for every existing thread; threads that those
-/// start inherit it. The error contains the errno text of one of the failed threads. A thread that
-/// has already ended is not an error.
+/// Sets the niceness of all threads except the first thread. The gate must have the highest
+/// priority. The first thread comes next, because it restarts the gate, and the new gate inherits
+/// its priority. Linux stores the priority per thread, so this function sets the niceness of every
+/// existing thread. New threads inherit the niceness. The error contains the errno text of one
+/// failed thread. A thread that has already ended is not an error.
 Status be_nice(int niceness) {
     int refusal = 0;
     std::error_code error;
@@ -343,7 +343,8 @@ Status LiveService::steer(camera::FrameSource& source,
                           std::uint16_t gate_port) {
     if (options_.walk.empty() && !options_.joystick) return {};
     if (!options_.walk.empty() && options_.joystick)
-        return usage_error("--walk and --joystick were both given; give one of them, not both");
+        return usage_error(
+            "--walk and --joystick cannot work together; give --walk or --joystick, not both");
     if (options_.joystick && options_.no_page)
         return usage_error("--joystick needs the page, on which the joystick is; remove --no-page");
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
@@ -402,8 +403,8 @@ Status LiveService::run() {
     Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
     walk_.reset();
     if (!perceived) return perceived;
-    while (!options_.once && !interrupted()) {  // without new frames the gate answers that the
-                                                // frames are old
+    // Without new frames the gate answers that the frames are old.
+    while (!options_.once && !interrupted()) {
         look_after(*gate, channel);
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }

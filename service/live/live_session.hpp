@@ -17,9 +17,9 @@
 
 namespace surefoot::app {
 
-/// Maps the stamps of the last 64 frames to the steady clock, with which the gate measures ages.
-/// A live camera stamps its frames with that clock. The stamps of a recording or a simulation come
-/// from another clock, so the arrival time is used for them.
+/// Maps the stamps of the last 64 frames to the steady clock, which the gate uses for ages. A live
+/// camera stamps its frames with that clock. The stamps of a recording or a simulation come from
+/// another clock, so this class uses the arrival time of their frames.
 class Arrivals {
   public:
     void note(std::int64_t stamp_ns, std::int64_t steady_ns) noexcept;
@@ -38,8 +38,8 @@ class Arrivals {
 
 /// Runs a pipeline over a source and publishes a map snapshot after every frame.
 ///
-/// It ends when the source ends, the user interrupts, or the gate requests a restart. Swapped
-/// cameras are an error. It keeps references to pipeline, source and writer, which must outlive it.
+/// The session ends when the source ends, the user interrupts the program, or the gate requests a
+/// restart. Swapped cameras are an error. Pipeline, source and writer must outlive the session.
 /// Not thread-safe.
 class LiveSession {
   public:

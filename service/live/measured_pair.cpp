@@ -75,8 +75,8 @@ Status refuse_swapped(const stereo::PairCheck& check) {
 std::string row_problem(const stereo::PairCheck& check, bool has_rig) {
     if (!check.enough()) {
         return fmt::format(
-            "only {} of {} corners of the left image were found in the right image within {} rows, "
-            "so the rectification of the pair cannot be checked; use a scene with more texture",
+            "only {} of {} corners of the left image were found in the right image within {} rows. "
+            "So the rectification of the pair cannot be checked; use a scene with more texture",
             check.matched,
             check.corners,
             kFarRows_px);

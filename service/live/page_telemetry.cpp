@@ -21,7 +21,8 @@ constexpr double kStairs_hz = 3.0;
 constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
-/// Layers that a page can show. The pipeline has them ready; they are only copied.
+/// Names of the layers that a page can show. These layers are only copied, not computed for the
+/// page.
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
 std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {

@@ -117,8 +117,8 @@ std::vector<page::PageSetting> ServiceSettings::for_pages(const Settings& run) c
     return settings;
 }
 
-/// Refuses a niceness below that of the start: perception must never get more processor time, so
-/// that the gate answers in time.
+/// Refuses a niceness below the niceness at the start. The gate answers in time only if perception
+/// never gets more processor time than at the start.
 Status ServiceSettings::check(const ServiceConfig& wanted) const {
     if (wanted.niceness < first_niceness_) {
         return usage_error(

@@ -12,8 +12,8 @@
 namespace surefoot::page {
 namespace {
 
-/// Rate limit of unreadable texts. A client of another version may send a few; more are an attack
-/// or a fault.
+/// Rate limit of unreadable texts. A client of another version may send a few; a client that sends
+/// more is disconnected.
 constexpr gate_process::RateLimit kUnreadable{1, 8};
 constexpr std::size_t kMostReplies = 64;
 

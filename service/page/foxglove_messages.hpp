@@ -54,8 +54,8 @@ static_assert(kFoxgloveChannels.size() == kFoxgloveChannelCount);
     std::string_view offered) noexcept;
 
 // Texts that the service sends.
-/// The first message of a connection. `session` identifies one run of the service: a client that
-/// reconnects to the same session may keep its channels.
+/// Returns the first message of a connection. `session` identifies one run of the service: a client
+/// that reconnects to the same session may keep its channels.
 [[nodiscard]] std::string foxglove_server_info(const std::string& name, const std::string& session);
 [[nodiscard]] std::string foxglove_advertise();
 enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
@@ -67,10 +67,10 @@ enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
                                            std::string_view payload);
 [[nodiscard]] std::string foxglove_time(std::int64_t time_ns);
 
-// Payloads. Lengths are in m; heights and positions are in odom.
-/// foxglove.Grid: the smallest rectangle of the map that holds all cells with any data, at least
-/// one cell, in the plane z = 0 of odom. Each cell has height_m (float32, NaN = unknown), sigma_mm
-/// and state (both as in PageCell) and a colour, which is transparent where the ground is unknown.
+// These functions make payloads. Lengths are in m. Heights and positions are in odom.
+/// Returns a foxglove.Grid in the plane z = 0 of odom: the smallest rectangle of the map with all
+/// cells that have data, at least one cell. A cell has height_m (float32, NaN = unknown), sigma_mm,
+/// state (both as in PageCell) and a colour. The colour of unknown ground is transparent.
 [[nodiscard]] std::string ground_payload(const PageMap& map);
 /// Returns a foxglove.PointCloud with one coloured point at the centre of each known cell.
 [[nodiscard]] std::string ground_points_payload(const PageMap& map);

@@ -24,8 +24,8 @@ using beast::error_code;
 constexpr std::int64_t kRetryAfter_ns = 500'000'000;
 constexpr auto kConnect = std::chrono::seconds(2);
 constexpr auto kIdle = std::chrono::seconds(10);
-constexpr std::size_t kLongestNews_bytes = 64 * 1024;  ///< for comparison: an outlook of 26
-                                                       ///< movements takes 5 kB
+/// Largest message of the gate. For comparison: an outlook of 26 movements takes 5 kB.
+constexpr std::size_t kLongestNews_bytes = 64 * 1024;
 
 constexpr const char* name_of(GateTopic topic) {
     return topic == GateTopic::verdict ? "/surefoot/verdict" : "/surefoot/outlook";

@@ -121,9 +121,9 @@ bool is_own_origin(const PageAddress& page, std::string_view host, std::string_v
 }
 
 std::vector<std::pair<std::string_view, std::string>> security_headers(std::string_view host) {
-    // The page opens a socket to itself and one to the gate, whose port may change while the page
-    // stays open. CSP has no syntax for IPv6 addresses. So a page at an IPv6 address may open
-    // sockets to every host.
+    // The page opens a socket to its own server and a socket to the gate. The port of the gate may
+    // change while the page stays open. CSP has no syntax for IPv6 addresses. So a page at an IPv6
+    // address may open sockets to every host.
     std::string sockets;
     if (const auto parsed = parse_host(host)) {
         const std::string gate = parsed->host.starts_with('[') ? "" : "//" + parsed->host + ":*";

@@ -23,7 +23,7 @@ struct PageFrame {
     std::int64_t map_time_ns = 0;  ///< time of the last frame in the map, clock of the source
     PagePose pose;
     PageStatus status;
-    /// The layers that a page wants; empty = no layers in this frame.
+    /// The layers that at least one page wants; empty = no layers in this frame.
     std::vector<PageLayer> layers;
     bool has_stairs = false;  ///< `stairs` was filled for this frame
     stairs::TerrainFeatures stairs;

@@ -59,12 +59,12 @@ struct ColourLimits {
 };
 [[nodiscard]] ColourLimits colour_limits(const Machine& machine) noexcept;
 
-/// The colour class of a cell, for display only, not a permission to step. It rates one cell and
-/// its four neighbours; the gate rates whole feet, their paths and the body.
+/// Returns the colour class of a cell, for display only: it is not a permission to step. It rates
+/// one cell and its four neighbours. The gate rates whole feet, their paths and the body.
 /// - unknown: the cell was never measured.
 /// - unsure: the cell's sigma exceeds the gate's limit for a cell.
-/// - unsafe: evidence of a drop; or an obstacle on or over the cell lower than the machine's
-///   height; or a height difference to a neighbour above the step limits of walking.
+/// - unsafe: the cell has evidence of a drop, or an obstacle on or above it is lower than the
+///   machine, or the height difference to a neighbour exceeds the step limits of walking.
 /// - free: all other cells.
 [[nodiscard]] GroundState ground_state(const grid::MapSnapshot& snapshot,
                                        int ix,
@@ -72,7 +72,7 @@ struct ColourLimits {
                                        const ColourLimits& limits) noexcept;
 
 /// Fills `out` from a valid snapshot (nx and ny within kMaxSide). `out.base_z_tenth_mm` stays the
-/// same while the machine is within 20 m of it in height, so that unchanged cells keep their values
+/// same while the height of the machine is within 20 m of it. So unchanged cells keep their values
 /// from message to message. Allocates memory only when the map grows.
 void fill_page_map(const grid::MapSnapshot& snapshot,
                    std::int64_t frame_time_ns,

@@ -156,8 +156,8 @@ class PageSockets {
     std::unique_ptr<gate_process::TlsDoor> tls_door_;
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
-    std::vector<std::shared_ptr<Viewer>> connections_;  // the pending handlers share their
-                                                        // connection
+    // The pending handlers of a connection share it.
+    std::vector<std::shared_ptr<Viewer>> connections_;
     std::vector<std::string> names_ = own_names();
     std::uint64_t connections_so_far_ = 0;
     std::uint64_t status_serial_ = 0;
@@ -396,10 +396,10 @@ void Viewer::send_response() {
 void Viewer::send_model(bool head) {
     const auto& machine = sockets_.show.hello.machine;
     if (!machine || machine->urdf.empty())
-        return answer(
-            http::status::not_found,
-            "text/plain",
-            "there is no 3D model of this machine; to show one, start serve with --model FILE\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no 3D model of this machine; to show a model, start serve with "
+                      "--model FILE\n");
     answer(http::status::ok, "application/xml", head ? std::string() : machine->urdf);
 }
 

@@ -53,14 +53,14 @@ struct PageControls {
 
 class PageSockets;
 
-/// Serves three things on one port: the embedded page over HTTP; its messages (messages.json) over
-/// a WebSocket at /page; and the Foxglove WebSocket protocol at every other path, for clients that
-/// offer its subprotocol.
+/// Serves three protocols on one port: the embedded page over HTTP; the messages of the page
+/// (messages.json) over a WebSocket at /page; and the Foxglove WebSocket protocol at every other
+/// path, for clients that offer a Foxglove subprotocol.
 ///
-/// All work happens on the thread that calls `run`. The next message for a viewer is made when the
-/// previous one has left: a slow viewer gets fewer messages, but never an old one. A viewer that
-/// sends an invalid message gets the reason and is disconnected. With a certificate everything uses
-/// TLS (gate_process::TlsDoor), but clients on the same machine may still connect without TLS.
+/// All work happens on the thread that calls `run`. The next message for a viewer is made after the
+/// previous message was sent: a slow viewer gets fewer messages, but never an old message. A viewer
+/// that sends an invalid message gets the reason and is disconnected. With a certificate the server
+/// uses TLS (gate_process::TlsDoor), but clients on this machine may still connect without TLS.
 ///
 /// A request must name the page by a name or address of this computer and the page's port. A web
 /// page that opens a socket must be the page itself (page_door.hpp) or a configured origin. The

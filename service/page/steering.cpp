@@ -7,8 +7,8 @@ namespace surefoot::page {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kSilence_ns = kSecond_ns;  ///< time without a command that counts as a
-                                                  ///< release
+/// A command that is not repeated for this time counts as released.
+constexpr std::int64_t kSilence_ns = kSecond_ns;
 /// Time that a page keeps the joystick after the release.
 constexpr std::int64_t kKept_ns = 5 * kSecond_ns;
 
