@@ -110,8 +110,8 @@ std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 /// Handles the end of parsing. --help and --version succeed; every other case is a wrong call with
-/// a one-sentence error. A wrong call of `gate` must not look like permission, so it returns
-/// kExitUsage.
+/// a one-sentence error. A wrong call of `gate` must not look like a permission, so the function
+/// returns kExitUsage.
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const std::string name = verb_of_call(app).get_name();

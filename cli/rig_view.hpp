@@ -23,7 +23,7 @@ struct RigView {
         std::string name;
         double toe_m = 0.0;       ///< farthest point of the landed foot, ahead of base_link
         bool remembered = false;  ///< true = the whole landing area is in the blind zone
-                                  ///< (then the map must contain it from earlier frames)
+                                  ///< The map must then contain this area from earlier frames.
     };
     std::string name;
     int width = 0;
@@ -33,7 +33,7 @@ struct RigView {
     double disparity_sigma_px = 0.0;  ///< assumed standard deviation of a disparity
     std::vector<Depth> depths;
     FloorView floor;
-    std::vector<Step> steps;  ///< steps straight ahead
+    std::vector<Step> steps;  ///< movements straight ahead
 };
 
 }  // namespace surefoot::app

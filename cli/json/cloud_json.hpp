@@ -26,7 +26,7 @@ struct KeptPoints {
     std::int64_t skipped = 0;  ///< number of points that were not finite
     /// Origin that was subtracted from the coordinates during the computation.
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< data of the input that the output lacks
+    std::vector<std::string> notes;  ///< input data that the output lacks
 };
 [[nodiscard]] std::string sor_json(const KeptPoints& result,
                                    int others,

@@ -25,9 +25,9 @@ struct CalibrateOptions {
     CommonOptions common;
     bool stereo = false;
     std::string source;
-    std::string board;  ///< text for calibration::parse_board()
+    std::string board;  ///< board as text, for calibration::parse_board()
     std::string model = "pinhole5";
-    std::string camera;  ///< left | right: which camera of a stereo source
+    std::string camera;  ///< camera of a stereo source: left or right
     std::string out_dir;
 };
 

@@ -71,14 +71,16 @@ RigView view_of(const camera::StereoRig& rig,
 }
 
 void print(const RigView& view) {
-    fmt::print("rig {}: {}x{}, f {:.1f} px, baseline {:.1f} mm\n",
+    fmt::print("rig {}: images of {}x{} px, focal length {:.1f} px, baseline {:.1f} mm\n",
                view.name,
                view.width,
                view.height,
                view.focal_px,
                1e3 * view.baseline_m);
-    fmt::print("standard deviation of depth on well textured ground (disparity {:g} px):",
-               view.disparity_sigma_px);
+    fmt::print(
+        "standard deviation of depth on well textured ground (standard deviation of a disparity "
+        "{:g} px):",
+        view.disparity_sigma_px);
     for (const auto& depth : view.depths)
         fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * depth.sigma_m, depth.z_m);
     fmt::print(

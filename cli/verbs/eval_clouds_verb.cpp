@@ -167,7 +167,7 @@ int eval_clouds(const EvalCloudsOptions& options) {
     fmt::print("{}\n", sentence_of(comparison));
     if (comparison.cores) {
         fmt::print(
-            "{} of {} core points differ by more than their level of detection (median "
+            "{} of {} core points differ by more than their level of detection (median level "
             "{:.2f} mm)\n",
             comparison.significant,
             *comparison.cores,

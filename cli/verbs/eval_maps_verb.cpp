@@ -45,7 +45,7 @@ grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double r
     return layers.traversability;
 }
 
-/// Reads another layer of the run. Its size must equal that of elevation.asc.
+/// Reads another layer of the run. Its size must equal the size of elevation.asc.
 Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry& geometry) {
     const auto dem = io::read_esri_grid(path);
     if (!dem) return dem.error();

@@ -36,22 +36,27 @@ std::string in_mm(const eval::MatchErrors& figures) {
 }
 
 void print_kind(const char* name, const eval::KindErrors& kind, const char* height) {
-    fmt::print("{:8} {:3} of {:3} found, {:3} without a true partner; position across {}, {} {}\n",
-               name,
-               kind.matched,
-               kind.truth,
-               kind.extra.size(),
-               in_mm(kind.across),
-               height,
-               in_mm(kind.height));
+    fmt::print(
+        "{:8} {:3} of {:3} found, {:3} without a true partner; error of the position in walking "
+        "direction {}, error of the {} {}\n",
+        name,
+        kind.matched,
+        kind.truth,
+        kind.extra.size(),
+        in_mm(kind.across),
+        height,
+        in_mm(kind.height));
 }
 
 void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>& lists) {
-    fmt::print("found minus true [mm]: mean / standard deviation / largest (number of pairs)\n");
+    fmt::print(
+        "errors (found minus true) in mm: mean / standard deviation / largest magnitude (number of "
+        "pairs)\n");
     if (lists.contains("flights")) {
         print_kind("flights", errors.flights, "riser");
         fmt::print(
-            "         number of steps correct in {} of {} found flights; going {}, width {}\n",
+            "         number of steps correct in {} of {} found flights; error of the going {}, "
+            "error of the width {}\n",
             errors.flights.steps_right,
             errors.flights.matched,
             in_mm(errors.flights.going),
@@ -62,7 +67,7 @@ void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>
     if (lists.contains("sills")) print_kind("sills", errors.sills, "height");
     if (lists.contains("doors")) {
         print_kind("doors", errors.doors, "sill");
-        fmt::print("         width {}\n", in_mm(errors.doors.width));
+        fmt::print("         error of the width {}\n", in_mm(errors.doors.width));
     }
     if (lists.contains("edges")) print_kind("edges", errors.edges, "height");
 }

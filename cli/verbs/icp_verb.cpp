@@ -156,7 +156,8 @@ void warn(const geometry::CloudAlignment& found) {
     }
 }
 
-/// `surefoot icp`: aligns a cloud with a reference cloud. Exit code 1 if it does not converge.
+/// `surefoot icp`: aligns a cloud with a reference cloud. The exit code is 1 if the alignment does
+/// not converge.
 int icp(const IcpOptions& options) {
     const auto guess = parse_guess(options.guess);
     if (!guess) return report(guess.error());

@@ -30,7 +30,8 @@ int info_of_camera(const InfoOptions& options) {
     }
     fmt::print("{}: {} (driver {})\n", view->device, view->card, view->driver);
     for (const io::VideoMode& mode : view->modes)
-        fmt::print("  {} {}x{} at {:.4g} Hz\n", mode.fourcc, mode.width, mode.height, mode.rate_hz);
+        fmt::print(
+            "  {} {}x{} px at {:.4g} Hz\n", mode.fourcc, mode.width, mode.height, mode.rate_hz);
     for (const io::VideoControl& control : view->controls) {
         fmt::print("  {}: {} ({} .. {}, step {}{})\n",
                    control.name,
@@ -90,7 +91,7 @@ int info(const InfoOptions& options) {
         i.imu_samples,
         i.imu_rate_hz,
         i.has_truth ? "yes" : "no");
-    fmt::print("left camera {}x{}, baseline {:.1f} mm\n",
+    fmt::print("left camera {}x{} px, baseline {:.1f} mm\n",
                i.rig.left.width,
                i.rig.left.height,
                1e3 * i.rig.T_left_right.translation_m.norm());

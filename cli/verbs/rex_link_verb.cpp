@@ -34,7 +34,7 @@ struct RexLinkOptions {
 using rex_link::LinkEvent;
 using rex_link::LinkEventKind;
 
-constexpr int kNameWidth = 13;  // longest name of an event kind, plus a space
+constexpr int kNameWidth = 13;  // width of the longest name of an event kind, plus a space
 
 /// Returns the text of an event for the terminal, without the name of the event.
 std::string words_of(const LinkEvent& event, const std::string& tone_file) {
@@ -79,7 +79,7 @@ Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
         });
 }
 
-/// True if the user requested a movement but no gate was ever connected.
+/// Returns true if the user requested a movement but no gate was ever connected.
 bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     const auto has = [&rows](LinkEventKind kind) {
         return std::any_of(rows.begin(), rows.end(), [kind](const RexLinkRow& row) {

@@ -266,7 +266,9 @@ void add_sim(VerbGroup verbs) {
                 "folder for the recording; to continue an interrupted recording, repeat the call")
             .value("DIR");
     verb.option("--frames", o.frames, "stop after this number of frames").positive();
-    verb.option("--rate", o.rate_hz, "frame rate, in Hz").value("HZ").in(0.1, 1000.0);
+    verb.option("--rate", o.rate_hz, "frame rate of the simulated cameras, in Hz")
+        .value("HZ")
+        .in(0.1, 1000.0);
     verb.option("--rig",
                 o.rig,
                 "rig of the simulated cameras: a calibration file, or the name of a built-in rig, "

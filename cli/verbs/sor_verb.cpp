@@ -19,7 +19,8 @@ struct SorOptions {
     CommonOptions common;
     std::string cloud;
     int neighbours = 7;
-    /// self: a point is its own neighbour (CloudCompare, Open3D); others: it is not (PCL).
+    /// self: a point is one of its neighbours (CloudCompare, Open3D); others: the point does not
+    /// count (PCL).
     std::string counting = "self";
     double sigmas = 4.0;  ///< limit above the mean neighbour distance, in standard deviations
     std::string out_file;

@@ -32,7 +32,7 @@ struct ReadingOptions {
     std::optional<double> pair_tolerance_s;   ///< largest time between the two images of a frame
     std::optional<double> depth_codes_per_m;  ///< RGB-D: pixel value that means 1 m
     std::optional<int> image_bits;            ///< 16-bit images: number of used bits
-    bool skip_broken = false;                 ///< skip and count frames that cannot be read
+    bool skip_broken = false;                 ///< true = skip and count unreadable frames
 };
 
 /// A source of frames and the options for opening it.

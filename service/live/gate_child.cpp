@@ -153,7 +153,7 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     port_ = port_of(said);
     if (port_ != 0) return {};
     if (process_ > 0) {
-        ::kill(process_, SIGKILL);  // the gate may hang
+        ::kill(process_, SIGKILL);  // SIGKILL, because the gate may hang
         ::waitpid(process_, nullptr, 0);
     }
     process_ = -1;
@@ -170,7 +170,7 @@ Result<bool> GateChild::watch(std::int64_t now_ns) {
     if (now_ns < next_start_ns_) return false;
     next_start_ns_ = now_ns + kRestartEvery_ns;
     if (auto launched = launch(how_.arguments); !launched)
-        return launched.error();  // the next call retries
+        return launched.error();  // the next call tries again to start the gate
     ++restarts_;
     return true;
 }

@@ -293,7 +293,8 @@ Status LiveService::introduce(const camera::FrameSource& source,
     return {};
 }
 
-/// Pages see every setting of the run and can change the settings of the service.
+/// Offers the settings to pages. Pages see every setting of the run and can change the settings of
+/// the service.
 void LiveService::offer_settings(bool is_scene) {
     ServiceConfig first;
     first.speed = speed_;
@@ -337,7 +338,7 @@ Result<std::string> LiveService::change(const page::SettingWish& wish) {
     return changed;
 }
 
-/// Starts the steered walk if --walk or --joystick asks for it.
+/// Starts the steered walk if --walk or --joystick was given.
 Status LiveService::steer(camera::FrameSource& source,
                           const std::string& rider_token,
                           std::uint16_t gate_port) {

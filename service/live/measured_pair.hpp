@@ -24,9 +24,9 @@ struct MeasuredPair {
 /// points and do not count in the figures.
 inline constexpr float kTrustedOutlierProbability = 0.5F;
 
-/// Rectifies the frame if a rig is given, and matches it as the pipeline does. Input errors: the
-/// image sizes differ or do not fit the rig, the images are not wider than the disparity range, or
-/// the cameras are swapped.
+/// Rectifies the frame if a rig is given, and matches the images as the pipeline does. Returns an
+/// input error if the image sizes differ or do not fit the rig, if the images are not wider than
+/// the disparity range, or if the cameras are swapped.
 [[nodiscard]] Result<MeasuredPair> measure_pair(const StereoFrame& frame,
                                                 const std::optional<camera::StereoRig>& rig,
                                                 const pipeline::PipelineConfig& config,
@@ -48,8 +48,8 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
 
 /// Density and precision of a depth image.
 struct PairFigures {
-    double density_percent = 0.0;  ///< pixels with a match
-    double trusted_percent = 0.0;  ///< pixels with a match of low outlier probability
+    double density_percent = 0.0;  ///< share of pixels with a match
+    double trusted_percent = 0.0;  ///< share of pixels with a trusted match
     double median_sigma_px = 0.0;  ///< median sigma of trusted matches; NaN = none
 };
 [[nodiscard]] PairFigures figures_of(const DepthImage& depth);

@@ -15,7 +15,7 @@
 #include "surefoot/core/result.hpp"
 
 /// The messages between the service and a client of the Foxglove WebSocket protocol; each function
-/// makes or reads one of them. Payloads are JSON that follows the schemas of foxglove_schemas.hpp.
+/// makes or reads one message. Payloads are JSON that follows the schemas of foxglove_schemas.hpp.
 /// No message is a permission to step. All functions are pure: no socket, no clock, no file.
 namespace surefoot::page {
 
@@ -93,7 +93,7 @@ struct FoxgloveSubscribe {
 struct FoxgloveUnsubscribe {
     std::vector<std::uint32_t> subscriptions;
 };
-/// An operation that the service does not offer.
+/// A request for an operation that the service does not offer.
 struct FoxgloveUnserved {
     std::string operation;
 };

@@ -93,7 +93,8 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
     void on_connect(error_code error) {
         if (over_) return;
         if (error) return abandon();
-        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
+        beast::get_lowest_layer(stream_).expires_never();  // from here on the timeouts of the
+                                                           // WebSocket apply
         stream_.set_option(websocket::stream_base::timeout{kConnect, kIdle, true});
         stream_.read_message_max(kLongestNews_bytes);
         const std::string target =

@@ -34,7 +34,7 @@ struct GateNews {
 /// Address of the gate's rosbridge service.
 struct GateService {
     std::string address;     ///< numeric IP address; 0.0.0.0 and :: mean this machine
-    std::uint16_t port = 0;  ///< 0 = not known yet
+    std::uint16_t port = 0;  ///< TCP port; 0 = not known yet
     std::string token;       ///< empty = the gate needs no token
     friend bool operator==(const GateService&, const GateService&) = default;
 };

@@ -44,8 +44,8 @@ struct PageRates {
 /// Neither thread waits for the other longer than a swap of two pointers.
 class PageFeed {
   public:
-    // For the perception thread only; the wants_... functions are thread-safe.
-    /// The frame to fill next. It still holds the data of an earlier frame.
+    // Only the perception thread may call these functions, but wants_...() is thread-safe.
+    /// Returns the frame to fill next, which still holds the data of an earlier frame.
     [[nodiscard]] PageFrame& blank() noexcept { return *blank_; }
     /// Publishes the frame in blank(). Afterwards blank() refers to another frame.
     void hand_over();
@@ -54,7 +54,7 @@ class PageFeed {
     [[nodiscard]] bool wants_layers() const noexcept { return wants_layers_; }
     [[nodiscard]] bool wants_stairs() const noexcept { return wants_stairs_; }
 
-    // For the page's thread only.
+    // Only the thread of the page may call these functions.
     /// Swaps `frame` with the newest frame. Returns false and changes nothing if no new frame was
     /// published since the last call.
     [[nodiscard]] bool fetch(std::unique_ptr<PageFrame>& frame);

@@ -404,7 +404,8 @@ void Viewer::send_model(bool head) {
 }
 
 void Viewer::upgrade(std::optional<std::string_view> protocol) {
-    beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has its own timeouts
+    beast::get_lowest_layer(ws_).expires_never();  // from here on the timeouts of the WebSocket
+                                                   // apply
     ws_.set_option(websocket::stream_base::timeout{kHandshake, kIdle, true});
     ws_.read_message_max(kMaxMessageBytes);
     ws_.auto_fragment(false);  // one WebSocket frame per message

@@ -23,7 +23,7 @@ namespace surefoot::page {
 struct PageServerConfig {
     /// Address to listen at. Beyond loopback the page needs a token, and TLS or `insecure`.
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = 8080;   ///< 0 = any free port
+    std::uint16_t port = 8080;   ///< TCP port; 0 = any free port
     int more_ports = 16;         ///< number of following ports to try if `port` is in use
     std::string token;           ///< the WebSocket's URL needs ?token=...; empty = no token
     gate_process::TlsFiles tls;  ///< empty = plain HTTP, on loopback only

@@ -18,10 +18,10 @@ struct PageSetting {
     std::string unit;   ///< for example "m"; empty if the setting has no unit
     std::string range;
     std::string comment;
-    bool changeable = false;  ///< a page may change it while the service runs
+    bool changeable = false;  ///< a page may change this setting during the run
 };
 
-/// A page's request to change one setting. The value is written as for --set.
+/// A page's request to change one setting. The value has the format of --set.
 struct SettingWish {
     std::string key;
     std::string value;
