@@ -173,7 +173,7 @@ const Json* list_in(const Json& json, const char* key) {
 
 Result<FoxgloveRequest> read_subscribe(const Json& json) {
     const auto wrong = input_error(
-        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]} with 32-bit numbers)");
+        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]} with 32-bit ids)");
     const Json* const list = list_in(json, "subscriptions");
     if (list == nullptr) return wrong;
     FoxgloveSubscribe request;
@@ -189,7 +189,7 @@ Result<FoxgloveRequest> read_subscribe(const Json& json) {
 
 Result<FoxgloveRequest> read_unsubscribe(const Json& json) {
     const auto wrong =
-        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]} with 32-bit numbers)");
+        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]} with 32-bit ids)");
     const Json* const list = list_in(json, "subscriptionIds");
     if (list == nullptr) return wrong;
     FoxgloveUnsubscribe request;
