@@ -10,15 +10,15 @@
 
 namespace surefoot::app {
 
-/// A logged verdict that differs from the verdict this gate decides for the same query and map.
+/// A logged verdict that differs from the verdict of this gate for the same query and map.
 struct AuditDifference {
     std::string file;
     std::uint64_t offset = 0;    ///< position of the record's frame in the file [bytes]
-    std::uint64_t sequence = 0;  ///< number of that frame
+    std::uint64_t sequence = 0;  ///< number of that frame in the log
     std::vector<gate_process::FieldDifference> fields;
 };
 
-/// Result of deciding every verdict of an audit log again: how many are equal, how many differ.
+/// Numbers of equal and of different verdicts after each query of an audit log is decided again.
 struct AuditReplay {
     std::uint64_t equal = 0;
     std::uint64_t different = 0;

@@ -22,9 +22,9 @@ struct CameraView {
 struct CameraNode {
     std::string device;
     std::string card;
-    std::string problem;  ///< why it cannot be used; empty = it opens and delivers video
+    std::string problem;  ///< why the camera cannot be used; empty = it delivers video
 };
-/// All nodes /dev/video*, in natural order.
+/// Returns all nodes /dev/video*, sorted so that video10 follows video9.
 [[nodiscard]] std::vector<CameraNode> camera_nodes();
 
 }  // namespace surefoot::app

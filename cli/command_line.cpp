@@ -22,8 +22,8 @@
 namespace surefoot::app {
 namespace {
 
-/// CLI11's own range checks are not enough: they accept NaN in CLI::Range and infinity in
-/// CLI::PositiveNumber.
+/// Refuses numbers that are not finite. The range checks of CLI11 are not enough: CLI::Range
+/// accepts NaN, and CLI::PositiveNumber accepts infinity.
 CLI::Validator finite_number() {
     return {[](const std::string& text) {
                 double value = 0.0;
@@ -35,7 +35,7 @@ CLI::Validator finite_number() {
             ""};
 }
 
-/// A subcommand with an example under its help.
+/// Adds a subcommand and shows an example below its help text.
 CLI::App* add_subcommand(CLI::App& app, const char* name, const char* what, const char* example) {
     CLI::App* verb = app.add_subcommand(name, what);
     verb->footer(std::string("Example:\n  ") + example);
@@ -43,7 +43,9 @@ CLI::App* add_subcommand(CLI::App& app, const char* name, const char* what, cons
 }
 
 void add_common(Verb verb, CommonOptions& common) {
-    verb.option("--config", common.config_file, "YAML file of settings; an unknown key is an error")
+    verb.option("--config",
+                common.config_file,
+                "read settings from this YAML file; an unknown key in the file is an error")
         .value("FILE");
     verb.option("--set",
                 common.settings,
@@ -58,7 +60,8 @@ void add_common(Verb verb, CommonOptions& common) {
     verb.flag("--json", common.json, "print the result as one JSON object on stdout");
     verb.option("--threads",
                 common.threads,
-                "number of threads, 0 = all cores (default 0); the results do not depend on it")
+                "number of threads, 0 = all cores (default 0); the results do not depend on this "
+                "number")
         .in(0, 256);
     verb.option(
         "--seed", common.seed, "seed of the random numbers of simulated scenes (default 1)");
@@ -75,19 +78,19 @@ int check_settings(const CommonOptions& common, const std::string& verb, Reads r
     return kExitOk;
 }
 
-/// The innermost verb of this call: `eval maps`, not `eval`.
+/// Returns the innermost verb of this call, for example `maps` for `surefoot eval maps`.
 const CLI::App& verb_of_call(const CLI::App& app) {
     const auto verbs = app.get_subcommands();
     return verbs.empty() ? app : verb_of_call(*verbs.front());
 }
 
 /// Describes a wrong call in one sentence. The first unparsed word is a misspelled option if it
-/// starts with '-', otherwise a misspelled verb. For all other errors the text of CLI11 is clear
-/// enough.
+/// starts with '-', otherwise a misspelled verb. For all other errors the function returns the text
+/// of CLI11.
 std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& verb = verb_of_call(app);
     std::vector<std::string> words = app.remaining(true);
-    std::erase(words, "--json");  // --json is not the mistake: `eval --json` lacks a verb
+    std::erase(words, "--json");  // in `eval --json` the mistake is the missing verb, not --json
     if (words.empty()) return error.what();
     const std::string word = words.front().substr(0, words.front().find('='));
     std::vector<std::string> names;
@@ -104,8 +107,8 @@ std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 /// Handles the end of parsing. --help and --version succeed; every other case is a wrong call with
-/// a one-sentence error. A wrong call of `gate` must not look like permission, so it returns
-/// kExitUsage.
+/// a one-sentence error. A wrong call of `gate` must not look like a permission, so the function
+/// returns kExitUsage.
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const std::string name = verb_of_call(app).get_name();
@@ -150,7 +153,7 @@ std::string first_words(const std::vector<std::string>& words) {
     return first;
 }
 
-/// The words of the call with today's option names. Warns about each old name.
+/// Returns the words of the call with the current option names. Warns about each old name.
 std::vector<std::string> words_of_call(int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const std::string first = first_words(words);
@@ -161,7 +164,7 @@ std::vector<std::string> words_of_call(int argc, char** argv) {
                 continue;
             log_warning(
                 fmt::format("{} is now called {}. Use the new name: version 0.3 refuses "
-                            "the old one",
+                            "the old name",
                             old_name,
                             new_name));
             word.replace(0, end, new_name);
@@ -282,18 +285,19 @@ void add_reading(Verb verb, ReadingOptions& reading) {
     verb.option("--pair-tolerance",
                 reading.pair_tolerance_s,
                 "largest time difference between the two images of a frame, in s (default: 1/5 of "
-                "the frame time; TUM RGB-D: 0.02)")
+                "the time between two frames; 0.02 for TUM RGB-D folders)")
         .value("S")
         .in(0.0, 10.0);
-    verb.option(
-            "--depth-factor",
-            reading.depth_codes_per_m,
-            "RGB-D: value of a depth image for a distance of 1 m (TUM: 5000; images in mm: 1000)")
+    verb.option("--depth-factor",
+                reading.depth_codes_per_m,
+                "pixel value of an RGB-D depth image that means a distance of 1 m (5000 in TUM "
+                "folders, 1000 if the values are mm)")
         .value("N")
         .in(1.0, 1e6);
     verb.option("--image-bits",
                 reading.image_bits,
-                "16-bit camera images: number of bits in use; Surefoot reads the upper 8 of them")
+                "number of used bits in a 16-bit camera image; Surefoot reads the upper 8 of the "
+                "used bits")
         .value("N")
         .in(9, 16);
 }
@@ -307,12 +311,14 @@ void add_skip_broken(Verb verb, ReadingOptions& reading) {
 void add_source_options(Verb verb, SourceOptions& source) {
     verb.option("--rig",
                 source.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the source")
+                "calibration file; it replaces the calibration of the source. For a simulated "
+                "scene also the name of a built-in rig, for example zed_vga")
         .value("FILE|NAME");
     verb.option("--imu",
                 source.imu_file,
-                "EuRoC IMU csv, or a FIFO of such rows; its time stamps use the clock of the "
-                "frames (CLOCK_MONOTONIC for a live camera)")
+                "IMU samples: an EuRoC csv file, or a FIFO that delivers the rows of such a file. "
+                "Their time stamps must use the clock of the frames (CLOCK_MONOTONIC for a live "
+                "camera)")
         .value("FILE");
     verb.option("--rate", source.rate_hz, "frame rate of a source without time stamps, in Hz")
         .value("HZ")
@@ -325,24 +331,26 @@ void add_source_options(Verb verb, SourceOptions& source) {
 int run_command_line(int argc, char** argv) {
     cv::setNumThreads(1);  // only the executor creates threads
     CLI::App app{
-        "surefoot: is it safe to step there? Depth, odometry, elevation map, stairs and gate for a "
-        "stereo camera on a walking machine"};
+        "Surefoot answers: is it safe to step there? It computes depth, odometry, an elevation "
+        "map, stairs and the verdict of the gate for a stereo camera on a walking machine"};
     app.set_version_flag("--version", SUREFOOT_VERSION);
     app.require_subcommand(1);
-    app.footer("Run 'surefoot VERB --help' to see the options and an example of a verb.");
+    app.footer("Run 'surefoot VERB --help' to see the options of one verb and an example.");
 
     int exit_code = kExitOk;
     add_all_verbs(VerbGroup(&app, exit_code));
     const bool json = wants_json(argc, argv);
     try {
         std::vector<std::string> words = words_of_call(argc, argv);
-        std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+        // CLI11 reads the words from the last to the first.
+        std::reverse(words.begin(), words.end());
         app.name(argv[0]);
         app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {
-        const bool is_output = std::ferror(stdout) != 0;  // fmt throws if writing to stdout fails
+        // fmt throws this error if a write to stdout fails.
+        const bool is_output = std::ferror(stdout) != 0;
         log_error(std::string(is_output ? "stdout: " : "internal error: ") + error.what());
         exit_code = kExitFailed;
     }

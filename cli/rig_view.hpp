@@ -6,10 +6,10 @@
 
 namespace surefoot::app {
 
-/// Range of the floor that a camera sees, ahead of base_link [m].
+/// Nearest and farthest floor that a camera sees, as distances ahead of base_link [m].
 struct FloorView {
     double near_m = 0.0;
-    double far_m = 0.0;  ///< infinite when the horizon is in view
+    double far_m = 0.0;  ///< infinite if the horizon is in view
 };
 
 /// Predicted view of a rig that is mounted on a machine, as `surefoot doctor` prints it.
@@ -21,19 +21,19 @@ struct RigView {
     struct Step {
         int command = 0;
         std::string name;
-        double toe_m = 0.0;       ///< farthest point of the landing foot, ahead of base_link
-        bool remembered = false;  ///< the whole landing area lies in the blind zone; the map must
-                                  ///< hold it from earlier frames
+        double toe_m = 0.0;       ///< farthest point of the landed foot, ahead of base_link
+        bool remembered = false;  ///< true = the whole landing area is in the blind zone
+                                  ///< The map must then contain this area from earlier frames.
     };
     std::string name;
     int width = 0;
     int height = 0;
     double focal_px = 0.0;
     double baseline_m = 0.0;
-    double disparity_sigma_px = 0.0;  ///< disparity precision that `depths` assumes
+    double disparity_sigma_px = 0.0;  ///< assumed standard deviation of a disparity
     std::vector<Depth> depths;
     FloorView floor;
-    std::vector<Step> steps;  ///< steps straight ahead
+    std::vector<Step> steps;  ///< movements straight ahead
 };
 
 }  // namespace surefoot::app

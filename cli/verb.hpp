@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a verb declares its options. This header hides CLI11, which adds ten seconds of compile time
-// to every file that includes it; only command_line.cpp does.
+// A verb declares its options with these classes. They hide CLI11, which adds ten seconds of
+// compile time to each file that includes it. Only command_line.cpp includes CLI11.
 #pragma once
 
 #include <cstdint>
@@ -27,19 +27,19 @@ class Option {
     explicit Option(CLI::Option* option) : option_(option) {}
 
     Option required() const;
-    /// Name of the value in --help, for example "M" or "FILE".
+    /// Sets the name of the value in --help, for example "M" or "FILE".
     Option value(const char* name) const;
     /// Accepts numbers from `least` to `most`, both included. NaN is refused.
     Option in(double least, double most) const;
     Option in(int least, int most) const;
     /// Accepts finite numbers above 0.
     Option positive() const;
-    /// Accepts finite numbers from 0 on.
+    /// Accepts 0 and finite numbers above 0.
     Option not_negative() const;
     Option one_of(std::vector<std::string> names) const;
-    /// One argument holds several values, separated by commas.
+    /// Lets one argument contain several values, separated by commas.
     Option separated_by_commas() const;
-    /// Each use takes one value, so that a positional argument may follow.
+    /// Limits each use of the option to one value, so that a positional argument may follow.
     Option one_value_each() const;
     Option show_default() const;
     Option needs(Option other) const;
@@ -69,17 +69,17 @@ class Verb {
     CLI::App* verb_;
 };
 
-/// Which settings a verb reads. A verb without settings still checks --config, --set and --preset,
-/// so that the same options work with every verb, and warns that they have no effect.
+/// States which settings a verb reads. Every verb accepts --config, --set and --preset. A verb
+/// without settings still checks these options, and warns that they have no effect.
 enum class Reads { settings, own_settings, no_settings };
 
-/// Holds verbs: the program itself, or a verb with verbs of its own, such as `eval`.
+/// A group of verbs: the program itself, or a verb that has verbs of its own, such as `eval`.
 class VerbGroup {
   public:
     /// `exit_code` receives the exit code of the verb that the call names.
     VerbGroup(CLI::App* app, int& exit_code) : app_(app), exit_code_(&exit_code) {}
 
-    /// Adds a verb that has verbs of its own, one of which every call must name.
+    /// Adds a verb that has verbs of its own. Every call must name one of these verbs.
     VerbGroup group(const char* name, const char* what, const char* example);
 
     /// Adds a verb that runs `handler`. Its options live as long as the command line. The tests run
@@ -111,7 +111,7 @@ class VerbGroup {
 
 /// Adds the options that control how recordings of other programs are read.
 void add_reading(Verb verb, ReadingOptions& reading);
-/// Adds the options of a source: how to read it, its calibration, IMU, rate and length.
+/// Adds the options of a source: reading rules, calibration, IMU, frame rate and length.
 void add_source_options(Verb verb, SourceOptions& source);
 /// Adds the option that skips frames that cannot be read.
 void add_skip_broken(Verb verb, ReadingOptions& reading);

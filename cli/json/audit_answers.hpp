@@ -7,8 +7,8 @@
 #include "cli/audit_replay.hpp"
 #include "service/gate_process/audit/audit_reader.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string audit_json(const gate_process::AuditSummary& summary);

@@ -56,7 +56,7 @@ void add_stereo(const calibration::StereoCalibration& stereo, Json& json) {
     Json depth = Json::array();
     for (const calibration::DepthError& error : stereo.depth_errors)
         depth.push_back({{"distance_m", error.distance_m},
-                         {"sigma_m", error.sigma_m}});  // NaN is written as null
+                         {"sigma_m", error.sigma_m}});  // the JSON library writes NaN as null
     json["depth_errors"] = depth;
 }
 

@@ -7,9 +7,9 @@
 
 namespace surefoot::app {
 
-/// The result of `calibrate` as JSON for stdout: rms, cameras with sigmas, rejected views, advice.
+/// Returns the JSON result of `calibrate`: rms, cameras with sigmas, rejected views, advice.
 [[nodiscard]] std::string calibration_json(const CalibrationRun& run);
-/// Content of views.json: every board point of every view, for other tools.
+/// Returns the content of views.json, for other tools: every board point of every view.
 [[nodiscard]] std::string views_json(const CalibrationRun& run);
 
 }  // namespace surefoot::app

@@ -12,7 +12,7 @@
 #include "surefoot/eval/clouds/cloud_outliers.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
-// The JSON objects of the cloud tools; the names are a contract (docs/reference/json.md).
+// Functions write the JSON of the cloud verbs. Key names are a contract (docs/reference/json.md).
 namespace surefoot::app {
 
 [[nodiscard]] std::string voxel_json(const ThinnedCloud& thinned,
@@ -23,10 +23,10 @@ namespace surefoot::app {
 struct KeptPoints {
     std::int64_t points = 0;
     std::int64_t kept = 0;
-    std::int64_t skipped = 0;  ///< points that were not finite
+    std::int64_t skipped = 0;  ///< number of points that were not finite
     /// Origin that was subtracted from the coordinates during the computation.
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< data of the input that the output lacks
+    std::vector<std::string> notes;  ///< input data that the output lacks
 };
 [[nodiscard]] std::string sor_json(const KeptPoints& result,
                                    int others,
@@ -38,11 +38,11 @@ struct KeptPoints {
 [[nodiscard]] std::string icp_json(const geometry::CloudAlignment& found,
                                    const Eigen::Vector3d& shift_m);
 
-/// Distances between two clouds. Only the method M3C2 sets the last three members.
+/// Result of comparing two clouds. Only the method M3C2 sets the last three members.
 struct CloudComparison {
     std::string method;
     eval::DistanceFigures figures;
-    std::int64_t skipped = 0;  ///< points without a distance
+    std::int64_t skipped = 0;  ///< number of points without a distance
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
     std::optional<std::int64_t> cores;
     std::int64_t significant = 0;
@@ -50,8 +50,8 @@ struct CloudComparison {
 };
 [[nodiscard]] std::string clouds_json(const CloudComparison& comparison);
 
-/// Levels, stairs and the width of a door. `door_width_m`: outer nullopt = not requested, no key;
-/// inner nullopt = requested but not found, written as null.
+/// Returns levels, stairs and the width of a door as JSON. `door_width_m`: outer nullopt = not
+/// requested, no key; inner nullopt = requested but not found, written as null.
 [[nodiscard]] std::string measure_json(const eval::HeightHistogram& heights,
                                        const eval::StairMeasures& stairs,
                                        const std::optional<std::optional<double>>& door_width_m,

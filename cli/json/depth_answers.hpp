@@ -8,8 +8,8 @@
 #include "studies/board_calibration/board_accuracy.hpp"
 #include "surefoot/eval/depth/depth_design.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string measured_depth_json(const MeasuredPair& measured,

@@ -16,7 +16,8 @@ namespace {
 using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
-/// Summary of a trajectory file.
+
+/// Returns a summary of a trajectory file as JSON.
 Json trajectory_file_json(const io::TrajectoryFile& file) {
     return {{"format", file.format},
             {"stamps", file.stamps},

@@ -11,8 +11,8 @@
 #include "surefoot/eval/trajectory/trajectory.hpp"
 #include "surefoot/io/recordings/trajectory_file.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,
@@ -20,10 +20,10 @@ namespace surefoot::app {
                                           const io::TrajectoryFile& estimate,
                                           const io::TrajectoryFile& truth);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);
-/// Divisor from the codes of a ground-truth image to pixels of disparity.
+/// Divisor that converts the codes of a ground-truth image to disparities in px.
 struct TruthScale {
     double used = 1.0;
-    std::optional<double> suspected;  ///< probably the right divisor, if it differs from `used`
+    std::optional<double> suspected;  ///< probably correct divisor, if `used` seems wrong
 };
 [[nodiscard]] std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale);
 

@@ -10,8 +10,8 @@
 #include "surefoot/ground/ground_observation.hpp"
 #include "surefoot/io/maps/map_file.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string dem_json(const grid::GridGeometry& geometry,

@@ -10,8 +10,8 @@
 #include "surefoot/io/settings/config_yaml.hpp"
 #include "surefoot/io/settings/model_file.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);

@@ -12,8 +12,8 @@
 #include "surefoot/io/recordings/recorder.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
@@ -21,7 +21,7 @@ namespace surefoot::app {
 [[nodiscard]] std::string rig_json(const io::RigFile& file,
                                    const std::vector<std::string>& written);
 [[nodiscard]] std::string copied_json(const Copied& copied, const std::string& folder);
-/// Result of rendering images of a calibration board.
+/// Returns the JSON result of `surefoot calibrate render`.
 [[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);
 [[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,
                                       double speed,

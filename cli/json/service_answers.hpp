@@ -7,12 +7,12 @@
 #include "service/live/steered_walk.hpp"
 #include "service/rex_link/link_client.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string serve_json(const std::vector<AskedStep>& steps);
-/// One event of the REX link, with the file of its tone (empty = no tone).
+/// One event of the REX link. `tone_file` is the file of the tone; empty = no tone.
 struct RexLinkRow {
     rex_link::LinkEvent event;
     std::string tone_file;

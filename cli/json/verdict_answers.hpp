@@ -6,11 +6,11 @@
 
 #include "surefoot/gate/gate.hpp"
 
-// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
-// written as null.
+// These functions write the JSON objects of the command line. The names of the keys are a contract
+// (docs/reference/json.md). NaN is written as null.
 namespace surefoot::app {
 
-/// Answer of a verb that failed before it produced a result.
+/// Returns the JSON answer of a verb that failed before it produced a result.
 [[nodiscard]] std::string failure_json(const std::string& error, int exit_code);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
                                        const std::string& text,

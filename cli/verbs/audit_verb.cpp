@@ -16,7 +16,7 @@ namespace {
 
 struct AuditOptions {
     CommonOptions common;
-    std::string path;  ///< folder of a log, or one of its files
+    std::string path;  ///< folder of a log, or one file of the log
 };
 
 void say_what_is_missing(const gate_process::AuditSummary& summary) {
@@ -39,8 +39,10 @@ std::string text_of(const gate_process::AuditSummary& summary) {
 }
 
 void print_difference(const AuditDifference& first) {
-    fmt::print(
-        "first difference: {}, byte {}, frame {}\n", first.file, first.offset, first.sequence);
+    fmt::print("first difference in {}, at byte {}, in frame {} of the log\n",
+               first.file,
+               first.offset,
+               first.sequence);
     for (const gate_process::FieldDifference& d : first.fields)
         fmt::print("  {}: recorded {}, now {}\n", d.field, d.recorded, d.replayed);
 }
@@ -55,13 +57,12 @@ void print_act(const gate_process::Act& act) {
     if (act.kind == gate_process::ActKind::attest)
         fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
     if (!act.text.empty()) fmt::print(", {}", act.text);
-    if (act.left_out > 0)
-        fmt::print(" ({} refused acts before it are not in the log)", act.left_out);
+    if (act.left_out > 0) fmt::print(" ({} earlier refused acts are not in the log)", act.left_out);
     fmt::print("\n");
 }
 
-/// `surefoot audit acts`: lists the attestations, the re-arming and the refused requests of the
-/// log.
+/// `surefoot audit acts`: lists the attestations, the re-armings, the shown tokens and the refused
+/// requests of the log.
 int audit_acts(const AuditOptions& options) {
     std::vector<gate_process::Act> acts;
     const auto summary = gate_process::read_audit(
@@ -117,7 +118,9 @@ int audit_replay(const AuditOptions& options) {
         if (replay.first) print_difference(*replay.first);
     }
     if (replay.different > 0)
-        log_error("the gate of this version gives other verdicts than the log");
+        log_error(
+            "the gate of this version decides at least one query of the log differently; compare "
+            "the recorded and the new value of each field in the first difference");
     return summary->damage || replay.different > 0 ? kExitFailed : kExitOk;
 }
 
@@ -129,21 +132,23 @@ void add_audit(VerbGroup verbs) {
                          const char* example,
                          int (*handler)(const AuditOptions&)) {
         auto [verb, o] = verbs.add(name, what, example, handler, Reads::no_settings);
-        verb.option("path", o.path, "folder of an audit log, or one file of it")
+        verb.option("path", o.path, "folder of an audit log, or one file of the log")
             .required()
             .value("PATH");
     };
     add("verify",
-        "check the checksums, the hash chain and the gaps of a log; exit code 1 = a log is damaged",
+        "check the checksums, the hash chain and the gaps of an audit log; exit code 1 = the log "
+        "is damaged",
         "surefoot audit verify out/audit --json",
         audit_verify);
     add("acts",
-        "list who attested the ground, re-armed the gate, showed a token or was refused, with the "
-        "role of each client",
+        "list the acts of an audit log, each with the role of its client: attestations of the "
+        "ground, re-arming of the gate, shown tokens and refused requests",
         "surefoot audit acts out/audit",
         audit_acts);
     add("replay",
-        "decide every logged verdict again; exit code 0 = all verdicts are the same, bit for bit",
+        "let the gate decide every query of an audit log again; exit code 0 = all verdicts equal "
+        "the logged verdicts bit for bit",
         "surefoot audit replay out/audit",
         audit_replay);
 }

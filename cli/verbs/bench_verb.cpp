@@ -31,7 +31,7 @@ std::int64_t cpu_now_ns() {
 }
 
 Timing timed(int repeats, const std::function<void()>& work, const std::function<void()>& before) {
-    work();  // warm-up: allocations, caches
+    work();  // fills the caches and allocates memory before the measurement
     std::vector<double> times_ms;
     std::vector<double> cpu_ms;
     for (int i = 0; i < repeats; ++i) {
@@ -58,11 +58,11 @@ namespace {
 
 struct BenchOptions {
     CommonOptions common;
-    std::string group;  ///< chain, camera, odometry, stereo, terrain, gate, places, clouds or sim;
-                        ///< empty = all
+    std::string group;  ///< name of the group of benchmarks (see the help); empty = all groups
 };
 
-/// Runs the whole pipeline over forty frames of the simulated stairs; `clock` times the stages.
+/// Runs the whole pipeline on 40 frames of simulated stairs. `clock` measures the time of each
+/// stage.
 Result<RunRecord> drive_stairs(const CommonOptions& common,
                                const Settings& settings,
                                Executor& executor,
@@ -78,7 +78,8 @@ Result<RunRecord> drive_stairs(const CommonOptions& common,
     return session.record();
 }
 
-/// Times whole frames and each stage, in one run by wall clock and in one by processor time.
+/// Measures whole frames and each stage, first in wall-clock time, then, in a second run, in
+/// processor time.
 Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
@@ -100,11 +101,11 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     return results;
 }
 
-/// A rig with real lenses (the published calibration of the EuRoC data set), scaled to an image
-/// size.
+/// Returns a rig with real lenses, scaled to an image size. The lenses are those of the published
+/// calibration of the EuRoC data set.
 camera::StereoRig lenses_at(int width, int height) {
     const auto lens = [&](double f, double cx, double cy) {
-        // k1 and k2 are as published; the other parameters scale with the image size.
+        // k1 and k2 have their published values; the other parameters scale with the image size.
         return camera::Camera{camera::PinholeRadTan{.fx_px = f * width,
                                                     .fy_px = f * width,
                                                     .cx_px = cx * width,
@@ -122,7 +123,8 @@ camera::StereoRig lenses_at(int width, int height) {
     return rig;
 }
 
-/// Maps for cv::remap from our rectifier, so that OpenCV performs the same rectification.
+/// Returns the source position of each rectified pixel for cv::remap, so that OpenCV performs the
+/// same rectification as our rectifier.
 cv::Mat opencv_source(const camera::Rectifier& rectifier, camera::Side side) {
     const camera::RectifiedRig& rig = rectifier.rig();
     constexpr double kFar_m = 1e6;  // parallax is negligible at this depth
@@ -139,8 +141,8 @@ cv::Mat opencv_source(const camera::Rectifier& rectifier, camera::Side side) {
     return source;
 }
 
-/// Times the rectification of a pair and the conversion of a disparity image to points, ours and
-/// OpenCV's.
+/// Measures the rectification of a pair and the conversion of a disparity image to points, each in
+/// our code and in OpenCV.
 Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
     constexpr int kRepeats = 51;
     std::vector<BenchResult> results;
@@ -205,7 +207,7 @@ Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
     return results;
 }
 
-/// `surefoot bench`: times a group of jobs.
+/// `surefoot bench`: measures the run time of the benchmarks of a group.
 int bench(const BenchOptions& options) {
     const auto executor = make_executor(options.common);
     using Group = Result<std::vector<BenchResult>> (*)(const CommonOptions&, Executor&);
@@ -229,15 +231,17 @@ int bench(const BenchOptions& options) {
         print_answer(bench_json(all));
         return kExitOk;
     }
-    fmt::print("{:<46}{:>12}{:>10}{:>14}{:>14}{:>18}{:>16}\n",
-               "what",
-               "median ms",
-               "p99 ms",
-               "least CPU ms",
-               "peer ms",
-               "its least CPU ms",
-               "median CPU ms");
-    // Times below 10 us are printed to the nanosecond.
+    fmt::print(
+        "peer = another implementation of the same work in the same run (OpenCV or plain code)\n"
+        "{:<46}{:>12}{:>10}{:>14}{:>14}{:>18}{:>16}\n",
+        "benchmark",
+        "median ms",
+        "p99 ms",
+        "least CPU ms",
+        "peer ms",
+        "peer least CPU ms",
+        "median CPU ms");
+    // Times below 10 us are printed with a resolution of 1 ns.
     const auto in_ms = [](const std::optional<double>& value_ms) {
         if (!value_ms) return std::string("-");
         return fmt::format("{:.{}f}", *value_ms, *value_ms < 0.01 ? 6 : 3);

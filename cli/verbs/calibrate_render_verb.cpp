@@ -25,7 +25,7 @@ struct BoardImagesOptions {
     int views = 20;
 };
 
-/// ASSUMPTION: a good camera in a well-lit room.
+/// ASSUMPTION: blur and noise of a good camera in a room with good light.
 sim::ImagingConditions room_look() {
     sim::ImagingConditions look;
     look.blur_sigma_px = 0.7;
@@ -38,12 +38,13 @@ Result<camera::StereoRig> rig_of(const std::string& path_or_name) {
     return read_noted_rig(path_or_name);
 }
 
-/// `surefoot calibrate render`: renders images of a board with known truth.
+/// `surefoot calibrate render`: renders images of a board with a known calibration.
 int render_boards(const BoardImagesOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board)
         return report(usage_error(fmt::format(
-            "--board '{}': no such board; see --board in 'surefoot calibrate mono --help'",
+            "--board '{}' is not a board; write it as KIND:COLUMNSxROWS:SPACING in m, for example "
+            "chessboard:9x6:0.025 (all kinds: 'surefoot calibrate mono --help')",
             options.board)));
     const auto sheet = calibration::print_of(*board);
     if (!sheet) return report(sheet.error());
@@ -53,12 +54,12 @@ int render_boards(const BoardImagesOptions& options) {
     Rng rng(options.common.seed);
     const auto poses = shown_poses(*board, cameras, options.views, rng);
     if (std::ssize(poses) < options.views) {
-        return report(
-            usage_error(fmt::format("only {} of {} views show the whole board in {}; use a wider "
-                                    "lens or a smaller baseline",
-                                    poses.size(),
-                                    options.views,
-                                    cameras.size() == 1 ? "the camera" : "both cameras")));
+        return report(usage_error(
+            fmt::format("found only {} of {} positions in which the whole board is visible in {}; "
+                        "use a rig with a wider lens or a smaller baseline, or fewer --views",
+                        poses.size(),
+                        options.views,
+                        cameras.size() == 1 ? "the camera" : "both cameras")));
     }
     if (const Status made = io::make_folder(options.out_dir); !made) return report(made.error());
     ThreadPool pool(options.common.threads);
@@ -82,7 +83,8 @@ int render_boards(const BoardImagesOptions& options) {
     if (options.common.json)
         print_answer(rendered_boards_json(poses.size(), options.out_dir));
     else
-        fmt::print("{} views of {} in {}\n", poses.size(), options.board, options.out_dir);
+        fmt::print(
+            "wrote {} views of the board {} to {}\n", poses.size(), options.board, options.out_dir);
     return kExitOk;
 }
 
@@ -91,20 +93,22 @@ int render_boards(const BoardImagesOptions& options) {
 void add_calibrate_render(VerbGroup verbs) {
     auto [verb, o] = verbs.add<BoardImagesOptions>(
         "render",
-        "render images of a calibration board in varied positions, with the true calibration",
+        "render images of a calibration board in varied positions, and write the true calibration "
+        "to the same folder",
         "surefoot calibrate render --board chessboard:8x5:0.03 --rig zed_vga --views "
         "12 --out out/chess",
         render_boards,
         Reads::no_settings);
-    verb.option("--board", o.board, "the board; see 'surefoot calibrate mono --help'")
+    verb.option("--board",
+                o.board,
+                "the board as KIND:COLUMNSxROWS:SPACING with the spacing in m, for example "
+                "chessboard:9x6:0.025; 'surefoot calibrate mono --help' shows all kinds")
         .required()
         .value("TEXT");
-    verb.option("--rig",
-                o.rig,
-                "calibration file, or name of a built-in rig ('surefoot doctor' lists them)")
+    verb.option("--rig", o.rig, "calibration file, or name of a built-in rig, for example zed_vga")
         .required()
         .value("FILE|NAME");
-    verb.option("--views", o.views, "number of views").in(1, 500);
+    verb.option("--views", o.views, "number of rendered views (default 20)").in(1, 500);
     verb.option("--out", o.out_dir, "folder for left*.png, right*.png and rig.yaml")
         .required()
         .value("DIR");

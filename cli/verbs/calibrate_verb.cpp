@@ -25,21 +25,21 @@ struct CalibrateOptions {
     CommonOptions common;
     bool stereo = false;
     std::string source;
-    std::string board;  ///< text for calibration::parse_board()
+    std::string board;  ///< board as text, for calibration::parse_board()
     std::string model = "pinhole5";
-    std::string camera;  ///< left | right: which camera of a stereo source
+    std::string camera;  ///< camera of a stereo source: left or right
     std::string out_dir;
 };
 
 constexpr double kMillimetres = 1e3;
-/// If the standard deviation of a viewing direction exceeds this, the user gets an explanation.
+/// Largest standard deviation of a viewing direction that needs no explanation to the user.
 constexpr double kMostWorst_px = 1.0;
 
 std::string found_words(const calibration::BoardView& view, const std::string& problem) {
     return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
 }
 
-/// Detects the board in images taken at the same time and adds the view to `run`.
+/// Detects the board in images that were taken at the same time, and adds the view to `run`.
 void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     FoundView found;
     found.name = images.name;
@@ -64,7 +64,8 @@ void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     run.views.push_back(std::move(found));
 }
 
-/// Why an image does not fit this calibration. The first image sets the size.
+/// Returns the reason why the size of an image does not fit; empty if it fits. The first image sets
+/// `size`.
 std::string size_problem(const BoardImages& images, bool stereo, calibration::ImageSize& size) {
     if (size.width == 0) size = {images.left.width(), images.left.height()};
     const auto differs = [&](const GreyImage& image) {
@@ -73,7 +74,7 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
     const GreyImage& odd = differs(images.left) ? images.left : images.right;
     if (!differs(images.left) && !(stereo && differs(images.right))) return {};
     return fmt::format(
-        "{}: image of {} x {} px, but the first image has {} x {} px; give images of one size",
+        "{}: the image has {} x {} px, but the first image has {} x {} px; give images of one size",
         images.name,
         odd.width(),
         odd.height(),
@@ -81,7 +82,7 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
         size.height);
 }
 
-/// Takes images of a live camera and logs after each of them which views are still missing.
+/// Takes images of a live camera. Logs after each image which views are still missing.
 Result<BoardSource> show_live(const CalibrateOptions& options,
                               const CalibrationRun& run,
                               const std::function<void(BoardImages)>& use) {
@@ -95,8 +96,8 @@ Result<BoardSource> show_live(const CalibrateOptions& options,
                        .stop = [] { return interrupted(); }};
     session.opened = [] {
         log_info(fmt::format(
-            "show the board in a new position or tilt every second; the recording ends after {} "
-            "images, or with Ctrl-C when the advice says that nothing is missing",
+            "show the board in a new position or with a new tilt every second. The recording ends "
+            "after {} images. Press Ctrl-C earlier if the advice says that no view is missing",
             kMostVideoViews));
     };
     const Status status =
@@ -106,7 +107,8 @@ Result<BoardSource> show_live(const CalibrateOptions& options,
             for (const FoundView& view : run.views) views.push_back(view.left);
             const auto coverage =
                 calibration::coverage_of(run.board, views, run.size.width, run.size.height);
-            log_info(coverage.advice.empty() ? "nothing is missing" : coverage.advice.front());
+            log_info(coverage.advice.empty() ? "no view is missing: press Ctrl-C to calibrate"
+                                             : coverage.advice.front());
         });
     if (!status) return status.error();
     return BoardSource{};
@@ -134,23 +136,24 @@ Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
     return {};
 }
 
-/// An error if no image shows the board. The most frequent cause is a wrong --board.
+/// Returns an error if no image shows the board. The most frequent cause is a wrong --board.
 Status check_found(const CalibrationRun& run) {
     const bool found = std::any_of(run.views.begin(), run.views.end(), [](const FoundView& view) {
         return !view.left.ids.empty() || !view.right.ids.empty();
     });
     if (found || run.views.empty()) return {};
     return input_error(
-        fmt::format("calibration: none of {} images shows the board '{}' ({}). Check the size "
-                    "(COLUMNSxROWS counts inner corners or circles; write COLUMNSxROWSsquares to "
-                    "count squares), and show the board {}",
+        fmt::format("calibration: none of {} images shows the board '{}' ({}). Check the size in "
+                    "--board: COLUMNSxROWS counts inner corners or circles, COLUMNSxROWSsquares "
+                    "counts squares. Show the board {}",
                     run.views.size(),
                     run.board_text,
                     calibration::size_in_words(run.board),
                     run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
-/// Advice to use another lens model, if one fits the views of a camera far better; else empty.
+/// Returns advice to use another lens model, if another model fits the views of a camera far
+/// better; otherwise empty.
 std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     for (int camera = 0; camera < run.cameras(); ++camera) {
         std::vector<calibration::BoardView> views;
@@ -162,7 +165,8 @@ std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     return {};
 }
 
-/// The error of a failed calibration, replaced by lens advice if there is any.
+/// Returns the error of a failed calibration, or the advice to use another lens model, if there is
+/// such advice.
 Status with_advice(const Error& error, calibration::LensKind kind, const CalibrationRun& run) {
     if (error.message.find("--model") != std::string::npos) return error;
     const std::string advice = lens_advice(kind, run);
@@ -178,7 +182,7 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono) return mono.error();  // contains the lens advice already
+        if (!mono) return mono.error();  // this error contains the lens advice
         run.mono = std::move(*mono);
     } else {
         auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
@@ -211,15 +215,16 @@ Status write_results(const CalibrateOptions& options, const CalibrationRun& run)
 
 std::string depth_words(const calibration::DepthError& error) {
     if (std::isnan(error.sigma_m))
-        return fmt::format("outside the view at {:g} m;", error.distance_m);
+        return fmt::format("not computed at {:g} m, which is outside the view;", error.distance_m);
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
-/// Explains a large uncertainty in a part of the image; empty if it is small everywhere.
+/// Explains a large uncertainty in a part of the image; empty if the uncertainty is small in the
+/// whole image.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
-    return ": an image corner without board positions; if you use the image there, show the board "
-           "in that corner too";
+    return ": this point is in an image corner in which no view shows the board. If you use that "
+           "part of the image, add views with the board there";
 }
 
 void print_result(const CalibrationRun& run, const std::string& folder) {
@@ -229,9 +234,9 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     }
     for (const CalibratedCamera& this_camera : calibrated_cameras(run)) {
         fmt::print(
-            "{}: focal length {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, "
-            "{:.2f} +- {:.2f} px; direction error {:.3f} px (median), {:.2f} px at the worst point "
-            "of the image{}\n",
+            "{}: focal length x {:.2f} +- {:.2f}, y {:.2f} +- {:.2f} px; centre x {:.2f} +- "
+            "{:.2f}, y {:.2f} +- {:.2f} px; one sigma of the direction {:.3f} px (median), {:.2f} "
+            "px at the worst point of the image{}\n",
             this_camera.name,
             this_camera.parameters[0],
             this_camera.sigmas[0],
@@ -249,7 +254,7 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     if (radius_m > 0.0)
         fmt::print("circles: measured diameter {:.2f} mm\n", 2.0 * kMillimetres * radius_m);
     const std::size_t used = calibrated_cameras(run).front().views.size();
-    fmt::print("{} of {} views used, rms {:.3f} px",
+    fmt::print("{} of {} views used, rms error of the board points {:.3f} px",
                used,
                run.views.size(),
                run.stereo ? run.stereo->rms_px : run.mono->rms_px);
@@ -267,26 +272,29 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     fmt::print("\nreport: {}\n", io::join_path(folder, "report.html"));
 }
 
-/// `surefoot calibrate mono` and `surefoot calibrate stereo`.
+/// Runs `surefoot calibrate mono` and `surefoot calibrate stereo`.
 int calibrate(const CalibrateOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board) {
         return report(usage_error(
-            fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING in metres, for example "
-                        "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04 or "
-                        "charuco:8x5:0.03:0.022[:DICT_5X5_100] (inner corners), or "
+            fmt::format("--board '{}' is not a board; write KIND:COLUMNSxROWS:SPACING with the "
+                        "spacing in m. Examples with counted inner corners or circles: "
+                        "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04, "
+                        "charuco:8x5:0.03:0.022[:DICT_5X5_100]. Example with counted squares: "
                         "charuco:9x6squares:0.03:0.022",
                         options.board)));
     }
     if (const Status status = calibration::check_detectable(*board); !status)
         return report(status.error());
-    // "pinhole" is the model with the fewest coefficients.
+    // The name "pinhole" means the pinhole model with the fewest coefficients.
     const std::string model = options.model == "pinhole" ? "pinhole4" : options.model;
     const auto* const kind = std::find(
         std::begin(calibration::kLensKindNames), std::end(calibration::kLensKindNames), model);
     if (kind == std::end(calibration::kLensKindNames))
-        return report(usage_error(fmt::format(
-            "--model '{}': there is no such lens model; --help lists them", options.model)));
+        return report(
+            usage_error(fmt::format("--model '{}': there is no such lens model; give pinhole, "
+                                    "pinhole4, pinhole5, rational or fisheye",
+                                    options.model)));
     const auto chosen =
         static_cast<calibration::LensKind>(kind - std::begin(calibration::kLensKindNames));
     CalibrationRun run;
@@ -298,7 +306,7 @@ int calibrate(const CalibrateOptions& options) {
     if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);
     if (const Status status = solve(chosen, run); !status) return report(status.error());
-    // Print the result even if it cannot be written.
+    // Print the result on stdout even if the files cannot be written.
     const Status written = write_results(options, run);
     if (options.common.json) {
         print_answer(calibration_json(run));
@@ -311,16 +319,18 @@ int calibrate(const CalibrateOptions& options) {
 void add_calibration(Verb verb, CalibrateOptions& o) {
     verb.option("--board",
                 o.board,
-                "the board as KIND:COLUMNSxROWS:SPACING, lengths in m: chessboard:9x6:0.025 (inner "
-                "corners), circles:6x6:0.02, asymmetric_circles:4x11:0.04 (the program measures "
-                "the diameter of the circles), charuco:8x5:0.03:0.022[:DICT_5X5_100]; with counted "
-                "squares: charuco:9x6squares:0.03:0.022")
+                "the board as KIND:COLUMNSxROWS:SPACING with lengths in m. COLUMNSxROWS counts "
+                "inner corners or circles. Examples: chessboard:9x6:0.025, circles:6x6:0.02, "
+                "asymmetric_circles:4x11:0.04 and charuco:8x5:0.03:0.022[:DICT_5X5_100] (0.022 = "
+                "side of a marker). To count squares, write charuco:9x6squares:0.03:0.022. The "
+                "program measures the diameter of circles")
         .required()
         .value("TEXT");
     verb.option("--model",
                 o.model,
-                "lens model: pinhole or pinhole4 (k1 k2 p1 p2), pinhole5 (k3 too; default), "
-                "rational (k4 k5 k6 too), or fisheye (Kannala-Brandt)")
+                "lens model and its distortion coefficients: pinhole4 or pinhole (k1 k2 p1 p2), "
+                "pinhole5 (k1 k2 p1 p2 k3; default), rational (k1 k2 p1 p2 k3 k4 k5 k6) or fisheye "
+                "(Kannala-Brandt)")
         .one_of({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"});
     verb.option("--out", o.out_dir, "folder for the calibration file, report.html and views.json")
         .required()
@@ -336,25 +346,30 @@ void add_calibrate_mono(VerbGroup verbs) {
                                     "surefoot calibrate mono out/chess --camera left --board "
                                     "chessboard:8x5:0.03 --out out/camera --json",
                                     calibrate);
-    verb.option("source", o.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
+    verb.option("source",
+                o.source,
+                "images of the board: a folder of images, a video, or a live camera "
+                "v4l2:DEVICE@WIDTHxHEIGHT")
         .required()
         .value("SOURCE");
-    verb.option("--camera", o.camera, "the camera to calibrate, if the source has two")
+    verb.option("--camera", o.camera, "camera to calibrate, if the source shows two cameras")
         .one_of({"left", "right"});
     add_calibration(verb, o);
 }
 
 void add_calibrate_stereo(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<CalibrateOptions>("stereo",
-                                    "calibrate two cameras and the pose of one to the other",
-                                    "surefoot calibrate stereo out/chess --board "
-                                    "chessboard:8x5:0.03 --out out/rig",
-                                    calibrate);
-    verb.option("source",
-                o.source,
-                "folder with left* and right*, with folders left and right, or with side-by-side "
-                "images; a side-by-side video; or v4l2:DEVICE@WIDTHxHEIGHT of both cameras")
+    auto [verb, o] = verbs.add<CalibrateOptions>(
+        "stereo",
+        "calibrate two cameras and their relative pose from images of a board",
+        "surefoot calibrate stereo out/chess --board "
+        "chessboard:8x5:0.03 --out out/rig",
+        calibrate);
+    verb.option(
+            "source",
+            o.source,
+            "images of the board from both cameras. Give a folder that contains images left* and "
+            "right*, folders left and right, or side-by-side images. Or give a side-by-side video, "
+            "or a live camera v4l2:DEVICE@WIDTHxHEIGHT that delivers both images")
         .required()
         .value("SOURCE");
     o.stereo = true;

@@ -37,13 +37,16 @@ int config(const ConfigOptions& options) {
 }  // namespace
 
 void add_config(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<ConfigOptions>(
-        "config",
-        "print every setting with its value, range and reason, or check a file of settings",
-        "surefoot config --set elevation.length_m=8",
-        config,
-        Reads::own_settings);
-    verb.flag("--check", o.check_only, "only check the settings and print whether they are valid");
+    auto [verb, o] = verbs.add<ConfigOptions>("config",
+                                              "print every setting with its value, range and "
+                                              "reason; with --check, only check the settings",
+                                              "surefoot config --set elevation.length_m=8",
+                                              config,
+                                              Reads::own_settings);
+    verb.flag(
+        "--check",
+        o.check_only,
+        "check the settings and print whether they are valid, without the list of all settings");
 }
 
 }  // namespace surefoot::app

@@ -21,7 +21,9 @@ struct DemOptions {
     std::string cloud;
     double resolution_m = 0.0;
     std::string reduce = "max";
-    std::optional<double> lowest_z_m;  ///< lower points are left out; only with reduce = "surface"
+    /// Points below this z are left out; only for reduce = "surface".
+    std::optional<double> lowest_z_m;
+    /// Points above this z are left out; only for reduce = "surface".
     std::optional<double> highest_z_m;
     std::string lattice = "cell";
     std::string out_file;
@@ -32,14 +34,15 @@ eval::Reduce reduce_named(const std::string& name) {
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
 }
 
-/// Height of each cell by --reduce max, mean or min.
+/// Computes the height of each cell as the largest, mean or smallest z of its points.
 Result<grid::Layer> heights_of(const DemOptions& options,
                                io::CloudStream& cloud,
                                const eval::DemGrid& grid) {
     if (options.lowest_z_m || options.highest_z_m) {
-        return usage_error(fmt::format(
-            "--min-height and --max-height work with --reduce surface only, not with --reduce {}",
-            options.reduce));
+        return usage_error(
+            fmt::format("--min-height and --max-height work with --reduce surface only, not with "
+                        "--reduce {}; remove them or give --reduce surface",
+                        options.reduce));
     }
     const auto executor = make_executor(options.common);
     eval::DemBuilder builder(grid, reduce_named(options.reduce));
@@ -98,13 +101,15 @@ int dem(const DemOptions& options) {
     if (options.common.json) {
         print_answer(dem_json(grid->geometry, known, bounds, options.out_file));
     } else {
-        fmt::print("{} points on {} x {} cells of {:g} m, {} of them known; written to {}\n",
-                   bounds.points(),
-                   grid->geometry.nx,
-                   grid->geometry.ny,
-                   options.resolution_m,
-                   known,
-                   options.out_file);
+        fmt::print(
+            "{} points on a height map of {} x {} cells of {:g} m; {} cells have a height; written "
+            "to {}\n",
+            bounds.points(),
+            grid->geometry.nx,
+            grid->geometry.ny,
+            options.resolution_m,
+            known,
+            options.out_file);
     }
     return kExitOk;
 }
@@ -118,29 +123,35 @@ void add_dem(VerbGroup verbs) {
                                            "out/floor_dem.asc",
                                            dem,
                                            Reads::no_settings);
-    verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ of any size, z up")
+    verb.option(
+            "cloud", o.cloud, "point cloud of any size, with z up, as PLY, PCD, LAS, VTK or XYZ")
         .required()
         .value("CLOUD");
-    verb.option("--resolution", o.resolution_m, "side of a cell, in m")
+    verb.option("--resolution", o.resolution_m, "side of a square cell of the height map, in m")
         .required()
         .value("M")
         .in(1e-4, 1e3);
     verb.option("--reduce",
                 o.reduce,
-                "how a cell gets its height from the z of its points (default max); surface: the "
-                "highest surface that enough points share and that does not hang in the air, as in "
-                "the live map")
+                "height of a cell: largest, mean or smallest z of its points (default max), or "
+                "surface. surface = the highest surface that enough points share and that does not "
+                "hang in the air, as in the live map")
         .one_of({"max", "mean", "min", "surface"});
-    verb.option("--min-height", o.lowest_z_m, "surface: leave out the points below this z, in m")
+    verb.option("--min-height",
+                o.lowest_z_m,
+                "with --reduce surface: leave out the points below this z, in m")
         .value("M");
-    verb.option("--max-height", o.highest_z_m, "surface: leave out the points above this z, in m")
+    verb.option("--max-height",
+                o.highest_z_m,
+                "with --reduce surface: leave out the points above this z, in m")
         .value("M");
     verb.option("--lattice",
                 o.lattice,
-                "cell: cell borders lie on multiples of the resolution (default); node: cell "
-                "centres are counted from the smallest x and y")
+                "position of the cells. cell (default): cell borders lie on multiples of the "
+                "resolution; node: the centre of the first cell lies at the smallest x and y of "
+                "the points")
         .one_of({"cell", "node"});
-    verb.option("--out", o.out_file, "the height map, an ESRI ASCII grid")
+    verb.option("--out", o.out_file, "file for the height map, an ESRI ASCII grid")
         .required()
         .value("F.asc");
 }

@@ -51,7 +51,8 @@ void print_table(const std::vector<std::string>& header, const Rows& rows) {
     for (const auto& row : rows) print(row);
 }
 
-/// Writes the report page with its table and plots, and also each of them as a separate file.
+/// Writes the report page with its table and plots. Also writes the table and each plot to separate
+/// files.
 Status write_page(const std::string& folder,
                   const std::string& name,
                   eval::ReportContent content,
@@ -89,12 +90,12 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
                     "thesis_axial_mm",
                     "thesis_std_mm"};
     table.hint =
-        "Axial: measured minus true distance of the board on the optical axis. The measured "
-        "distance is that of the plane through the points. Std: standard deviation of all depths "
-        "about that plane. Scale: error of a 50 mm length on the board that follows from the depth "
-        "error (computed, because the board has no marks). Thesis: absolute axial error and "
-        "standard deviation in Table 4.1 of the reference thesis (Lange 2016), measured with "
-        "commercial cameras.";
+        "Axial: measured minus true distance of the board on the optical axis. The program fits a "
+        "plane to the measured points; the distance of this plane is the measured distance. Std: "
+        "standard deviation of all depths about the plane. Scale: error of a 50 mm length on the "
+        "board that follows from the depth error (computed, because the board has no marks). "
+        "Thesis: absolute axial error and standard deviation in Table 4.1 of the reference thesis "
+        "(Lange 2016), measured with commercial cameras.";
     for (const DistanceAccuracy& row : rows) {
         const auto& e = row.errors;
         const auto value = [&](double eval::BoardErrors::*figure) {
@@ -115,7 +116,7 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
     return table;
 }
 
-/// Plot of our figures beside those that the reference thesis measured with its cameras.
+/// Plots our figures beside the figures of the cameras in the reference thesis (Lange 2016).
 eval::LinePlot accuracy_plot(const std::string& rig,
                              const std::vector<DistanceAccuracy>& rows,
                              const char* title,
@@ -145,13 +146,16 @@ int measure_board(const DepthAccuracyOptions& options, const Settings& settings)
     content.title = fmt::format("Depth accuracy of {}", name);
     content.summary = {
         options.pairs_file.empty()
-            ? fmt::format("A flat textured board of {:g} m, rendered with the camera profile '{}', "
-                          "{} observations per distance.",
+            ? fmt::format("A flat textured square board with a side of {:g} m, rendered with the "
+                          "camera profile '{}'; {} observations per distance.",
                           options.board_m,
                           sim::kCameraProfileNames[static_cast<int>(settings.sim.profile)],
                           options.repeats)
-            : fmt::format("Images of {}, a board of {:g} m.", options.pairs_file, options.board_m),
-        "For comparison: the measurements of the reference thesis (Lange 2016, Table 4.1) with "
+            : fmt::format(
+                  "Real image pairs listed in {}; they show a square board with a side of {:g} m.",
+                  options.pairs_file,
+                  options.board_m),
+        "The plots also show the measurements of the reference thesis (Lange 2016, Table 4.1) with "
         "commercial cameras."};
     content.plots_title = "Comparison with the reference thesis";
     content.tables = {accuracy_table(*rows)};
@@ -209,7 +213,8 @@ Result<eval::DepthDesign> design_of(const DepthAccuracyOptions& options, const S
             &end);
         if (found != 2 || end != static_cast<int>(options.size.size()))
             return usage_error(fmt::format(
-                "--size {}: expected WIDTHxHEIGHT in px, for example 672x376", options.size));
+                "--size {} is not an image size; write WIDTHxHEIGHT in px, for example 672x376",
+                options.size));
     }
     if (const auto problem = design.problem()) return usage_error(*problem);
     return design;
@@ -226,11 +231,12 @@ eval::ReportTable design_table(const std::vector<eval::ResolvableHeight>& rows) 
                     "pixel_limit_mm",
                     "height_mm"};
     table.hint =
-        "The range Z is measured along the floor; H is the height of the camera. Noise limit: 3 "
-        "sigma of the difference of two heights, 3 sqrt(2) H Z sigma_d / (f b), with sigma_Z = Z^2 "
-        "sigma_d / (f b) (Matthies and Shafer 1987). Pixel limit: 3 rows of the image. The "
-        "resolvable height is the larger of the two limits. The figures are those of single "
-        "pixels, without averaging.";
+        "Symbols: Z = range along the floor, H = height of the camera, f = focal length, b = "
+        "baseline, sigma_d = standard deviation of a disparity. Noise limit: 3 sigma of the "
+        "difference of two heights, which is 3 sqrt(2) H Z sigma_d / (f b). It follows from "
+        "sigma_Z = Z^2 sigma_d / (f b) (Matthies and Shafer 1987). Pixel limit: height that covers "
+        "3 rows of the image. The resolvable height is the larger of the two limits. The figures "
+        "hold for single pixels, without averaging.";
     for (const eval::ResolvableHeight& row : rows) {
         table.rows.push_back({fmt::format("{:g}", row.range_m),
                               row.in_view ? "yes" : "no",
@@ -269,19 +275,19 @@ int show_design(const DepthAccuracyOptions& options, const Settings& settings) {
     rows.reserve(ranges_m.size());
     for (const double range_m : ranges_m) rows.push_back(eval::resolvable_height(*design, range_m));
     eval::ReportContent content;
-    content.title = "Smallest height that a stereo camera resolves";
-    content.summary = {
-        fmt::format("Baseline {:g} m, focal length {:g} px, {}x{} px, standard deviation of a "
-                    "disparity {:g} px; {:g} m above the floor, {:g} deg below the horizon.",
-                    design->baseline_m,
-                    design->focal_px,
-                    design->width,
-                    design->height,
-                    design->sigma_px,
-                    design->camera_height_m,
-                    design->pitch_deg),
-        fmt::format("The nearest visible floor is {:.2f} m ahead.",
-                    eval::nearest_floor_m(*design))};
+    content.title = "Smallest height difference that a stereo camera resolves";
+    content.summary = {fmt::format("Baseline {:g} m, focal length {:g} px, images of {}x{} px, "
+                                   "standard deviation of a disparity {:g} px. The camera is {:g} "
+                                   "m above the floor and looks {:g} deg below the horizon.",
+                                   design->baseline_m,
+                                   design->focal_px,
+                                   design->width,
+                                   design->height,
+                                   design->sigma_px,
+                                   design->camera_height_m,
+                                   design->pitch_deg),
+                       fmt::format("The nearest visible floor is {:.2f} m ahead.",
+                                   eval::nearest_floor_m(*design))};
     content.plots_title = "By range";
     content.tables = {design_table(rows)};
     if (auto written = write_page(options.out_dir,
@@ -300,8 +306,8 @@ int show_design(const DepthAccuracyOptions& options, const Settings& settings) {
     return kExitOk;
 }
 
-/// `surefoot depth-accuracy`: depth error by distance on a flat textured board or, with --design,
-/// the smallest step height that a rig resolves.
+/// `surefoot depth-accuracy`: measures the depth error by distance on a flat textured board. With
+/// --design, computes the smallest step height that a rig resolves.
 int depth_accuracy(const DepthAccuracyOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
@@ -320,55 +326,72 @@ void add_depth_accuracy(VerbGroup verbs) {
         "  surefoot depth-accuracy --design --baseline 0.12 --focal 342 --size "
         "672x376 --out out/design",
         depth_accuracy);
-    const Option rig = verb.option("--rig",
-                                   o.rig,
-                                   "calibration file, or name of a built-in rig ('surefoot doctor' "
-                                   "lists them; default zed_vga)")
-                           .value("FILE|NAME");
-    verb.option("--out", o.out_dir, "folder for the report page, its plots and the table")
+    const Option rig =
+        verb.option("--rig", o.rig, "calibration file, or name of a built-in rig (default zed_vga)")
+            .value("FILE|NAME");
+    verb.option("--out", o.out_dir, "folder for the report page, its plots and its table")
         .required()
         .value("DIR");
-    const Option distances =
-        verb.option("--distances",
-                    o.distances_m,
-                    "distances of the board or of the floor, in m, separated by commas")
-            .separated_by_commas()
-            .in(0.1, 20.0)
-            .value("M");
+    const Option distances = verb.option("--distances",
+                                         o.distances_m,
+                                         "distances from the camera to the board, in m, separated "
+                                         "by commas; with --design, ranges along the floor")
+                                 .separated_by_commas()
+                                 .in(0.1, 20.0)
+                                 .value("M");
     verb.option("--repeats", o.repeats, "number of rendered boards per distance (default 3)")
         .in(1, 1000);
     verb.option("--board",
                 o.board_m,
-                "side of the square board, in m (default 0.6); its inner 80 % count")
+                "side of the square board, in m (default 0.6); only the inner 80 % of the board "
+                "are evaluated")
         .in(0.05, 4.0)
         .value("M");
     const Option pairs =
         verb.option("--pairs",
                     o.pairs_file,
-                    "file of real image pairs to use instead of rendered ones: lines LEFT RIGHT "
-                    "DISTANCE_M; the board stands across the optical axis")
+                    "file that lists real image pairs, to use instead of rendered images. Each "
+                    "line is LEFT RIGHT DISTANCE_M: two image files and the distance in m. The "
+                    "board must stand perpendicular to the optical axis")
             .value("FILE")
             .needs(rig)
             .excludes(distances);
     const Option design =
         verb.flag("--design",
                   o.design,
-                  "compute the smallest resolvable height by range from the options below");
+                  "compute the smallest height difference that the rig resolves at each range; "
+                  "needs no images. --baseline, --focal and --size change the rig");
     design.excludes(pairs);
-    verb.option("--baseline", o.baseline_m, "of the rig otherwise").value("M").needs(design);
-    verb.option("--focal", o.focal_px, "of the rig otherwise").value("PX").needs(design);
-    verb.option("--size", o.size, "of the rig otherwise").value("WIDTHxHEIGHT").needs(design);
-    verb.option(
-            "--sigma",
-            o.sigma_px,
-            "standard deviation of a disparity, in px (default: the lower limit of our matcher)")
-        .value("PX")
-        .needs(design);
-    verb.option("--height", o.height_m, "height of the camera above the floor, in m (default 1)")
+    verb.option("--baseline",
+                o.baseline_m,
+                "with --design: distance between the two cameras, in m (default: the baseline of "
+                "--rig)")
         .value("M")
         .needs(design);
+    verb.option("--focal",
+                o.focal_px,
+                "with --design: focal length of the rectified images, in px (default: the focal "
+                "length of --rig)")
+        .value("PX")
+        .needs(design);
     verb.option(
-            "--pitch", o.pitch_deg, "angle of the camera below the horizon, in deg (default 32)")
+            "--size", o.size, "with --design: image size, in px (default: the image size of --rig)")
+        .value("WIDTHxHEIGHT")
+        .needs(design);
+    verb.option("--sigma",
+                o.sigma_px,
+                "with --design: standard deviation of a disparity, in px (default: 0.134, the "
+                "lower limit of the matcher of Surefoot)")
+        .value("PX")
+        .needs(design);
+    verb.option("--height",
+                o.height_m,
+                "with --design: height of the camera above the floor, in m (default 1)")
+        .value("M")
+        .needs(design);
+    verb.option("--pitch",
+                o.pitch_deg,
+                "with --design: angle of the camera below the horizon, in deg (default 32)")
         .value("DEG")
         .needs(design);
 }

@@ -23,7 +23,7 @@ struct DepthOptions {
     CommonOptions common;
     std::string left;
     std::string right;
-    std::string rig;  ///< file or built-in name; empty = the pair is already rectified
+    std::string rig;  ///< calibration file or built-in name; empty = the pair is already rectified
     std::string out_dir;
 };
 
@@ -32,8 +32,8 @@ Status write_picture(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// Points with trusted depth in the left optical frame, with their grey value and the standard
-/// deviation of their depth.
+/// Returns the points with trusted depth in the left optical frame. Each point has a grey value and
+/// the standard deviation of its depth.
 io::PointCloud cloud_of(const MeasuredPair& measured, const camera::RectifiedRig& rig) {
     Image<Eigen::Vector3f> points_m;
     camera::Reprojector(rig).points(measured.depth.disparity_px.view(), points_m);
@@ -78,7 +78,7 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
     if (measured.rig) {
         writes += io::write_ply(at("cloud.ply"), cloud_of(measured, *measured.rig));
     } else {
-        // Remove the cloud of an earlier call; it would belong to other images.
+        // Remove the cloud of an earlier call, because it belongs to other images.
         writes += io::remove_file(at("cloud.ply"));
     }
     return writes.first();
@@ -86,22 +86,24 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
 
 void print_depth(const MeasuredPair& measured, const std::string& folder) {
     const PairFigures figures = figures_of(measured.depth);
-    fmt::print("{}x{} px, {:.1f} % matched, {:.1f} % trusted",
-               measured.depth.disparity_px.width(),
-               measured.depth.disparity_px.height(),
-               figures.density_percent,
-               figures.trusted_percent);
-    // Without matched pixels there is no median.
+    fmt::print(
+        "{}x{} px: {:.1f} % of the pixels have a disparity, {:.1f} % have a trusted disparity",
+        measured.depth.disparity_px.width(),
+        measured.depth.disparity_px.height(),
+        figures.density_percent,
+        figures.trusted_percent);
+    // The median does not exist if no pixel has a match.
     if (!std::isnan(figures.median_sigma_px))
-        fmt::print("; median sigma {:.3f} px", figures.median_sigma_px);
+        fmt::print("; median standard deviation of the disparity {:.3f} px",
+                   figures.median_sigma_px);
     fmt::print("\n");
     if (measured.check.enough()) {
-        fmt::print("corresponding rows differ by {:.2f} px (median of {} corners)\n",
+        fmt::print("the rows of corresponding corners differ by {:.2f} px (median of {} corners)\n",
                    measured.check.row_error_px,
                    measured.check.matched);
     }
     fmt::print(
-        "written to {}{}\n", folder, measured.rig ? "" : "; give --rig to get a point cloud");
+        "written to {}{}\n", folder, measured.rig ? "" : "; give --rig to get a point cloud too");
 }
 
 /// `surefoot depth`: matches one pair of images.
@@ -144,13 +146,13 @@ void add_depth(VerbGroup verbs) {
     verb.option("right", o.right, "image of the right camera").required().value("RIGHT");
     verb.option("--rig",
                 o.rig,
-                "calibration file, or name of a built-in rig ('surefoot doctor' lists them); "
-                "without it the images must be rectified, and the verb writes no point cloud")
+                "calibration file, or name of a built-in rig, for example zed_vga. Without this "
+                "option the images must be rectified, and the verb writes no point cloud")
         .value("FILE|NAME");
     verb.option("--out",
                 o.out_dir,
                 "folder for disparity.pfm, sigma.pfm, outlier_probability.pfm, cloud.ply and "
-                "pictures")
+                "pictures of the disparity and its standard deviation")
         .required()
         .value("DIR");
 }

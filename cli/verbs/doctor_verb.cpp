@@ -27,7 +27,7 @@ struct DoctorOptions {
     std::string machine;
 };
 
-/// Part of the level floor that the middle column of the rectified camera sees.
+/// Returns the part of the level floor that the middle column of the rectified camera sees.
 FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     const auto floor_x_m = [&](double row_px) {
         const Eigen::Vector3d ray_camera(0.0, (row_px - rig.cy_px) / rig.fy_px, 1.0);
@@ -39,9 +39,9 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     return {floor_x_m(rig.height - 1.0), floor_x_m(0.0)};
 }
 
-/// Smallest standard deviation that the matcher reports, reached on well textured ground. The depth
-/// sigmas below and those of `depth-accuracy --design` assume it. The standard deviation of a
-/// typical pixel of a scene is 50 % larger.
+/// Smallest standard deviation that the matcher reports; it occurs on well textured ground.
+/// `doctor` and `depth-accuracy --design` compute the standard deviations of depth from this value.
+/// The standard deviation of a typical pixel of a scene is 50 % larger.
 constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,
@@ -71,44 +71,48 @@ RigView view_of(const camera::StereoRig& rig,
 }
 
 void print(const RigView& view) {
-    fmt::print("rig {}: {}x{}, f {:.1f} px, baseline {:.1f} mm\n",
+    fmt::print("rig {}: images of {}x{} px, focal length {:.1f} px, baseline {:.1f} mm\n",
                view.name,
                view.width,
                view.height,
                view.focal_px,
                1e3 * view.baseline_m);
-    fmt::print("standard deviation of depth on well textured ground (disparity {:g} px):",
-               view.disparity_sigma_px);
+    fmt::print(
+        "standard deviation of depth on well textured ground (standard deviation of a disparity "
+        "{:g} px):",
+        view.disparity_sigma_px);
     for (const auto& depth : view.depths)
         fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * depth.sigma_m, depth.z_m);
     fmt::print(
-        "\nblind zone: the camera never sees floor nearer than {:.2f} m ahead of base_link; its "
-        "view ends at {:.2f} m\n",
+        "\nblind zone: the camera never sees floor nearer than {:.2f} m ahead of base_link; the "
+        "view of the floor ends at {:.2f} m\n",
         view.floor.near_m,
         view.floor.far_m);
     for (const auto& step : view.steps) {
-        fmt::print("command {} ({}): the foot lands up to {:.2f} m ahead, {}\n",
-                   step.command,
-                   step.name,
-                   step.toe_m,
-                   step.remembered ? "all of it on ground that only the map remembers"
-                                   : "partly on ground that the camera sees now");
+        fmt::print(
+            "command {} ({}): the foot lands up to {:.2f} m ahead of base_link; {}\n",
+            step.command,
+            step.name,
+            step.toe_m,
+            step.remembered
+                ? "the whole foot lands in the blind zone, on ground that only the map contains"
+                : "a part of the foot lands on ground that the camera sees now");
     }
 }
 
 void print(const std::vector<CameraNode>& cameras) {
-    if (cameras.empty()) fmt::print("cameras: no camera found (no /dev/video*)\n");
+    if (cameras.empty()) fmt::print("cameras: no camera found (there is no /dev/video*)\n");
     for (const CameraNode& node : cameras) {
         if (node.problem.empty()) {
             fmt::print("camera {}: {}\n", node.device, node.card);
         } else {
-            fmt::print("not a usable camera: {}\n", node.problem);
+            fmt::print("this device is not a usable camera: {}\n", node.problem);
         }
     }
 }
 
-/// `surefoot doctor`: lists missing parts of the installation, or the blind zone of a rig on a
-/// machine.
+/// `surefoot doctor`: checks the installation, and prints the cameras and the blind zone of a rig
+/// on a machine.
 int doctor(const DoctorOptions& options) {
     const auto machine = load_machine(options.machine.empty() ? "rex" : options.machine);
     if (!machine) return report(machine.error());
@@ -136,13 +140,16 @@ int doctor(const DoctorOptions& options) {
 }  // namespace
 
 void add_doctor(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<DoctorOptions>("doctor",
-                                              "check the computer, the settings, the cameras and "
-                                              "the machine file; print the blind zone of each rig",
-                                              "surefoot doctor --machine rex",
-                                              doctor);
-    verb.option("--rig", o.rig_file, "calibration file").value("FILE");
-    verb.option("--machine", o.machine, "machine file, or name of a built-in machine")
+    auto [verb, o] =
+        verbs.add<DoctorOptions>("doctor",
+                                 "check the computer, the settings, the cameras and the machine "
+                                 "file; print the blind zone and the depth precision of one rig",
+                                 "surefoot doctor --machine rex",
+                                 doctor);
+    verb.option(
+            "--rig", o.rig_file, "calibration file of the rig (default: the built-in rig zed_vga)")
+        .value("FILE");
+    verb.option("--machine", o.machine, "machine file, or name of a built-in machine (default rex)")
         .value("FILE|NAME");
 }
 

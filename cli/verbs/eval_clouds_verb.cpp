@@ -22,11 +22,11 @@ struct EvalCloudsOptions {
     std::string compared;
     std::string method = "c2c";
     std::string cores;        ///< core points of M3C2; empty = all reference points
-    std::string values_file;  ///< one line per compared or core point; empty = not written
-    std::string out_dir;      ///< pictures and a coloured cloud; empty = not written
+    std::string values_file;  ///< file of all distances; empty = not written
+    std::string out_dir;      ///< folder for pictures and a coloured cloud; empty = not written
 };
 
-/// Distances at points, from which the values file is written.
+/// Distances at points. They are the source of the values file.
 struct Compared {
     CloudComparison comparison;
     std::vector<Eigen::Vector3f> points_m;
@@ -80,7 +80,8 @@ Result<Compared> compare_m3c2(const EvalCloudsOptions& options,
     return result;
 }
 
-/// A line of the values file: distance, or distance,lod,std1,std2,n1,n2,significant.
+/// Returns one line of the values file: `distance` for C2C, or
+/// `distance,lod,std1,std2,n1,n2,significant` for M3C2.
 std::string line_of(const Compared& result, std::size_t i) {
     if (result.m3c2.empty()) return fmt::format("{:.9g}\n", result.distances_m[i]);
     const eval::M3c2Value& v = result.m3c2[i];
@@ -112,20 +113,22 @@ Status write_values(const std::string& path, const Compared& result) {
 std::string sentence_of(const CloudComparison& c) {
     const eval::DistanceFigures& f = c.figures;
     return fmt::format(
-        "mean {:.2f} mm, standard deviation {:.2f} mm, 90 % within {:.2f} mm, {} distances",
+        "distances: mean {:.2f} mm, standard deviation {:.2f} mm, 90 % of the magnitudes are at "
+        "most {:.2f} mm, number {}",
         1e3 * f.mean_m,
         1e3 * f.std_m,
         1e3 * f.p90_abs_m,
         f.count);
 }
 
-/// `surefoot eval clouds`: distances between two clouds by C2C or M3C2.
+/// `surefoot eval clouds`: computes the distances between two clouds by C2C or M3C2.
 int eval_clouds(const EvalCloudsOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
     const bool m3c2 = options.method == "m3c2";
     if (!m3c2 && !options.cores.empty())
-        return report(usage_error("--core: works with --method m3c2 only"));
+        return report(usage_error(
+            "--core works with --method m3c2 only; remove --core or give --method m3c2"));
     const auto executor = make_executor(options.common);
     auto result =
         m3c2 ? compare_m3c2(options, settings->m3c2, *executor) : compare_c2c(options, *executor);
@@ -134,24 +137,25 @@ int eval_clouds(const EvalCloudsOptions& options) {
     comparison.method = options.method;
     comparison.figures = eval::distance_figures(result->distances_m);
     if (comparison.figures.count == 0) {
-        return report(input_error(
-            fmt::format("{} and {} do not overlap: no cylinder contains points of both. Check that "
-                        "both are in the same frame, or increase eval.m3c2.half_length_m = {:g}",
-                        options.reference,
-                        options.compared,
-                        settings->m3c2.half_length_m)));
+        return report(input_error(fmt::format(
+            "{} and {} do not overlap: no cylinder contains points of both clouds. Check that both "
+            "clouds use the same frame, or increase eval.m3c2.half_length_m = {:g} m",
+            options.reference,
+            options.compared,
+            settings->m3c2.half_length_m)));
     }
     if (!options.values_file.empty()) {
         if (const auto status = write_values(options.values_file, *result); !status)
             return report(status.error());
     }
     if (!options.out_dir.empty()) {
-        const PlacedDistances placed{result->points_m,
-                                     result->distances_m,
-                                     m3c2,
-                                     m3c2 ? "M3C2: compared minus reference"
-                                          : "C2C: distance to the nearest point of the reference",
-                                     sentence_of(comparison)};
+        const PlacedDistances placed{
+            result->points_m,
+            result->distances_m,
+            m3c2,
+            m3c2 ? "M3C2: distance from the reference to the compared cloud along the normal"
+                 : "C2C: distance from each point to the nearest point of the reference",
+            sentence_of(comparison)};
         if (const auto status = write_cloud_pictures(options.out_dir, placed, comparison.shift_m);
             !status)
             return report(status.error());
@@ -163,7 +167,7 @@ int eval_clouds(const EvalCloudsOptions& options) {
     fmt::print("{}\n", sentence_of(comparison));
     if (comparison.cores) {
         fmt::print(
-            "{} of {} core points differ by more than their level of detection (median "
+            "{} of {} core points differ by more than their level of detection (median level "
             "{:.2f} mm)\n",
             comparison.significant,
             *comparison.cores,
@@ -178,7 +182,8 @@ int eval_clouds(const EvalCloudsOptions& options) {
 void add_eval_clouds(VerbGroup verbs) {
     auto [verb, o] = verbs.add<EvalCloudsOptions>(
         "clouds",
-        "compute the distances between two point clouds: C2C, or M3C2 with its level of detection",
+        "compute the distances between two point clouds by C2C (cloud to cloud), or by M3C2 with "
+        "the level of detection of each distance",
         "surefoot eval clouds out/stairs.ply out/stairs_10mm.ply --out "
         "out/clouds --json\n"
         "  surefoot eval clouds out/stairs.ply out/stairs_10mm.ply "
@@ -187,24 +192,31 @@ void add_eval_clouds(VerbGroup verbs) {
     verb.option("reference", o.reference, "reference point cloud: PLY, PCD, LAS, VTK or XYZ")
         .required()
         .value("REFERENCE");
-    verb.option("compared", o.compared, "point cloud to compare, in the same frame")
+    verb.option("compared",
+                o.compared,
+                "point cloud to compare with the reference; both must use the same frame")
         .required()
         .value("COMPARED");
     verb.option("--method",
                 o.method,
-                "c2c: to the nearest point of the reference; m3c2: along normals, settings "
-                "eval.m3c2.*")
+                "how distances are measured. c2c (default): to the nearest point of the reference; "
+                "m3c2: along the normals of the surface, with the settings eval.m3c2.*")
         .one_of({"c2c", "m3c2"});
     verb.option("--core",
                 o.cores,
-                "m3c2: points at which the distance is computed (default: every reference point)")
+                "with --method m3c2: point cloud with the points at which distances are computed "
+                "(default: every point of the reference)")
         .value("CLOUD");
     verb.option("--values",
                 o.values_file,
-                "file with one line for each compared point (c2c: the distance) or core point "
-                "(m3c2: distance,lod,std1,std2,n1,n2,significant)")
+                "file for all distances, in m. With c2c, each compared point has a line with its "
+                "distance. With m3c2, each core point has a line "
+                "distance,lod,std1,std2,n1,n2,significant")
         .value("F.csv");
-    verb.option("--out", o.out_dir, "folder for distances.png, histogram.svg and distances.ply")
+    verb.option("--out",
+                o.out_dir,
+                "folder for a picture, a histogram and a coloured cloud of the distances: "
+                "distances.png, histogram.svg and distances.ply")
         .value("DIR");
 }
 

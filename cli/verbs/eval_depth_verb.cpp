@@ -19,21 +19,23 @@ struct EvalDepthOptions {
     CommonOptions common;
     std::string estimate;
     std::string truth;
-    double scale = 0.0;  ///< value of 1 px disparity in the truth image; 0 = by the file type
-    std::string mask;    ///< image; pixels above 200 count; empty = all pixels
-    std::string sigma;   ///< standard deviation of the estimate [px], PFM; optional
+    /// Value that means 1 px of disparity in the truth image; 0 = by the file type.
+    double scale = 0.0;
+    std::string mask;   ///< mask image: pixels above 200 are compared; empty = all pixels
+    std::string sigma;  ///< PFM of the standard deviation of the estimate [px]; empty = none
 };
 
-/// Codes per pixel of disparity without --scale. KITTI's 16-bit images hold 1/256 px; 8-bit images
-/// hold whole pixels.
+/// Code that means 1 px of disparity, if --scale is not given. The unit of 16-bit images is 1/256
+/// px, as in KITTI; the unit of 8-bit images is 1 px.
 constexpr double kScale16 = 256.0;
 constexpr double kScale8 = 1.0;
-/// Smallest mask value that counts as valid. Middlebury's masks hold 255 = visible in both cameras,
-/// 128 = occluded in one, 0 = no ground truth; masks with two values hold 0 and 255.
+/// Smallest mask value of a pixel that is compared. Masks of Middlebury contain 255 = visible in
+/// both cameras, 128 = occluded in one camera, 0 = no ground truth. Other masks contain only 0 and
+/// 255.
 constexpr int kLeastMask = 201;
 
-/// Disparity [px] of an image of codes. Code 0 means "no ground truth" in every data set that
-/// stores disparities as images.
+/// Converts an image of codes to disparities [px]. Code 0 means "no ground truth" in every data set
+/// that stores disparities as images.
 template <typename Code>
 Image<float> disparity_of(const Image<Code>& codes, double scale) {
     Image<float> disparity_px(codes.width(), codes.height());
@@ -45,7 +47,7 @@ Image<float> disparity_of(const Image<Code>& codes, double scale) {
     return disparity_px;
 }
 
-/// Ground-truth disparity, and the divisor that was applied to its codes.
+/// Ground-truth disparity, and the divisor by which its codes were divided.
 struct Truth {
     Image<float> disparity_px;
     double scale = 1.0;
@@ -88,9 +90,10 @@ Result<GreyImage> read_mask(const std::string& path) {
 
 void print_errors(const eval::DepthErrors& errors) {
     fmt::print(
-        "{} pixels have a true disparity; {:.2f} % of them have an estimate\ngaps filled: {:.2f} % "
-        "over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\nestimates only: {:.2f} % over 0.5 "
-        "px, {:.2f} % over 1 px, {:.2f} % over 2 px; median {:.3f} px\n",
+        "{} pixels have a true disparity; {:.2f} % of these pixels have an estimate\nerrors with "
+        "gaps filled: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\nerrors of the "
+        "estimates only: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px; median "
+        "{:.3f} px\n",
         errors.counted,
         errors.density_percent,
         errors.bad.over_0_5_percent,
@@ -102,30 +105,31 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.known.median_abs);
     if (errors.coverage.count == 0) return;
     fmt::print(
-        "within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} %; sparsification {:.3f} (0 = sigma orders "
-        "the errors perfectly, 1 = no better than chance)\n",
+        "errors within 1 sigma: {:.1f} %, within 2 sigma: {:.1f} %, within 3 sigma: {:.1f} %; "
+        "sparsification {:.3f} (0 = sigma sorts the errors perfectly, 1 = a sort by sigma is no "
+        "better than chance)\n",
         100.0 * errors.coverage.within_1_sigma,
         100.0 * errors.coverage.within_2_sigma,
         100.0 * errors.coverage.within_3_sigma,
         errors.sparsification.auc);
 }
 
-/// The --scale with which truth and estimate would agree, if they differ by a usual factor.
+/// Returns the --scale with which truth and estimate would agree, if they differ by a usual factor.
 std::optional<double> suspected_scale(const eval::DepthErrors& errors, double used) {
     const auto factor = eval::suspected_factor(errors.truth_over_estimate);
     return factor ? std::optional<double>(used * *factor) : std::nullopt;
 }
 
-/// Warns that the scale of the truth is probably wrong. The scale itself is not changed, because
-/// only the user can know it.
+/// Warns that the scale of the truth is probably wrong. The scale stays unchanged, because only the
+/// user can know the correct scale.
 void warn_of_scale(const EvalDepthOptions& options,
                    const Truth& truth,
                    double ratio,
                    double scale) {
     log_warning(
-        fmt::format("{}: after division by {:g}, its disparities are {:.3g} times those of {} "
-                    "(median). If the file stores {:g} times the disparity, the figures below are "
-                    "wrong: run again with --scale {:g}",
+        fmt::format("{}: after division by {:g}, its disparities are {:.3g} times the disparities "
+                    "of {} (median). If the file stores {:g} times the disparity, the figures of "
+                    "this call are wrong: run again with --scale {:g}",
                     options.truth,
                     truth.scale,
                     ratio,
@@ -149,9 +153,9 @@ int eval_depth(const EvalDepthOptions& options) {
     if (!errors) return report(errors.error());
     if (errors->counted == 0) {
         return report(input_error(
-            fmt::format("{}: no pixel has a true disparity{}",
+            fmt::format("{}: no pixel has a true disparity{}; check the file of the true disparity",
                         options.truth,
-                        options.mask.empty() ? "" : " inside the mask; check both files")));
+                        options.mask.empty() ? "" : " inside the mask (--mask)")));
     }
     const auto suspected = suspected_scale(*errors, truth->scale);
     if (suspected) warn_of_scale(options, *truth, errors->truth_over_estimate, *suspected);
@@ -168,28 +172,36 @@ int eval_depth(const EvalDepthOptions& options) {
 void add_eval_depth(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<EvalDepthOptions>("depth",
-                                    "compare a disparity image with the true one",
+                                    "compare a disparity image with the true disparity",
                                     "surefoot eval depth tests/conformance/depth/disparity.pfm "
                                     "tests/conformance/depth/truth.pfm --sigma "
                                     "tests/conformance/depth/sigma.pfm --json",
                                     eval_depth,
                                     Reads::no_settings);
-    verb.option("estimate", o.estimate, "estimated disparity, in px; unknown = +inf")
+    verb.option(
+            "estimate", o.estimate, "file of the estimated disparity, in px; +inf means unknown")
         .required()
         .value("EST.pfm");
-    verb.option("truth", o.truth, "true disparity: PFM, or a grey PNG in which 0 means unknown")
+    verb.option("truth",
+                o.truth,
+                "file of the true disparity: a PFM, or a grey PNG in which 0 means unknown")
         .required()
         .value("TRUTH");
     verb.option("--scale",
                 o.scale,
-                "factor between stored values and disparities in px (default: 256 for 16-bit "
-                "images, as in KITTI; 1 for others)")
+                "value that a disparity of 1 px has in the file of the true disparity (default: "
+                "256 for 16-bit images, as in KITTI; 1 for other files)")
         .value("S")
         .positive();
-    verb.option(
-            "--mask", o.mask, "mask image; only pixels above 200 (visible in both cameras) count")
+    verb.option("--mask",
+                o.mask,
+                "mask image: only pixels with a mask value above 200 are compared, which means "
+                "visible in both cameras")
         .value("M");
-    verb.option("--sigma", o.sigma, "standard deviation of the estimate, in px").value("SIGMA.pfm");
+    verb.option("--sigma",
+                o.sigma,
+                "file with the standard deviation of the estimated disparity, in px")
+        .value("SIGMA.pfm");
 }
 
 }  // namespace surefoot::app

@@ -22,10 +22,10 @@ struct EvalMapsOptions {
     CommonOptions common;
     std::string live_dir;
     std::string truth_dir;
-    std::string out_dir;  ///< folder for pictures; optional
+    std::string out_dir;  ///< folder for pictures; empty = no pictures
 };
 
-/// Loads the settings of the live run, so that the true map is processed identically.
+/// Loads the settings of the run, so that the true map is rated with the same settings.
 Result<Settings> settings_of(const EvalMapsOptions& options) {
     CommonOptions common = options.common;
     const std::string used = options.live_dir + "/config.yaml";
@@ -33,7 +33,7 @@ Result<Settings> settings_of(const EvalMapsOptions& options) {
     return load_settings(common);
 }
 
-/// Traversability of the true heights under the settings of the live map.
+/// Rates the traversability of the true heights with the settings of the run.
 grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double resolution_m) {
     Serial serial;
     traversability::TraversabilityLayers layers;
@@ -45,17 +45,19 @@ grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double r
     return layers.traversability;
 }
 
-/// Reads another layer of the run. Its size must equal that of elevation.asc.
+/// Reads another layer of the run. Its size must equal the size of elevation.asc.
 Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry& geometry) {
     const auto dem = io::read_esri_grid(path);
     if (!dem) return dem.error();
     if (dem->geometry.nx == geometry.nx && dem->geometry.ny == geometry.ny) return dem->values;
-    return input_error(fmt::format("{}: {} x {} cells, but elevation.asc beside it has {} x {}",
-                                   path,
-                                   dem->geometry.nx,
-                                   dem->geometry.ny,
-                                   geometry.nx,
-                                   geometry.ny));
+    return input_error(
+        fmt::format("{}: this layer has {} x {} cells, but elevation.asc in the same folder has {} "
+                    "x {}; write both with the same run",
+                    path,
+                    dem->geometry.nx,
+                    dem->geometry.ny,
+                    geometry.nx,
+                    geometry.ny));
 }
 
 /// Adds the poses and the camera of the run, if its folder contains them.
@@ -128,22 +130,25 @@ Status write_pictures(const EvalMapsOptions& options,
                                                   100.0 * result.traversability.false_safe,
                                                   100.0 * result.traversability.false_unsafe)},
                                      overlays));
-    writes += write("error.png",
-                    eval::render_error_map(maps.geometry,
-                                           result.error_m,
-                                           {"Height error",
-                                            fmt::format("median {:.1f} mm, 90 % within {:.1f} mm",
-                                                        1e3 * result.elevation.median_abs_m,
-                                                        1e3 * result.elevation.p90_abs_m)},
-                                           overlays));
+    writes +=
+        write("error.png",
+              eval::render_error_map(
+                  maps.geometry,
+                  result.error_m,
+                  {"Height error",
+                   fmt::format("magnitude: median {:.1f} mm, 90 % of the cells at most {:.1f} mm",
+                               1e3 * result.elevation.median_abs_m,
+                               1e3 * result.elevation.p90_abs_m)},
+                  overlays));
     return writes.first();
 }
 
 void print_figures(const eval::MapComparison& result) {
     fmt::print(
-        "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
-        "{:.2f} % above 50 mm\ntraversability: {:.2f} % of the unsafe cells called safe, {:.2f} % "
-        "of the safe cells called unsafe\n{:.1f} % of the true cells are known\n",
+        "elevation error: median magnitude {:.1f} mm, 90 % of the cells at most {:.1f} mm, number "
+        "of cells {}; {:.2f} % of the cells away from edges have an error above 50 "
+        "mm\ntraversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe cells "
+        "called unsafe\n{:.1f} % of the cells of the true map are known in the map of the run\n",
         1e3 * result.elevation.median_abs_m,
         1e3 * result.elevation.p90_abs_m,
         result.elevation.count,
@@ -152,15 +157,17 @@ void print_figures(const eval::MapComparison& result) {
         100.0 * result.traversability.false_unsafe,
         100.0 * result.coverage);
     if (result.sigma.count > 0) {
-        fmt::print("within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} % of the cells away from edges\n",
-                   100.0 * result.sigma.within_1_sigma,
-                   100.0 * result.sigma.within_2_sigma,
-                   100.0 * result.sigma.within_3_sigma);
+        fmt::print(
+            "cells away from edges with an error within 1 sigma: {:.1f} %, within 2 sigma: {:.1f} "
+            "%, within 3 sigma: {:.1f} %\n",
+            100.0 * result.sigma.within_1_sigma,
+            100.0 * result.sigma.within_2_sigma,
+            100.0 * result.sigma.within_3_sigma);
     }
     if (result.floor.count > 0) {
         fmt::print(
-            "level floor: spread {:.1f} mm, 99 % of the height steps between neighbouring cells "
-            "are below {:.1f} mm\n",
+            "level floor: spread of the heights {:.1f} mm, 99 % of the height steps between "
+            "neighbouring cells are below {:.1f} mm\n",
             1e3 * result.floor.spread_m,
             1e3 * result.edges.p99_abs);
     }
@@ -175,7 +182,7 @@ int eval_maps(const EvalMapsOptions& options) {
     const eval::MapComparison result = eval::compare_maps(*maps, settings->maps);
     if (result.elevation.count == 0) {
         return report(input_error(fmt::format(
-            "{} and {} have no known cell in common; check that both are in the same frame",
+            "{} and {} have no known cell in common; check that both maps use the same frame",
             options.live_dir,
             options.truth_dir)));
     }
@@ -192,12 +199,12 @@ int eval_maps(const EvalMapsOptions& options) {
 }  // namespace
 
 void add_eval_maps(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<EvalMapsOptions>("maps",
-                                   "compare elevation and traversability with a true map",
-                                   "surefoot eval maps out/floor out/floor_recording --json",
-                                   eval_maps,
-                                   Reads::own_settings);
+    auto [verb, o] = verbs.add<EvalMapsOptions>(
+        "maps",
+        "compare the elevation and the traversability of a run with a true map",
+        "surefoot eval maps out/floor out/floor_recording --json",
+        eval_maps,
+        Reads::own_settings);
     verb.option("live", o.live_dir, "output folder of 'surefoot run'").required().value("LIVE_DIR");
     verb.option(
             "truth",
@@ -205,7 +212,11 @@ void add_eval_maps(VerbGroup verbs) {
             "folder with the true elevation.asc, for example an output folder of 'surefoot sim'")
         .required()
         .value("TRUTH_DIR");
-    verb.option("--out", o.out_dir, "folder for confusion.png and error.png").value("DIR");
+    verb.option("--out",
+                o.out_dir,
+                "folder for pictures: confusion.png (wrongly rated cells) and error.png (height "
+                "errors)")
+        .value("DIR");
 }
 
 }  // namespace surefoot::app

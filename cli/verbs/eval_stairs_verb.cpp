@@ -12,12 +12,12 @@ namespace {
 
 struct EvalStairsOptions {
     CommonOptions common;
-    std::string found;  ///< stairs.json, or the folder of a run
+    std::string found;  ///< path of stairs.json, or of the folder that contains it
     std::string truth;
     eval::FeatureMatch match;
 };
 
-/// Reads stair features from a stairs.json, given by its path or by the folder of its run.
+/// Reads terrain features from a stairs.json. `path` is the file or the folder that contains it.
 Result<ListedFeatures> read_features(const std::string& path) {
     const std::string inside = path + "/stairs.json";
     const std::string& file = io::is_file(inside) ? inside : path;
@@ -36,32 +36,38 @@ std::string in_mm(const eval::MatchErrors& figures) {
 }
 
 void print_kind(const char* name, const eval::KindErrors& kind, const char* height) {
-    fmt::print("{:8} {:3} of {:3} found, {:3} without a true partner; position across {}, {} {}\n",
-               name,
-               kind.matched,
-               kind.truth,
-               kind.extra.size(),
-               in_mm(kind.across),
-               height,
-               in_mm(kind.height));
+    fmt::print(
+        "{:8} {:3} of {:3} found, {:3} without a true partner; error of the position in walking "
+        "direction {}, error of the {} {}\n",
+        name,
+        kind.matched,
+        kind.truth,
+        kind.extra.size(),
+        in_mm(kind.across),
+        height,
+        in_mm(kind.height));
 }
 
 void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>& lists) {
-    fmt::print("found minus true [mm]: mean / standard deviation / largest (number of pairs)\n");
+    fmt::print(
+        "errors (found minus true) in mm: mean / standard deviation / largest magnitude (number of "
+        "pairs)\n");
     if (lists.contains("flights")) {
         print_kind("flights", errors.flights, "riser");
-        fmt::print("         number of steps correct in {} of {}; going {}, width {}\n",
-                   errors.flights.steps_right,
-                   errors.flights.matched,
-                   in_mm(errors.flights.going),
-                   in_mm(errors.flights.width));
+        fmt::print(
+            "         number of steps correct in {} of {} found flights; error of the going {}, "
+            "error of the width {}\n",
+            errors.flights.steps_right,
+            errors.flights.matched,
+            in_mm(errors.flights.going),
+            in_mm(errors.flights.width));
     }
     if (lists.contains("drops")) print_kind("drops", errors.drops, "height");
     if (lists.contains("kerbs")) print_kind("kerbs", errors.kerbs, "height");
     if (lists.contains("sills")) print_kind("sills", errors.sills, "height");
     if (lists.contains("doors")) {
         print_kind("doors", errors.doors, "sill");
-        fmt::print("         width {}\n", in_mm(errors.doors.width));
+        fmt::print("         error of the width {}\n", in_mm(errors.doors.width));
     }
     if (lists.contains("edges")) print_kind("edges", errors.edges, "height");
 }
@@ -77,10 +83,11 @@ int eval_stairs(const EvalStairsOptions& options) {
         if (found->lists.contains(list)) {
             lists.insert(list);
         } else {
-            log_warning(fmt::format(
-                "{}: the list '{}' is missing; it is in the truth, but cannot be compared",
-                options.found,
-                list));
+            log_warning(
+                fmt::format("{}: the list '{}' is missing, so this kind of feature is not compared "
+                            "with the truth",
+                            options.found,
+                            list));
         }
     }
     const eval::FeatureErrors errors =
@@ -98,33 +105,42 @@ int eval_stairs(const EvalStairsOptions& options) {
 void add_eval_stairs(VerbGroup verbs) {
     auto [verb, o] = verbs.add<EvalStairsOptions>(
         "stairs",
-        "compare flights, drops, kerbs, sills, doors and edges with the true ones",
+        "compare found flights, drops, kerbs, sills, doors and edges with the true features",
         "surefoot stairs out/floor_recording/elevation.asc --out out/floor_truth\n"
         "  surefoot eval stairs out/floor out/floor_truth --json",
         eval_stairs,
         Reads::no_settings);
-    verb.option("found", o.found, "stairs.json, or the output folder of a verb that wrote it")
+    verb.option("found",
+                o.found,
+                "found features: a file stairs.json, or the folder that contains it, for example "
+                "the output folder of 'surefoot run'")
         .required()
         .value("FOUND");
     verb.option("truth",
                 o.truth,
-                "true features in the same frame: stairs.json made from true heights by 'surefoot "
-                "stairs', or a file written by hand with the lists that you know")
+                "true features, in the same frame: a file stairs.json that 'surefoot stairs' made "
+                "from true heights, or a file that you write by hand. A list that the file lacks "
+                "is not compared")
         .required()
         .value("TRUTH");
     verb.option("--across",
                 o.match.across_m,
-                "largest distance of a match in the walking direction, in m")
+                "largest distance between a found feature and its true partner in the walking "
+                "direction, in m")
         .value("M")
         .positive()
         .show_default();
-    verb.option("--along", o.match.along_m, "largest sideways distance of a match, in m")
+    verb.option("--along",
+                o.match.along_m,
+                "largest distance between a found feature and its true partner across the walking "
+                "direction, in m")
         .value("M")
         .positive()
         .show_default();
     verb.option("--turn",
                 o.match.turn_deg,
-                "largest angle between the walking directions of a match, in deg")
+                "largest angle between the walking directions of a found feature and its true "
+                "partner, in deg")
         .value("DEG")
         .positive()
         .show_default();

@@ -25,8 +25,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest distance at which the quick suite queries the gate. Half of its run time goes into these
-/// queries.
+/// Largest distance from the last pose at which the quick suite queries the gate. These queries
+/// take half of the run time of the quick suite.
 constexpr double kQuickReach_m = 0.6;
 
 sim::CameraProfile profile_of(const std::string& name) {
@@ -42,21 +42,24 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return machine.error();
     if (!*machine)
-        return usage_error("--machine: give a machine file, or the name of a built-in machine");
+        return usage_error(
+            "--machine is empty: give a machine file, or the name of a built-in machine, for "
+            "example rex");
     const double reach_m =
         options.quick ? std::min(options.reach_m, kQuickReach_m) : options.reach_m;
     return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
 }
 
-/// Hash of all conditions, apart from the case itself, that the figures of a case depend on.
+/// Returns the hash of all conditions that determine the figures of a case, without the case
+/// itself.
 std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
     return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
                  hash_of(conditions.settings));
 }
 
 /// Runs the cases that the table lacks, one case per thread of the executor. A case that fails is
-/// logged and left out, and the others go on. After a failed write or an interrupt by the user no
-/// further case starts.
+/// logged and left out, and the other cases continue. After a failed write or an interrupt by the
+/// user no further case starts.
 class SuiteRun {
   public:
     SuiteRun(const SuiteConditions& conditions, SuiteTable& table)
@@ -151,11 +154,11 @@ void print_summary(std::span<const SuiteRow> rows) {
                    worst("missed_hazards"),
                    100.0 * worst("allowed"));
     }
-    fmt::print("(worst case of each row)\n");
+    fmt::print("(each figure belongs to the worst case of its row)\n");
 }
 
-/// `surefoot eval suite`: runs scenes x motion models x seeds x noise levels through the pipeline
-/// and compares the results with the truth.
+/// `surefoot eval suite`: runs the pipeline on each combination of scene, motion model, seed and
+/// noise level, and compares the results with the truth.
 int eval_suite(const EvalSuiteOptions& options) {
     if (options.thesis) return eval_thesis(options);
     const auto conditions = conditions_of(options);
@@ -178,7 +181,7 @@ int eval_suite(const EvalSuiteOptions& options) {
     } else {
         print_summary(summarise(results));
         if (writes.first())
-            fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);
+            fmt::print("report of {} cases: {}/suite.html\n", results.size(), options.out_dir);
     }
     if (!writes.first()) log_error(writes.first().error().message);
     if (!done) return report(done.error());
@@ -190,76 +193,87 @@ int eval_suite(const EvalSuiteOptions& options) {
 void add_eval_suite(VerbGroup verbs) {
     auto [suite, s] = verbs.add<EvalSuiteOptions>(
         "suite",
-        "run the whole chain on simulated scenes x motion models x seeds x noise, and compare the "
-        "results with the truth; --threads is the number of cases at a time",
+        "run the whole chain on each combination of simulated scene, motion model, seed and noise, "
+        "and compare the results with the truth; --threads sets how many cases run at the same "
+        "time",
         "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite",
         eval_suite);
     suite
         .option("--out",
                 s.out_dir,
-                "folder for suite.html, suite.json and cases.csv; a repeated call continues an "
-                "interrupted suite")
+                "folder for the results suite.html, suite.json and cases.csv; to continue an "
+                "interrupted suite, repeat the call")
         .required()
         .value("DIR");
     suite.flag("--quick",
                s.quick,
-               "run a few short scenes only, for a check after each change of the code");
-    const Option thesis = suite.flag(
-        "--lange2016",
-        s.thesis,
-        "run the experiments of the reference thesis (Lange 2016) on rebuilt scenes instead, and "
-        "compare its values with ours: thesis.html, thesis.json, thesis.csv");
+               "run only a few short scenes, for a quick check after a change of the code");
+    const Option thesis =
+        suite.flag("--lange2016",
+                   s.thesis,
+                   "run the experiments of the reference thesis (Lange 2016) on rebuilt scenes "
+                   "instead of the suite, and compare the values of the thesis with the values of "
+                   "Surefoot; writes thesis.html, thesis.json and thesis.csv");
     suite
-        .option("--runs",
-                s.runs,
-                "--lange2016: names of the experiments, separated by commas (default: all)")
+        .option(
+            "--runs",
+            s.runs,
+            "with --lange2016: names of the experiments to run, separated by commas (default: all)")
         .separated_by_commas()
         .value("NAMES")
         .needs(thesis);
     suite
         .option("--scenes",
                 s.scenes,
-                "names of scenes, or scene files, separated by commas (default: all)")
+                "scenes to run: names of scenes or scene files, separated by commas (default: all "
+                "scenes)")
         .separated_by_commas()
         .value("NAMES");
     suite
         .option("--motion-models",
                 s.motion_models,
-                "motion models that move the camera through each scene; scene = the one in the "
-                "scene file (default). A combination that is not possible is named and left out")
+                "motion models that move the camera through each scene, separated by commas; scene "
+                "= the motion model in the scene file (default). The verb leaves out impossible "
+                "combinations and names them")
         .separated_by_commas()
         .one_of({"scene", "trolley", "rex", "hand"})
         .value("NAMES");
     suite
-        .option(
-            "--camera", s.camera, "profile of the camera noise (default zed: noise of a real ZED)")
+        .option("--camera",
+                s.camera,
+                "noise profile of the simulated camera (default zed: noise of a real ZED camera)")
         .one_of({"ideal", "zed", "euroc"});
     suite
-        .option(
-            "--seeds",
-            s.seeds,
-            "number of variants of each scene; the first one has the seed of --seed (default 1)")
+        .option("--seeds",
+                s.seeds,
+                "number of variants of each scene (default 1); the first variant has the seed of "
+                "--seed")
         .in(1, 100000);
     suite
-        .option(
-            "--noise", s.noise, "factors on the noise amplitude, separated by commas (default 1,2)")
+        .option("--noise",
+                s.noise,
+                "factors by which the camera noise is multiplied, separated by commas (default "
+                "1,2); each factor gives a case of its own")
         .separated_by_commas()
         .in(0.0, 10.0)
         .value("FACTORS");
     suite
         .option("--frames",
                 s.frames,
-                "stop each case after this number of frames (default: the whole path)")
+                "stop each case after this number of frames (default: at the end of the path)")
         .positive();
     suite
-        .option(
-            "--reach",
-            s.reach_m,
-            "radius around the last pose in which the gate is asked, in m; 0 = only at that pose")
+        .option("--reach",
+                s.reach_m,
+                "radius of the circle around the last pose in which the suite asks the gate about "
+                "steps, in m (default 0.8); 0 = only at the last pose")
         .value("M")
         .in(0.0, 2.0);
     suite
-        .option("--machine", s.machine, "machine file, or name of a built-in machine (default rex)")
+        .option("--machine",
+                s.machine,
+                "machine that the gate judges for: a machine file, or the name of a built-in "
+                "machine (default rex)")
         .value("FILE|NAME");
 }
 

@@ -20,8 +20,8 @@ struct EvalTrajectoryOptions {
     std::string truth;
     std::string align = "se3";
     double rate_hz = 0.0;
-    std::string times_file;  ///< time stamps of KITTI poses; optional
-    /// Path lengths for relative errors; empty = 0.1, 0.5, 1, 2, 5 m.
+    std::string times_file;  ///< file of the time stamps of KITTI poses; empty = no file
+    /// Path lengths over which relative errors are computed; empty = 0.1, 0.5, 1, 2 and 5 m.
     std::vector<double> lengths_m;
     std::string plot_file;
 };
@@ -32,7 +32,7 @@ struct TrajectoryPair {
     io::TrajectoryFile truth;
 };
 
-/// Gives the stamps of the --times file to each trajectory that has none.
+/// Gives the stamps of the --times file to each trajectory that has no stamps.
 Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
     if (pair.estimate.has_stamps() && pair.truth.has_stamps()) {
         return usage_error(fmt::format(
@@ -63,12 +63,14 @@ Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair)
     return io::give_stamps(times_ns, fmt::format("--rate {:g}", options.rate_hz), pair.truth);
 }
 
-/// If one trajectory has stamps and the other has none but as many poses, pose i gets the stamp of
-/// the other's pose i. A truth of another length keeps 10 Hz from 0, the rate of KITTI's
-/// recordings.
+/// Handles the case that only one trajectory has stamps. If both have the same number of poses,
+/// pose i without a stamp gets the stamp of pose i of the other trajectory. A truth with another
+/// number of poses keeps stamps at 10 Hz from 0 s, the frame rate of KITTI.
 Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     const bool of_estimate = !pair.estimate.has_stamps();
-    if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or both lack them
+    if (of_estimate == !pair.truth.has_stamps())
+        return {};  // both trajectories have stamps, or
+                    // both have none
     io::TrajectoryFile& bare = of_estimate ? pair.estimate : pair.truth;
     const io::TrajectoryFile& other = of_estimate ? pair.truth : pair.estimate;
     if (bare.rows == other.poses.size()) {
@@ -77,12 +79,13 @@ Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair
         return io::give_stamps(times_ns, "the same rows as the other trajectory", bare);
     }
     if (!of_estimate) return {};
-    return input_error(fmt::format(
-        "{}: {} poses without time stamps, and {} has {} poses; give the time stamps with --times",
-        options.estimate,
-        bare.rows,
-        options.truth,
-        other.poses.size()));
+    return input_error(
+        fmt::format("{}: {} poses have no time stamps, and {} has another number of poses, {}; "
+                    "give the time stamps with --times",
+                    options.estimate,
+                    bare.rows,
+                    options.truth,
+                    other.poses.size()));
 }
 
 Result<TrajectoryPair> read_pair(const EvalTrajectoryOptions& options) {
@@ -108,8 +111,8 @@ eval::Alignment alignment_named(const std::string& name) {
     return name == "yaw" ? eval::Alignment::yaw : eval::Alignment::se3;
 }
 
-/// Plots both trajectories from above, and the error over time below. The plot uses the estimate's
-/// frame, whose z axis points up (odom). The truth's frame may be that of a camera (KITTI) or of a
+/// Plots both trajectories from above, and the error over time below. The plot uses the frame of
+/// the estimate (odom), in which z points up. The frame of the truth may be a camera (KITTI) or a
 /// tracking target.
 Status write_plot(const EvalTrajectoryOptions& options,
                   const Trajectory& estimate,
@@ -123,14 +126,14 @@ Status write_plot(const EvalTrajectoryOptions& options,
         matched_truth.push_back(truth[errors.pairs[k].truth]);
         samples.push_back({seconds_from_ns(time_ns - start_ns), errors.position_error_m[k]});
     }
-    const auto above =
-        eval::render_trajectory(estimate,
-                                eval::transformed(errors.T_truth_estimate.inverse(), matched_truth),
-                                {"Trajectory from above",
-                                 fmt::format("{} poses matched over {:.2f} m, aligned: {}",
-                                             errors.matched,
-                                             errors.path_length_m,
-                                             options.align)});
+    const auto above = eval::render_trajectory(
+        estimate,
+        eval::transformed(errors.T_truth_estimate.inverse(), matched_truth),
+        {"Trajectory from above",
+         fmt::format("{} matched poses over a path of {:.2f} m, alignment: {}",
+                     errors.matched,
+                     errors.path_length_m,
+                     options.align)});
     const auto over_time = eval::render_error_over_time(
         samples, {"Position error over time", fmt::format("ATE {:.4f} m rmse", errors.ate_rmse_m)});
     const auto png = eval::encode_png(eval::stacked(above, over_time));
@@ -141,8 +144,8 @@ void print_errors(const EvalTrajectoryOptions& options,
                   const eval::TrajectoryErrors& errors,
                   const std::vector<eval::PathError>& by_length) {
     fmt::print(
-        "{} poses matched over {:.2f} m (aligned: {})\nATE {:.4f} m rmse\nRPE {:.4f} m, {:.4f} "
-        "deg rmse per pose\n",
+        "{} matched poses over a path of {:.2f} m (alignment: {})\nabsolute error (ATE): {:.4f} m "
+        "rmse\nrelative error (RPE) from pose to pose: {:.4f} m, {:.4f} deg rmse\n",
         errors.matched,
         errors.path_length_m,
         options.align,
@@ -152,7 +155,8 @@ void print_errors(const EvalTrajectoryOptions& options,
     for (const eval::PathError& error : by_length) {
         if (error.count == 0) continue;
         fmt::print(
-            "RPE {:.4f} m ({:.2f} %), {:.4f} deg rmse over {:g} m of path ({} path sections)\n",
+            "relative error (RPE): {:.4f} m ({:.2f} %), {:.4f} deg rmse over {:g} m of path ({} "
+            "path sections)\n",
             error.trans_rmse_m,
             error.trans_percent,
             error.rot_rmse_deg,
@@ -162,7 +166,8 @@ void print_errors(const EvalTrajectoryOptions& options,
     fmt::print("drift {:.2f} %\n", errors.drift_percent);
 }
 
-/// `surefoot eval trajectory`: absolute error, relative error and drift of a trajectory.
+/// `surefoot eval trajectory`: computes the absolute error, the relative error and the drift of a
+/// trajectory.
 int eval_trajectory(const EvalTrajectoryOptions& options) {
     const auto pair = read_pair(options);
     if (!pair) return report(pair.error());
@@ -196,40 +201,46 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
 }  // namespace
 
 void add_eval_trajectory(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<EvalTrajectoryOptions>("trajectory",
-                                         "compute ATE, RPE and drift of a trajectory",
-                                         "surefoot eval trajectory out/floor/trajectory.tum "
-                                         "out/floor_recording/groundtruth.tum --json",
-                                         eval_trajectory,
-                                         Reads::no_settings);
-    verb.option("estimate", o.estimate, "estimated trajectory: TUM, EuRoC csv, or KITTI 3x4 poses")
+    auto [verb, o] = verbs.add<EvalTrajectoryOptions>(
+        "trajectory",
+        "compute the absolute error (ATE), the relative error (RPE) and the drift of a trajectory",
+        "surefoot eval trajectory out/floor/trajectory.tum "
+        "out/floor_recording/groundtruth.tum --json",
+        eval_trajectory,
+        Reads::no_settings);
+    verb.option("estimate",
+                o.estimate,
+                "file of the estimated trajectory: TUM, EuRoC csv, or KITTI 3x4 poses")
         .required()
         .value("EST");
-    verb.option("truth", o.truth, "true trajectory, in any of these formats")
+    verb.option("truth", o.truth, "file of the true trajectory: TUM, EuRoC csv, or KITTI 3x4 poses")
         .required()
         .value("TRUTH");
     verb.option("--align",
                 o.align,
-                "transformation that aligns the estimate to the truth (default se3)")
+                "transformation that aligns the estimate with the truth before the comparison. se3 "
+                "(default): rotation and translation; yaw: translation and rotation about z; none: "
+                "no alignment")
         .one_of({"se3", "yaw", "none"});
-    const Option rate =
-        verb.option("--rate", o.rate_hz, "rate of true KITTI poses without times.txt, in Hz")
-            .value("HZ")
-            .in(0.01, 1000.0);
-    verb.option("--times", o.times_file, "file with the time stamps of KITTI poses, one per line")
+    const Option rate = verb.option("--rate",
+                                    o.rate_hz,
+                                    "frame rate of a true trajectory that is a file of KITTI poses "
+                                    "without times.txt, in Hz")
+                            .value("HZ")
+                            .in(0.01, 1000.0);
+    verb.option("--times", o.times_file, "file with one time stamp per line, in s, for KITTI poses")
         .value("FILE")
         .excludes(rate);
     verb.option("--delta",
                 o.lengths_m,
-                "path length for relative errors, in m; repeat the option for more lengths "
-                "(default 0.1, 0.5, 1, 2, 5)")
+                "path length over which a relative error is computed, in m; repeat the option for "
+                "more lengths (default 0.1, 0.5, 1, 2 and 5)")
         .value("M")
         .one_value_each()
         .in(1e-3, 1e6);
     verb.option("--plot",
                 o.plot_file,
-                "picture of the trajectory from above, and of the error over time")
+                "file for a picture that shows the trajectory from above and the error over time")
         .value("F.png");
 }
 

@@ -24,7 +24,7 @@ struct FuseOptions {
     std::string out_dir;
 };
 
-/// Settings of this verb: the group "reference" configures the map update of the reference
+/// Settings of this verb. The group "reference" configures the map update of the reference
 /// implementation (ETH elevation_mapping).
 struct FuseSettings {
     elevation::ReferenceConfig reference;
@@ -35,8 +35,8 @@ Result<elevation::ReferenceConfig> load(const CommonOptions& options) {
     FuseSettings settings;
     if (options.preset != "ethz") {
         return usage_error(
-            fmt::format("fuse --preset '{}': this verb works with --preset ethz only, the map "
-                        "update of the reference implementation",
+            fmt::format("fuse --preset '{}': this verb runs only the map update of the reference "
+                        "implementation; give --preset ethz",
                         options.preset));
     }
     if (auto status = apply_overrides(options, io::describe_config(settings)); !status)
@@ -48,10 +48,11 @@ Result<std::vector<elevation::ReferencePoint>> read_points(const std::string& pa
     const auto values = io::read_floats(path);
     if (!values) return values.error();
     if (values->size() % 4 != 0) {
-        return input_error(fmt::format(
-            "{}: {} values; the number of values must be a multiple of 4 (x, y, z, variance)",
-            path,
-            values->size()));
+        return input_error(
+            fmt::format("{}: the file has {} values; the number must be a multiple of 4, because "
+                        "each point has x, y, z and variance",
+                        path,
+                        values->size()));
     }
     std::vector<elevation::ReferencePoint> points(values->size() / 4);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -74,8 +75,8 @@ Result<std::vector<elevation::ReferencePoint>> read_points(const std::string& pa
     return points;
 }
 
-/// Parses the line of a step, "K time T move_to X Y ...". Its points are in the file cloudK.f32 of
-/// `folder`.
+/// Parses the line of a step, "K time T move_to X Y ...". The points of step K are in the file
+/// cloudK.f32 of `folder`.
 Result<elevation::FuseStep> parse_step(std::string_view line,
                                        const std::string& where,
                                        const std::string& folder) {
@@ -84,8 +85,8 @@ Result<elevation::FuseStep> parse_step(std::string_view line,
         if (!word.empty()) words.push_back(word);
     }
     if (words.size() < 6 || words[1] != "time" || words[3] != "move_to") {
-        return input_error(
-            fmt::format("{}: expected 'K time T move_to X Y', found '{}'", where, line));
+        return input_error(fmt::format(
+            "{}: the line must be 'K time T move_to X Y', but it is '{}'", where, line));
     }
     const auto index = io::parse_int64(words[0]);
     const auto time_s = io::parse_double(words[2]);
@@ -95,12 +96,14 @@ Result<elevation::FuseStep> parse_step(std::string_view line,
         return value && std::isfinite(*value);
     };
     if (!index || !is_number(time_s) || !is_number(x_m) || !is_number(y_m)) {
-        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is not a finite number",
-                                       where,
-                                       words[0],
-                                       words[2],
-                                       words[4],
-                                       words[5]));
+        return input_error(
+            fmt::format("{}: one of the values K = '{}', T = '{}', X = '{}', Y = '{}' is not a "
+                        "finite number; correct this value",
+                        where,
+                        words[0],
+                        words[2],
+                        words[4],
+                        words[5]));
     }
     auto cloud = read_points(fmt::format("{}/cloud{}.f32", folder, *index));
     if (!cloud) return cloud.error();
@@ -120,12 +123,14 @@ Result<std::vector<elevation::FuseStep>> read_steps(const std::string& path) {
         steps.push_back(std::move(step).value());
     }
     if (steps.empty())
-        return input_error(
-            fmt::format("{}: the file contains no step; add lines 'K time T move_to X Y'", path));
+        return input_error(fmt::format(
+            "{}: the file contains no step; add a line 'K time T move_to X Y' for each step",
+            path));
     return steps;
 }
 
-/// `surefoot fuse`: runs only the elevation update, on given clouds.
+/// `surefoot fuse`: runs only the elevation map update of the reference implementation, on given
+/// clouds.
 int fuse(const FuseOptions& options) {
     const auto config = load(options.common);
     if (!config) return report(config.error());
@@ -148,7 +153,9 @@ int fuse(const FuseOptions& options) {
     if (options.common.json) {
         print_answer(fuse_json(results.size(), options.out_dir));
     } else {
-        fmt::print("{} steps fused; layers of each step in {}/\n", results.size(), options.out_dir);
+        fmt::print("{} steps fused; the layers of each step are in {}/\n",
+                   results.size(),
+                   options.out_dir);
     }
     return kExitOk;
 }
@@ -158,15 +165,21 @@ int fuse(const FuseOptions& options) {
 void add_fuse(VerbGroup verbs) {
     auto [verb, o] = verbs.add<FuseOptions>(
         "fuse",
-        "run only the elevation map update, on given point clouds",
+        "run only the elevation map update of the reference implementation (ETH "
+        "elevation_mapping), on given point clouds",
         "surefoot fuse tests/conformance/elevation/steps.txt --preset ethz --out out/fused",
         fuse,
         Reads::own_settings);
-    verb.option(
-            "steps", o.steps, "file of steps; the files cloud0.f32, cloud1.f32, ... lie beside it")
+    verb.option("steps",
+                o.steps,
+                "file of steps, one line 'K time T move_to X Y' for each step (T in s, X and Y in "
+                "m). The points of step K are in the file cloudK.f32 in the same folder")
         .required()
         .value("STEPS.txt");
-    verb.option("--out", o.out_dir, "folder for the layers").required().value("DIR");
+    verb.option(
+            "--out", o.out_dir, "folder for the layers elevation, variance and time of each step")
+        .required()
+        .value("DIR");
 }
 
 }  // namespace surefoot::app

@@ -23,11 +23,11 @@ constexpr const char* kUsualMachine = "rex";
 struct GateOptions {
     CommonOptions common;
     std::string map_dir;
-    std::string pose;     ///< base_link in odom: "x,y,yaw" [m, rad]
+    std::string pose;     ///< pose of base_link in odom: "x,y,yaw" [m, m, rad]
     std::string command;  ///< a joystick code
-    std::string machine;  ///< empty = rex, and the answer says so
+    std::string machine;  ///< empty = rex, listed in the answer as an assumption
     std::string explain_file;
-    /// Attested area around base_link; < 0 = as far as the standing feet reach.
+    /// Radius of the attested area around base_link; negative = as far as the standing feet reach.
     double attestation_radius_m = -1.0;
     std::string audit_dir;  ///< audit log to which the verdict is added; empty = no log
 };
@@ -41,7 +41,7 @@ int exit_code_of(gate::Decision decision) {
     return kExitGateError;
 }
 
-/// Answers a query without a usable map: the verdict is ERROR, with the reason in words.
+/// Answers a query without a usable map: the verdict is ERROR, and its text is the reason.
 int refuse(const GateOptions& options, std::uint8_t command, const Error& error) {
     log_error(error.message);
     gate::Verdict verdict;
@@ -68,7 +68,7 @@ Status write_audit(const std::string& folder,
     return output_error("the verdict was not written to the audit log: " + done.last_error);
 }
 
-/// The configured movements of a machine as text, for example "9 N, 25 left".
+/// Returns the configured movements of a machine as text, for example "9 N, 25 left".
 std::string movements_of(const Machine& machine) {
     std::string text;
     for (std::size_t code = 0; code < machine.movements.size(); ++code) {
@@ -82,11 +82,11 @@ std::string movements_of(const Machine& machine) {
 Result<std::uint8_t> parse_command(const std::string& text, const Machine& machine) {
     const auto code = io::parse_int64(text);
     if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
-    return usage_error(
-        fmt::format("--command '{}': give a whole number from 0 to 255, the code of a joystick "
-                    "sector (1-24) or of a turn; this machine has {}",
-                    text,
-                    movements_of(machine)));
+    return usage_error(fmt::format(
+        "--command '{}' is not a movement code; give a whole number from 0 to 255. Codes 1-24 are "
+        "joystick sectors, others are turns. This machine has the movements {}",
+        text,
+        movements_of(machine)));
 }
 
 /// `surefoot gate`: asks the gate about one movement on a saved map. The exit code is the verdict.
@@ -97,7 +97,8 @@ int gate(const GateOptions& options) {
     if (!machine) return report(machine.error());
     if (!*machine)
         return report(
-            usage_error("--machine: give a machine file, or the name of a built-in machine"));
+            usage_error("--machine is empty: give a machine file, or the name of a built-in "
+                        "machine, for example rex"));
     const auto command = parse_command(options.command, machine->value().machine);
     if (!command) return report(command.error());
     auto map = load_offline_map(options.map_dir);
@@ -106,12 +107,13 @@ int gate(const GateOptions& options) {
     gate::Query query = gate::make_query(
         *command, (*pose)[0], (*pose)[1], std::cos((*pose)[2]), std::sin((*pose)[2]));
     std::vector<std::string> assumed = map->assumed;
-    assumed.push_back("frame and pose are as fresh as when the map was written");
+    assumed.push_back("the frame and the pose have the age that they had when the map was written");
     assumed.push_back("perception was ready");
     if (options.machine.empty())
-        assumed.push_back(fmt::format("the machine is {}: --machine was not given", kUsualMachine));
+        assumed.push_back(
+            fmt::format("the machine is {}, because --machine was not given", kUsualMachine));
     for (const io::Deviation& deviation : machine->value().deviations)
-        assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
+        assumed.push_back("the machine file exceeds a rated limit: " + io::text_of(deviation));
     if (options.attestation_radius_m != 0.0) {
         const auto attested = attest_start(
             machine->value().machine, query, *map->snapshot, options.attestation_radius_m, assumed);
@@ -135,7 +137,7 @@ int gate(const GateOptions& options) {
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status) log_error(status.error().message);  // nor does a failed log
+        if (!status) log_error(status.error().message);  // a failed log does not change it
     }
     return exit_code_of(verdict.decision);
 }
@@ -151,8 +153,10 @@ void add_gate(VerbGroup verbs) {
         "  surefoot gate --map out/floor --pose 0,0,0 --command 25 --audit out/audit",
         gate,
         Reads::no_settings);
-    verb.option("--map", o.map_dir, "output folder of 'surefoot run'").required().value("DIR");
-    verb.option("--pose", o.pose, "pose of base_link in odom, in m, m and rad")
+    verb.option("--map", o.map_dir, "folder of the map: the output folder of 'surefoot run'")
+        .required()
+        .value("DIR");
+    verb.option("--pose", o.pose, "pose of base_link in the frame odom: x in m, y in m, yaw in rad")
         .required()
         .value("X,Y,YAW");
     verb.option("--command",
@@ -160,23 +164,30 @@ void add_gate(VerbGroup verbs) {
                 "code of the movement: joystick sector 1-24, 25 = turn left, 26 = turn right")
         .required()
         .value("N");
-    verb.option("--machine", o.machine, "machine file, or name of a built-in machine (default rex)")
+    verb.option("--machine",
+                o.machine,
+                "machine that takes the step: a machine file, or the name of a built-in machine "
+                "(default rex)")
         .value("FILE|NAME");
     verb.option("--explain",
                 o.explain_file,
-                "picture of the footprint, the corridor and the deciding cell")
+                "file for a picture that explains the verdict: the feet now, the feet and the body "
+                "after the step, and the deciding cell")
         .value("F.png");
     verb.option(
             "--attest",
             o.attestation_radius_m,
-            "operator attestation: radius around base_link within which ground that was not "
+            "operator attestation: radius around base_link, in m, within which ground that was not "
             "measured counts as level. At most attestation_radius_m of the machine file (1.0 m for "
-            "rex); 0 = no attestation. Without this option the gate assumes a disc that "
-            "reaches to the ends of the present feet, and lists it in 'assumed'")
+            "rex); "
+            "0 = no attestation. Without this option the gate assumes a disc that reaches to the "
+            "ends of the feet at the pose, and --json lists this assumption in 'assumed'")
         .value("M")
         .not_negative();
-    verb.option(
-            "--audit", o.audit_dir, "audit log to which the verdict and all its inputs are added")
+    verb.option("--audit",
+                o.audit_dir,
+                "folder of an audit log; the verb adds the verdict and all inputs of the verdict "
+                "to this log")
         .value("DIR");
 }
 

@@ -21,11 +21,11 @@ struct GroundOptions {
     CommonOptions common;
     std::string cloud;
     std::string origin = "0,0,0";  ///< position of the sensor, in the axes of the cloud [m]
-    std::string frame;  ///< axes of the cloud: optical | body; empty = detected from the cloud
+    std::string frame;             ///< axes of the cloud, optical or body; empty = detected
 };
 
-/// Searches the ground plane for a camera of unknown pitch (config.search_down_deg gives the
-/// range). Points and result are in the camera's optical axes.
+/// Searches the ground plane for a camera of unknown pitch. config.search_down_deg limits the
+/// pitch. Points and result are in the camera's optical axes.
 ground::GroundSighting searched(const ground::GroundConfig& config,
                                 const std::vector<Eigen::Vector3d>& points_optical_m,
                                 const Eigen::Vector3d& sensor_optical_m,
@@ -42,18 +42,18 @@ ground::GroundSighting searched(const ground::GroundConfig& config,
     return sighting;
 }
 
-/// Error message: why no ground was found, with the limits that the user can change.
+/// Returns the error message: the reason why no ground was found, and the limits that the user can
+/// change.
 std::string failure(const GroundOptions& options,
                     const ground::GroundConfig& config,
                     const ground::GroundSighting& sighting,
                     bool optical) {
     if (optical)
         return fmt::format(
-            "{}: no ground plane: {}: the search covers tilts of 0-{:g} deg; {:.0f} % of the "
-            "points look like floor. Check that --origin ({}) is the position of the sensor and "
-            "that the cloud has optical axes as recorded (--frame). You can relax "
-            "ground.search_down_deg, ground.min_image_share = {:g} and ground.max_search_rms_m = "
-            "{:g}",
+            "{}: no ground plane: {}. The search covers tilts of 0-{:g} deg; {:.0f} % of the "
+            "points look like floor. Check that --origin ({}) is the position of the sensor, and "
+            "that the cloud has optical axes (--frame). You can increase ground.search_down_deg, "
+            "decrease ground.min_image_share = {:g} or increase ground.max_search_rms_m = {:g}",
             options.cloud,
             to_string(sighting.reason),
             config.search_down_deg,
@@ -62,9 +62,9 @@ std::string failure(const GroundOptions& options,
             config.min_image_share,
             config.max_search_rms_m);
     return fmt::format(
-        "{}: no ground plane: {}. Check that --origin ({}) is the position of the sensor and that "
-        "the cloud has body axes as recorded (--frame). You can relax ground.max_tilt_deg = {:g}, "
-        "ground.max_range_m = {:g} and ground.tolerance_m = {:g}",
+        "{}: no ground plane: {}. Check that --origin ({}) is the position of the sensor, and that "
+        "the cloud has body axes with z up (--frame). You can increase ground.max_tilt_deg = {:g}, "
+        "ground.max_range_m = {:g} or ground.tolerance_m = {:g}",
         options.cloud,
         to_string(sighting.reason),
         options.origin,
@@ -81,11 +81,12 @@ int ground(const GroundOptions& options) {
     if (!origin) return report(origin.error());
     auto cloud = io::read_cloud(options.cloud);
     if (!cloud) return report(cloud.error());
-    // Organised clouds come from a camera and have optical axes (y down). Others have z up.
+    // Organised clouds come from a camera and have optical axes (y down). Other clouds have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
     const Eigen::Vector3d sensor((*origin)[0], (*origin)[1], (*origin)[2]);
     const ground::GroundConfig& config = settings->pipeline.ground;
-    // With optical axes the mounting of the camera is unknown, so its tilt is searched.
+    // If the cloud has optical axes, the mounting of the camera is unknown, so the tilt is
+    // searched.
     const auto sighting =
         optical
             ? searched(config, cloud->points_m, sensor, options.common.seed)
@@ -94,11 +95,13 @@ int ground(const GroundOptions& options) {
     if (options.common.json) {
         print_answer(ground_json(sighting));
     } else if (sighting.observation.accepted) {
-        fmt::print("tilt {:.2f} deg, height {:.3f} m, {:.0f} % inliers, rms {:.1f} mm\n",
-                   sighting.tilt_rad * 180.0 / M_PI,
-                   sighting.observation.height_m,
-                   100.0 * sighting.observation.inlier_ratio,
-                   1e3 * sighting.observation.rms_m);
+        fmt::print(
+            "ground plane: tilt {:.2f} deg, height {:.3f} m, {:.0f} % of the points are inliers, "
+            "rms distance of the inliers {:.1f} mm\n",
+            sighting.tilt_rad * 180.0 / M_PI,
+            sighting.observation.height_m,
+            100.0 * sighting.observation.inlier_ratio,
+            1e3 * sighting.observation.rms_m);
     }
     if (!sighting.observation.accepted) {
         return report(input_error(failure(options, config, sighting, optical)));
@@ -111,18 +114,19 @@ int ground(const GroundOptions& options) {
 void add_ground(VerbGroup verbs) {
     auto [verb, o] = verbs.add<GroundOptions>(
         "ground",
-        "estimate the ground plane of a point cloud: tilt, height, inliers",
+        "estimate the ground plane of a point cloud: its tilt, its height and the share of inliers",
         "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json",
         ground);
     verb.option("cloud", o.cloud, "point cloud: PCD, PLY or XYZ").required().value("CLOUD");
     verb.option("--origin",
                 o.origin,
-                "position of the sensor in the cloud, in m; the height of the ground is measured "
-                "from there (default 0,0,0)")
+                "position of the sensor in the coordinates of the cloud, in m (default 0,0,0); the "
+                "height of the ground is measured from the sensor")
         .value("X,Y,Z");
     verb.option("--frame",
                 o.frame,
-                "axes of the cloud (default: optical for organised clouds, else body)")
+                "axes of the cloud: optical (z forward, y down) or body (z up). Default: optical "
+                "for a cloud that is organised in image rows, otherwise body")
         .one_of({"optical", "body"});
 }
 

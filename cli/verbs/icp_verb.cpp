@@ -22,12 +22,12 @@ struct IcpOptions {
     std::string reference;
     std::string moved;
     std::string guess;        ///< file with a 4x4 matrix, or "x,y,z,yaw" [m, deg]; empty = identity
-    double kept_share = 1.0;  ///< share of the pairs that count, nearest first
-    double reach_m = 0.0;     ///< pairs farther apart do not count; 0 = all count
-    int most_points = 100000;     ///< points of the moved cloud that are used
-    bool surfaces_alone = false;  ///< keep the guess along directions that no surface constrains
-    std::string out_file;         ///< the aligned cloud; empty = not written
-    std::string transform_file;   ///< 4x4 matrix as text; empty = not written
+    double kept_share = 1.0;  ///< share of the pairs that the alignment uses, nearest first
+    double reach_m = 0.0;     ///< largest distance of the points of a pair; 0 = no limit
+    int most_points = 100000;     ///< number of points of the moved cloud that are used
+    bool surfaces_alone = false;  ///< keep the guess where no surface determines a direction
+    std::string out_file;         ///< file for the aligned cloud; empty = not written
+    std::string transform_file;   ///< file for the 4x4 matrix; empty = not written
 };
 
 std::vector<double> numbers_of(const std::string& text) {
@@ -40,7 +40,7 @@ std::vector<double> numbers_of(const std::string& text) {
     return numbers;
 }
 
-/// Initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (metres, degrees).
+/// Reads the initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (m, deg).
 Result<Pose> parse_guess(const std::string& guess) {
     if (guess.empty()) return Pose{};
     if (!io::is_file(guess)) {
@@ -48,15 +48,16 @@ Result<Pose> parse_guess(const std::string& guess) {
         if (n.size() == 4) {
             return Pose{exp_so3({0.0, 0.0, kRadPerDeg * n[3]}), {n[0], n[1], n[2]}};
         }
-        return usage_error(
-            fmt::format("--guess {}: not a file, and not x,y,z,yaw in metres and degrees", guess));
+        return usage_error(fmt::format(
+            "--guess {} is neither a file nor four numbers; give a file, or x,y,z,yaw in m and deg",
+            guess));
     }
     const auto text = io::read_file(guess, io::limits::kSettingsBytes);
     if (!text) return text.error();
     const std::vector<double> n = numbers_of(*text);
     if (n.size() != 16 && n.size() != 12) {
-        return usage_error(
-            fmt::format("{}: expected the 16 numbers of a 4x4 matrix, row by row", guess));
+        return usage_error(fmt::format(
+            "{}: the file must contain the 16 numbers of a 4x4 matrix, row by row", guess));
     }
     Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
     for (std::size_t i = 0; i < 12; ++i) {
@@ -66,13 +67,16 @@ Result<Pose> parse_guess(const std::string& guess) {
     constexpr double kRigid = 1e-3;
     if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid ||
         R.determinant() < 0.0) {
-        return usage_error(fmt::format(
-            "{}: the matrix is not a rigid motion (rotation and translation only)", guess));
+        return usage_error(
+            fmt::format("{}: the matrix is not a rigid motion; give a matrix that consists of a "
+                        "rotation and a translation only",
+                        guess));
     }
     return Pose::from_matrix(T);
 }
 
-/// Expresses the motion T in coordinates whose origin is `shift_m`; with -shift_m it converts back.
+/// Expresses the motion T in coordinates whose origin is `shift_m`. A call with -shift_m converts
+/// back.
 Pose shifted(const Pose& T, const Eigen::Vector3d& shift_m) {
     return {T.rotation, T.translation_m + T.rotation * shift_m - shift_m};
 }
@@ -98,13 +102,15 @@ std::string matrix_text(const Pose& T) {
     return text;
 }
 
-/// Warns why the alignment did not converge, and what to do.
+/// Warns if the alignment did not converge. States the reason and the next action.
 void tell_outcome(const geometry::CloudAlignment& found) {
     using geometry::AlignmentOutcome;
     switch (found.outcome) {
         case AlignmentOutcome::converged: return;
         case AlignmentOutcome::no_pairs:
-            log_warning("no pair of points can be used: give a better --guess or a larger --reach");
+            log_warning(
+                "no pair of points can be used for the alignment: give a better --guess or a "
+                "larger --reach");
             return;
         case AlignmentOutcome::too_few_points:
             log_warning(
@@ -119,37 +125,39 @@ void tell_outcome(const geometry::CloudAlignment& found) {
                             100.0 * found.overlap));
             return;
         case AlignmentOutcome::not_settled:
-            log_warning(fmt::format("not converged after {} iterations: give a better --guess",
-                                    found.steps.size()));
+            log_warning(fmt::format(
+                "the alignment did not converge in {} iterations: give a better --guess",
+                found.steps.size()));
             return;
     }
 }
 
-/// Warns of directions that the surfaces do not determine.
+/// Logs the directions that the surfaces do not determine.
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {
-        log_warning(
-            fmt::format("the clouds do not determine {} of 6 directions; in these directions the "
-                        "initial guess stays unchanged",
-                        found.free_directions));
+        log_warning(fmt::format(
+            "the clouds do not determine {} of 6 directions of the motion; in these directions the "
+            "result equals the initial guess. Use clouds that show more surfaces",
+            found.free_directions));
     }
     if (found.edge_directions > 0) {
-        log_info(
-            fmt::format("only edges determine {} of 6 directions. An edge ends somewhere between "
-                        "two points, so sigma in these directions is the spacing of the points",
-                        found.edge_directions));
+        log_info(fmt::format(
+            "only edges of surfaces determine {} of 6 directions of the motion. The true edge lies "
+            "between two points, so sigma in these directions is the spacing of the points",
+            found.edge_directions));
     }
     if (found.border_directions > 0) {
-        log_info(fmt::format(
-            "only the borders of the clouds determine {} of 6 directions. If the clouds end in "
-            "different places, the result is wrong in these directions: check it, or use clouds "
-            "that show more surfaces",
-            found.border_directions));
+        log_info(
+            fmt::format("only the borders of the clouds determine {} of 6 directions of the "
+                        "motion. If the clouds end at different positions, the result is wrong in "
+                        "these directions: check it, or use clouds that show more surfaces",
+                        found.border_directions));
     }
 }
 
-/// `surefoot icp`: aligns a cloud with a reference cloud. Exit code 1 if it does not converge.
+/// `surefoot icp`: aligns a cloud with a reference cloud. The exit code is 1 if the alignment does
+/// not converge.
 int icp(const IcpOptions& options) {
     const auto guess = parse_guess(options.guess);
     if (!guess) return report(guess.error());
@@ -188,13 +196,13 @@ int icp(const IcpOptions& options) {
         fmt::print("{}", matrix_text(found.T_reference_moved));
         const geometry::AlignmentStep& last = found.steps.back();
         fmt::print(
-            "after {} iterations: {} pairs, {:.2f} mm from the surface (rms), {:.2f} mm from the "
-            "nearest point (rms); {}\n",
+            "after {} iterations: {} pairs, rms distance to the surface {:.2f} mm, rms distance to "
+            "the nearest point {:.2f} mm; {}\n",
             found.steps.size(),
             last.pairs,
             1e3 * last.rms_m,
             1e3 * last.nearest_rms_m,
-            found.converged() ? fmt::format("one sigma {:.2f} mm and {:.4f} deg",
+            found.converged() ? fmt::format("one sigma of the result {:.2f} mm and {:.4f} deg",
                                             1e3 * found.sigma_m,
                                             found.sigma_rad * 180.0 / M_PI)
                               : "not converged: do not use this result");
@@ -206,14 +214,15 @@ int icp(const IcpOptions& options) {
 }  // namespace
 
 void add_icp(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<IcpOptions>(
-        "icp",
-        "align one point cloud to the surfaces of another (ICP); exit code 1 = not converged",
-        "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
-        "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply",
-        icp,
-        Reads::no_settings);
-    verb.option("reference", o.reference, "reference point cloud; it stays where it is")
+    auto [verb, o] =
+        verbs.add<IcpOptions>("icp",
+                              "align one point cloud with the surfaces of another point cloud "
+                              "(ICP); exit code 1 = the alignment did not converge",
+                              "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
+                              "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply",
+                              icp,
+                              Reads::no_settings);
+    verb.option("reference", o.reference, "reference point cloud, which is not moved")
         .required()
         .value("REFERENCE");
     verb.option("moved", o.moved, "point cloud that is moved to fit the reference")
@@ -226,25 +235,28 @@ void add_icp(VerbGroup verbs) {
         .value("FILE|X,Y,Z,YAW");
     verb.option("--trim",
                 o.kept_share,
-                "share of the point pairs that count, nearest first (default 1); use a smaller "
-                "share if the clouds overlap only in part")
+                "share of the point pairs that the alignment uses, nearest pairs first (default 1 "
+                "= all pairs); use a smaller share if the clouds overlap only in part")
         .value("SHARE")
         .in(0.01, 1.0);
     verb.option("--reach",
                 o.reach_m,
-                "largest distance of a pair that counts, in m (default: no limit)")
+                "largest distance between the two points of a pair that the alignment uses, in m "
+                "(default: no limit)")
         .value("M")
         .positive();
     verb.option("--points",
                 o.most_points,
-                "number of points of the moved cloud to use, evenly spread (default 100000)")
+                "number of points of the moved cloud that the alignment uses, evenly spread over "
+                "the cloud (default 100000)")
         .value("N")
         .in(100, 100000000);
     verb.flag("--surfaces-alone",
               o.surfaces_alone,
               "keep the initial guess in each direction that no surface determines; without this "
-              "option the borders of both clouds determine it");
-    verb.option("--out", o.out_file, "aligned point cloud: PLY, PCD or XYZ").value("F.ply");
+              "option the borders of both clouds determine such a direction");
+    verb.option("--out", o.out_file, "file for the aligned point cloud: PLY, PCD or XYZ")
+        .value("F.ply");
     verb.option("--transform",
                 o.transform_file,
                 "text file for the 4x4 matrix from the moved cloud to the reference")

@@ -30,7 +30,8 @@ int info_of_camera(const InfoOptions& options) {
     }
     fmt::print("{}: {} (driver {})\n", view->device, view->card, view->driver);
     for (const io::VideoMode& mode : view->modes)
-        fmt::print("  {} {}x{} at {:.4g} Hz\n", mode.fourcc, mode.width, mode.height, mode.rate_hz);
+        fmt::print(
+            "  {} {}x{} px at {:.4g} Hz\n", mode.fourcc, mode.width, mode.height, mode.rate_hz);
     for (const io::VideoControl& control : view->controls) {
         fmt::print("  {}: {} ({} .. {}, step {}{})\n",
                    control.name,
@@ -38,7 +39,7 @@ int info_of_camera(const InfoOptions& options) {
                    control.min,
                    control.max,
                    control.step,
-                   control.writable ? "" : ", cannot be set now");
+                   control.writable ? "" : ", the camera does not allow a change now");
     }
     return kExitOk;
 }
@@ -63,30 +64,34 @@ int info(const InfoOptions& options) {
                i.rate_hz,
                static_cast<double>(i.bytes) * 1e-6);
     if (i.announced_frames && *i.announced_frames != i.frames) {
-        fmt::print("the container announces {} frames; {} of them can be decoded\n",
+        fmt::print("the video file announces {} frames, but only {} frames can be decoded\n",
                    *i.announced_frames,
                    i.frames);
     }
     if (!i.incomplete.empty()) fmt::print("incomplete: {}\n", i.incomplete);
     if (i.pair_tolerance_s > 0.0) {
-        fmt::print("pairs: time stamps differ by up to {:.3f} ms; the limit is {:g} ms\n",
-                   1e3 * i.largest_pair_difference_s,
-                   1e3 * i.pair_tolerance_s);
+        fmt::print(
+            "pairs: the time stamps of left and right image differ by up to {:.3f} ms; the limit "
+            "is {:g} ms\n",
+            1e3 * i.largest_pair_difference_s,
+            1e3 * i.pair_tolerance_s);
     }
     for (const std::string& note : i.notes) fmt::print("note: {}\n", note);
-    fmt::print("gaps: {} (longest {:.3f} s), frames without partner: {}, missing images: {}{}\n",
-               i.gaps,
-               i.longest_gap_s,
-               i.unpaired,
-               i.missing_images,
-               i.first_missing.empty() ? "" : fmt::format(" (first: {})", i.first_missing));
+    fmt::print(
+        "gaps: {} (longest {:.3f} s), images without a partner in the other camera: {}, missing "
+        "images: {}{}\n",
+        i.gaps,
+        i.longest_gap_s,
+        i.unpaired,
+        i.missing_images,
+        i.first_missing.empty() ? "" : fmt::format(" (first: {})", i.first_missing));
     fmt::print(
         "time stamps that do not increase: {}, IMU: {} samples at {:.1f} Hz, ground truth: {}\n",
         i.bad_stamps,
         i.imu_samples,
         i.imu_rate_hz,
         i.has_truth ? "yes" : "no");
-    fmt::print("left camera {}x{}, baseline {:.1f} mm\n",
+    fmt::print("left camera {}x{} px, baseline {:.1f} mm\n",
                i.rig.left.width,
                i.rig.left.height,
                1e3 * i.rig.T_left_right.translation_m.norm());
@@ -98,18 +103,20 @@ int info(const InfoOptions& options) {
 void add_info(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<InfoOptions>("info",
-                               "show the contents of a recording (frames, rate, gaps, rig, IMU), "
-                               "or the modes and controls of a live camera (v4l2:DEVICE)",
+                               "show the contents of a recording (frames, rate, gaps, calibration, "
+                               "IMU), or the modes and controls of a live camera (v4l2:DEVICE)",
                                "surefoot info out/floor_recording --json",
                                info,
                                Reads::no_settings);
     add_reading(verb, o.reading);
-    verb.option("source", o.source, "the source; see 'surefoot run --help'")
+    verb.option("source",
+                o.source,
+                "recording or live camera: a folder in EuRoC, KITTI or TUM RGB-D layout, a folder "
+                "or video of side-by-side images, or v4l2:DEVICE")
         .required()
         .value("SOURCE");
-    verb.option("--rig",
-                o.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the recording")
+    verb.option(
+            "--rig", o.rig_file, "calibration file; it replaces the calibration of the recording")
         .value("FILE");
 }
 

@@ -26,10 +26,10 @@ struct MapExportOptions {
     std::string out_dir;
 };
 
-/// A layer as floats, the type of grids and clouds in other programs.
+/// A layer as floats, because other programs read grids and clouds of floats.
 struct FloatLayer {
-    std::string name;    ///< name in the file name
-    std::string scalar;  ///< name in the cloud, with unit
+    std::string name;    ///< name in the name of the .asc file
+    std::string scalar;  ///< name in the point cloud, with its unit
     grid::Layer values;
 };
 
@@ -41,8 +41,8 @@ grid::Layer of_known_cells(const grid::MapRegion& region, const F& value_of) {
     return out;
 }
 
-/// Seconds from the last observation to the stamp of the map. A float cannot hold a time in
-/// nanoseconds.
+/// Returns the seconds from the last observation of each cell to the stamp of the map. A float
+/// cannot represent a time stamp in nanoseconds.
 FloatLayer age_of(const grid::MapRegion& region) {
     return {"age", "age_s", of_known_cells(region, [&](std::size_t i) {
                 const std::int64_t seen_ns = region.seen_ns.data()[i];
@@ -68,7 +68,7 @@ std::vector<FloatLayer> float_layers(const grid::MapRegion& region) {
     return layers;
 }
 
-/// One point per known cell. The elevation is z; every other layer is a scalar.
+/// Returns one point for each known cell. z is the elevation; every other layer is a scalar.
 io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLayer>& layers) {
     const grid::GridGeometry geometry = region.geometry();
     io::PointCloud cloud;
@@ -90,7 +90,7 @@ io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLa
     return cloud;
 }
 
-/// Attempts to write every file and records the names of the written files.
+/// Attempts to write every file, and collects the names of the written files.
 struct Export {
     std::string folder;
     Writes writes;
@@ -138,7 +138,7 @@ int map_export(const MapExportOptions& options) {
     if (options.common.json) {
         print_answer(map_export_json(region, out.files, options.out_dir));
     } else {
-        fmt::print("{} of {} cells known; {} files written to {}/\n",
+        fmt::print("the map has {} known cells of {}; {} files are written to {}/\n",
                    region.known_cells(),
                    region.height_m.size(),
                    out.files.size(),
@@ -150,18 +150,18 @@ int map_export(const MapExportOptions& options) {
 }  // namespace
 
 void add_map_export(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<MapExportOptions>("export",
-                                    "write every layer as .asc, the cells as a point cloud, and "
-                                    "pictures of elevation and its standard deviation",
-                                    "surefoot map export out/modelled/floor.region --out "
-                                    "out/floor_map",
-                                    map_export,
-                                    Reads::no_settings);
+    auto [verb, o] = verbs.add<MapExportOptions>(
+        "export",
+        "convert a saved map: write every layer as .asc, the known cells as a point cloud, and "
+        "pictures of the elevation and its standard deviation",
+        "surefoot map export out/modelled/floor.region --out "
+        "out/floor_map",
+        map_export,
+        Reads::no_settings);
     verb.option("file", o.file, "saved map, written by 'surefoot run --save-map'")
         .required()
         .value("FILE");
-    verb.option("--out", o.out_dir, "folder for the files").required().value("DIR");
+    verb.option("--out", o.out_dir, "folder for the written files").required().value("DIR");
 }
 
 }  // namespace surefoot::app

@@ -27,39 +27,42 @@ struct MapMergeOptions {
     std::string first;
     std::string second;
     std::string out_file;
-    std::string motion_sigma = "0,0,0";  ///< one sigma of the motion between the poses of the maps:
-                                         ///< horizontal m, vertical m, angle deg
-    bool independent = false;            ///< the maps come from two runs with the same odom frame
+    /// One sigma of the motion between the poses of the maps: horizontal [m], vertical [m], angle
+    /// [deg].
+    std::string motion_sigma = "0,0,0";
+    bool independent = false;  ///< the maps come from two runs with the same odom frame
 };
 
 void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     for (const std::string& layer : map.skipped_layers) {
-        log_warning(fmt::format(
-            "{}: layer {} belongs to the newer version {}.{} of the format and is left out",
-            file,
-            layer,
-            io::kMapFileMajor,
-            map.minor));
+        log_warning(
+            fmt::format("{}: this program does not know the layer {} of the newer format version "
+                        "{}.{} and ignores the layer",
+                        file,
+                        layer,
+                        io::kMapFileMajor,
+                        map.minor));
     }
 }
 
-/// Reads a horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
+/// Reads a horizontal [m], a vertical [m] and an angular [deg] sigma and returns their covariance.
 Result<Matrix6> motion_covariance(const std::string& text) {
     const auto sigma = parse_three_numbers(
-        "--motion-sigma", text, "horizontal and vertical in metres, angle in degrees");
+        "--motion-sigma", text, "(horizontal in m, vertical in m, angle in deg)");
     if (!sigma) return sigma.error();
     const auto [horizontal_m, vertical_m, angle_deg] = *sigma;
     if (horizontal_m < 0.0 || vertical_m < 0.0 || angle_deg < 0.0)
-        return usage_error(
-            fmt::format("--motion-sigma {}: a standard deviation must not be negative", text));
+        return usage_error(fmt::format(
+            "--motion-sigma {}: a standard deviation is negative; give three numbers of at least 0",
+            text));
     const double angle_rad = angle_deg * kRadPerDeg;
     Vector6 sigmas;
     sigmas << horizontal_m, horizontal_m, vertical_m, angle_rad, angle_rad, angle_rad;
     return Matrix6(sigmas.cwiseAbs2().asDiagonal());
 }
 
-/// Increases the variances of the older map by the uncertainty of the motion to the pose of the
-/// younger map.
+/// Increases the variances of the older map by the uncertainty of the motion from its pose to the
+/// pose of the younger map.
 Status pay_for_the_way(const Matrix6& covariance,
                        const MapMergeOptions& options,
                        grid::MapRegion& first,
@@ -69,11 +72,12 @@ Status pay_for_the_way(const Matrix6& covariance,
     grid::MapRegion& older = first_is_older ? first : second;
     const grid::MapRegion& younger = first_is_older ? second : first;
     if (covariance.isZero(0.0)) {
-        log_warning(fmt::format(
-            "{}: this map is {:.3f} s older than the other one, and its variances do not include "
-            "the motion between them; give the uncertainty of this motion with --motion-sigma",
-            first_is_older ? options.first : options.second,
-            seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
+        log_warning(
+            fmt::format("{}: this map is {:.3f} s older than the other map, and its variances do "
+                        "not include the motion between the two maps; give the uncertainty of this "
+                        "motion with --motion-sigma",
+                        first_is_older ? options.first : options.second,
+                        seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
         return {};
     }
     return elevation::pay_for_motion(older, younger.T_frame_body, covariance);
@@ -90,7 +94,7 @@ int map_info(const MapInfoOptions& options) {
     const grid::MapRegion& r = map->region;
     const Eigen::Vector2d origin_m = r.geometry().origin_m;
     const Eigen::Vector3d& body_m = r.T_frame_body.translation_m;
-    fmt::print("map region of version {}.{}: {} x {} cells of {:g} m, {} of them known\n",
+    fmt::print("saved map in format version {}.{}: {} x {} cells of {:g} m, {} cells are known\n",
                io::kMapFileMajor,
                map->minor,
                r.box.nx,
@@ -98,14 +102,15 @@ int map_info(const MapInfoOptions& options) {
                r.resolution_m,
                r.known_cells());
     fmt::print(
-        "in frame {} of the run that began at {:.3f} s; first corner at ({:.3f}, {:.3f}) m\n",
+        "the map uses the frame {} of the run that began at {:.3f} s; the corner with the smallest "
+        "x and y is at ({:.3f}, {:.3f}) m\n",
         r.frame,
         seconds_from_ns(r.frame_since_ns),
         origin_m.x(),
         origin_m.y());
     fmt::print(
-        "saved at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; settings "
-        "{:016x}\n",
+        "saved at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; hash of "
+        "the settings {:016x}\n",
         seconds_from_ns(r.stamp_ns),
         body_m.x(),
         body_m.y(),
@@ -146,12 +151,14 @@ int map_merge(const MapMergeOptions& options) {
     if (options.common.json) {
         print_answer(map_merge_json(merged, *counts, options.out_file));
     } else {
-        fmt::print("{} cells known in {}: {} only in the second map, {} agreed, {} disagreed\n",
-                   merged.known_cells(),
-                   options.out_file,
-                   counts->taken,
-                   counts->agreed,
-                   counts->disagreed);
+        fmt::print(
+            "{} known cells in {}: {} were known only in the second map; the heights of the two "
+            "maps agree in {} cells and disagree in {}\n",
+            merged.known_cells(),
+            options.out_file,
+            counts->taken,
+            counts->agreed,
+            counts->disagreed);
     }
     return kExitOk;
 }
@@ -171,27 +178,29 @@ void add_map_info(VerbGroup verbs) {
 }
 
 void add_map_merge(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<MapMergeOptions>("merge",
-                                   "merge two maps of one run, or of one frame, into one map",
-                                   "surefoot map merge out/modelled/floor.region "
-                                   "out/modelled/floor.region --out out/modelled/both.region",
-                                   map_merge);
-    verb.option("first", o.first, "first saved map").required().value("A");
-    verb.option("second", o.second, "second saved map; the order does not matter")
+    auto [verb, o] = verbs.add<MapMergeOptions>(
+        "merge",
+        "merge two saved maps of one run, or of two runs with the same odom frame, into one map",
+        "surefoot map merge out/modelled/floor.region "
+        "out/modelled/floor.region --out out/modelled/both.region",
+        map_merge);
+    verb.option("first", o.first, "first saved map, written by 'surefoot run --save-map'")
+        .required()
+        .value("A");
+    verb.option("second", o.second, "second saved map; the order of the two maps does not matter")
         .required()
         .value("B");
     verb.option("--out", o.out_file, "file for the merged map").required().value("C");
     verb.option("--motion-sigma",
                 o.motion_sigma,
-                "standard deviation of the motion from the older map's pose to the newer one: "
-                "horizontal and vertical in m, angle in deg (default 0,0,0). It is added to the "
-                "variances of the older map")
+                "standard deviation of the motion between the poses at which the two maps were "
+                "saved: horizontal in m, vertical in m, angle in deg (default 0,0,0). The verb "
+                "adds this uncertainty to the variances of the older map")
         .value("H,V,DEG");
     verb.flag("--independent",
               o.independent,
-              "the maps come from two runs, and you know that their odom frames are the same; "
-              "heights that agree are averaged");
+              "treat the maps as independent: they come from two runs, and you know that both runs "
+              "have the same odom frame. The verb averages heights that agree");
 }
 
 }  // namespace surefoot::app

@@ -20,14 +20,14 @@ namespace {
 struct MeasureOptions {
     CommonOptions common;
     std::string cloud;
-    std::string door;  ///< "x,y,yaw" of a doorway [m, deg]; empty = no door
+    std::string door;  ///< "x,y,yaw" of a doorway [m, m, deg]; empty = no door
     std::string box;   ///< "x0,y0,x1,y1" [m]; empty = the whole cloud
     double bin_m = 0.005;
-    std::string histogram_file;  ///< SVG picture; empty = not written
+    std::string histogram_file;  ///< file for an SVG picture; empty = not written
 };
 
-/// Reads the position of the door, relative to the shift of the cloud. The lowest level is the
-/// floor.
+/// Reads the position of the door and subtracts the shift of the cloud. The lowest level surface is
+/// the floor.
 Result<eval::DoorPlace> parse_door(const std::string& text,
                                    const eval::HeightHistogram& heights,
                                    const Eigen::Vector3d& shift_m) {
@@ -55,12 +55,15 @@ Status keep_box(const std::string& text, io::ShiftedCloud& cloud) {
         return (xy_m.array() < low_m.array()).any() || (xy_m.array() > high_m.array()).any();
     });
     if (!cloud.points_m.empty()) return {};
-    return usage_error(fmt::format("--box {}: the box contains no point of the cloud", text));
+    return usage_error(
+        fmt::format("--box {}: the box contains no point of the cloud; give two corners around "
+                    "points, smaller x and y first",
+                    text));
 }
 
 void print_repeated(const char* what, const eval::Repeated& r) {
     if (r.values_m.empty()) return;
-    fmt::print("{}: {:.1f} +- {:.1f} mm, scatter {:.1f} mm, number {}\n",
+    fmt::print("{}: mean {:.1f} +- {:.1f} mm, scatter {:.1f} mm, measured {} times\n",
                what,
                1e3 * r.mean_m,
                1e3 * r.std_error_m,
@@ -72,10 +75,11 @@ void print_figures(const eval::HeightHistogram& heights,
                    const eval::StairMeasures& stairs,
                    const std::optional<std::optional<double>>& door_width_m,
                    const Eigen::Vector3d& shift_m) {
-    if (heights.levels.empty()) fmt::print("no level surface\n");
+    if (heights.levels.empty()) fmt::print("the cloud has no level surface\n");
     for (const eval::Level& level : heights.levels) {
         fmt::print(
-            "level at {:.4f} m: {} points, {:.1f} mm from its plane (rms), tilt {:.2f} deg\n",
+            "level surface at {:.4f} m: {} points, rms distance of the points to its plane {:.1f} "
+            "mm, tilt {:.2f} deg\n",
             level.height_m + shift_m.z(),
             level.points,
             1e3 * level.rms_m,
@@ -83,7 +87,8 @@ void print_figures(const eval::HeightHistogram& heights,
     }
     print_repeated("riser", stairs.riser);
     print_repeated("going", stairs.going);
-    if (door_width_m && *door_width_m) fmt::print("door: {:.1f} mm wide\n", 1e3 * **door_width_m);
+    if (door_width_m && *door_width_m)
+        fmt::print("clear width of the door: {:.1f} mm\n", 1e3 * **door_width_m);
     tell_shift(shift_m);
 }
 
@@ -108,8 +113,8 @@ int measure_cloud(const MeasureOptions& options) {
         door_width_m = eval::door_width_m(cloud->points_m, *door);
         if (!*door_width_m)
             log_warning(
-                "--door: one side of the doorway has too few points within 3 m; check the position "
-                "and the direction");
+                "--door: the width is unknown, because one side of the doorway has too few points "
+                "within 3 m; check the position and the direction");
     }
     if (!options.histogram_file.empty()) {
         const auto status = io::write_file(
@@ -130,8 +135,8 @@ int measure_cloud(const MeasureOptions& options) {
 void add_measure(VerbGroup verbs) {
     auto [verb, o] = verbs.add<MeasureOptions>(
         "measure",
-        "measure the level surfaces of a point cloud (z up) with the histogram of its heights: "
-        "heights and planes, risers and goings of a straight flight, the width of a door",
+        "measure a point cloud with z up: heights and planes of its level surfaces, risers and "
+        "goings of a straight flight of stairs, and the width of a door",
         "surefoot measure out/stairs_10mm.ply --histogram "
         "out/heights.svg --json",
         measure_cloud,
@@ -143,18 +148,19 @@ void add_measure(VerbGroup verbs) {
         .value("CLOUD");
     verb.option("--door",
                 o.door,
-                "position in a doorway in m, and the walking direction through it in deg: measures "
-                "its clear width")
+                "measure the clear width of a doorway: a position in the doorway, in m, and the "
+                "walking direction through it, in deg")
         .value("X,Y,YAW");
-    verb.option(
-            "--box",
-            o.box,
-            "rectangle to measure, seen from above: two corners, in m (default: the whole cloud)")
+    verb.option("--box",
+                o.box,
+                "measure only the points in this rectangle, seen from above: the corner with the "
+                "smallest x and y, then the opposite corner, in m (default: the whole cloud)")
         .value("X0,Y0,X1,Y1");
-    verb.option("--bin", o.bin_m, "bin width of the histogram, in m (default 0.005)")
+    verb.option(
+            "--bin", o.bin_m, "width of a bin of the histogram of heights, in m (default 0.005)")
         .value("M")
         .in(1e-4, 0.05);
-    verb.option("--histogram", o.histogram_file, "file for the picture of the histogram")
+    verb.option("--histogram", o.histogram_file, "file for a picture of the histogram of heights")
         .value("F.svg");
 }
 

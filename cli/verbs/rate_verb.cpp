@@ -41,7 +41,7 @@ eval::LayerStyle style_of(const std::string& name, double safe_threshold) {
     return style;
 }
 
-/// The heights and all layers computed from them, side by side.
+/// Writes a picture that shows the heights and all computed layers side by side.
 Status write_sheet(const RateOptions& options,
                    const Settings& settings,
                    const io::Dem& dem,
@@ -97,7 +97,7 @@ int rate(const RateOptions& options) {
     if (options.common.json) {
         print_answer(rate_json(dem->geometry, options.out_dir));
     } else {
-        fmt::print("{} x {} cells of {:g} m rated; layers in {}/\n",
+        fmt::print("{} x {} cells of {:g} m are rated; the layers are in {}/\n",
                    dem->geometry.nx,
                    dem->geometry.ny,
                    resolution_m,
@@ -111,15 +111,25 @@ int rate(const RateOptions& options) {
 void add_rate(VerbGroup verbs) {
     auto [verb, o] = verbs.add<RateOptions>(
         "rate",
-        "rate the traversability of a height map",
+        "rate the traversability of each cell of a height map",
         "surefoot rate out/floor/elevation.asc --preset rex_zed --out out/rated",
         rate);
-    verb.option("dem", o.dem, "height map: ESRI ASCII grid, or PNG with --scale and --height")
+    verb.option("dem",
+                o.dem,
+                "height map: an ESRI ASCII grid, or a PNG with the options --scale and --height")
         .required()
         .value("DEM");
-    verb.option("--out", o.out_dir, "folder for the layers").required().value("DIR");
-    verb.option("--scale", o.scale_m_per_px, "PNG: size of a pixel, in m").value("M").positive();
-    verb.option("--height", o.height_m, "PNG: height of the brightest value, in m")
+    verb.option("--out", o.out_dir, "folder for the layers as grids and pictures")
+        .required()
+        .value("DIR");
+    verb.option("--scale",
+                o.scale_m_per_px,
+                "if the height map is a PNG: side of a pixel on the ground, in m")
+        .value("M")
+        .positive();
+    verb.option("--height",
+                o.height_m,
+                "if the height map is a PNG: height that the brightest pixel value means, in m")
         .value("M")
         .positive();
 }

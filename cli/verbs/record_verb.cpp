@@ -44,10 +44,15 @@ int record(const RecordOptions& options) {
 void add_record(VerbGroup verbs) {
     auto [verb, o] =
         verbs.add<RecordOptions>("record",
-                                 "record any source to a folder in EuRoC layout",
+                                 "record the frames of a source to a folder in EuRoC layout",
                                  "surefoot record sim:floor --max-frames 4 --out out/copy",
                                  record);
-    verb.option("source", o.source, "see 'surefoot run --help'").required().value("SOURCE");
+    verb.option("source",
+                o.source,
+                "source to record: a recording, a video, sim:SCENE or v4l2:DEVICE; 'surefoot run "
+                "--help' lists all kinds")
+        .required()
+        .value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the recording").required().value("DIR");
     add_source_options(verb, o);
 }

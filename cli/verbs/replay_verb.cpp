@@ -29,7 +29,7 @@ struct ReplayOptions : SourceOptions {
     double speed = 1.0;
 };
 
-/// Schedules frames on the steady clock.
+/// Delays each frame until its time on the steady clock.
 class Schedule {
   public:
     Schedule(std::int64_t first_frame_ns, double speed)
@@ -88,7 +88,7 @@ Status play(const ReplayOptions& options,
         pipeline::align_when_ready(pipeline, next, source.info().T_odom_first_body);
     for (const StereoFrame& frame : start.frames) process(frame, Work::full);
     if (start.frames.empty()) return ended;
-    // The clock starts when odom is placed.
+    // Playback time starts when the frame odom is defined.
     const Schedule schedule(start.frames.back().time_ns, options.speed);
     while (const auto frame = next()) {
         // A late frame gets odometry only, as in a live run.
@@ -118,11 +118,13 @@ int replay(const ReplayOptions& options) {
     if (options.common.json) {
         print_answer(replay_json(seen, options.speed, late, (*source)->info()));
     } else {
-        fmt::print("{} frames at {:g} times real time; {} were late and got odometry only\n{}",
-                   seen.size(),
-                   options.speed,
-                   late,
-                   broken_text((*source)->info().broken));
+        fmt::print(
+            "{} frames played at {:g} times real time; {} frames were late and got odometry "
+            "only\n{}",
+            seen.size(),
+            options.speed,
+            late,
+            broken_text((*source)->info().broken));
     }
     return played ? kExitOk : report(played.error());
 }
@@ -135,18 +137,23 @@ void add_replay(VerbGroup verbs) {
                                  "play a recording in real time and print the result of each frame",
                                  "surefoot replay out/floor_recording --speed 20",
                                  replay);
-    verb.option("source", o.source, "the source; see 'surefoot run --help'")
+    verb.option("source",
+                o.source,
+                "source to play: a recording, a video, sim:SCENE or v4l2:DEVICE; 'surefoot run "
+                "--help' lists all kinds")
         .required()
         .value("SOURCE");
     add_reading(verb, o.reading);
     add_skip_broken(verb, o.reading);
     verb.option("--rig",
                 o.rig_file,
-                "calibration file, or name of a built-in rig; replaces that of the source")
+                "calibration file; it replaces the calibration of the source. For a simulated "
+                "scene also the name of a built-in rig, for example zed_vga")
         .value("FILE");
     verb.option("--machine",
                 o.machine,
-                "machine file, or name of a built-in machine; sets the camera mount")
+                "machine that carries the camera: a machine file, or the name of a built-in "
+                "machine. It sets the position of the camera on the machine")
         .value("FILE|NAME");
     verb.option("--speed", o.speed, "playback speed as a factor of real time (default 1)")
         .in(0.01, 1000.0);

@@ -28,15 +28,15 @@ struct RexLinkOptions {
     std::string script_file;
     bool keys = false;
     std::string tones_dir;  ///< folder of the tones; empty = no sound
-    double step_s = 10.0;   ///< how long a movement takes
+    double step_s = 10.0;   ///< duration of a movement
 };
 
 using rex_link::LinkEvent;
 using rex_link::LinkEventKind;
 
-constexpr int kNameWidth = 13;  // longest name of an event kind, plus a space
+constexpr int kNameWidth = 13;  // width of the longest name of an event kind, plus a space
 
-/// Text of an event without its name, for the terminal.
+/// Returns the text of an event for the terminal, without the name of the event.
 std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     switch (event.kind) {
         case LinkEventKind::connected: return "";
@@ -59,8 +59,8 @@ std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     return "";
 }
 
-/// Joystick from the script or the keyboard. It returns an empty optional when the script has ended
-/// or the user pressed Ctrl-C.
+/// Returns a joystick that reads the script or the keyboard. The joystick returns an empty optional
+/// when the script has ended or the user pressed Ctrl-C.
 Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
     if (options.keys) {
         return rex_link::Joystick([keyboard = std::make_shared<KeyboardJoystick>()](std::int64_t) {
@@ -79,7 +79,7 @@ Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
         });
 }
 
-/// True if the user requested a movement but no gate was ever connected.
+/// Returns true if the user requested a movement but no gate was ever connected.
 bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     const auto has = [&rows](LinkEventKind kind) {
         return std::any_of(rows.begin(), rows.end(), [kind](const RexLinkRow& row) {
@@ -89,11 +89,12 @@ bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     return has(LinkEventKind::inhibited) && !has(LinkEventKind::connected);
 }
 
-/// `surefoot rex-link`: plays the REX side of the link to the gate. The namespace rex_link takes
-/// the plain name.
+/// `surefoot rex-link`: plays the REX side of the link to the gate. The namespace already has the
+/// name rex_link.
 int rex_link_verb(const RexLinkOptions& options) {
     if (options.keys == !options.script_file.empty())
-        return report(usage_error("rex-link: give either --script FILE or --keys"));
+        return report(
+            usage_error("rex-link: give either --script FILE or --keys, and not both options"));
     const auto gate = rex_link::parse_gate_url(options.url);
     if (!gate) return report(usage_error("--url: " + gate.error().message));
     auto tones = TonePlayer::open(options.tones_dir);
@@ -105,8 +106,8 @@ int rex_link_verb(const RexLinkOptions& options) {
         if (!access) return report(access.error());
         if (access->rider.empty())
             return report(usage_error(options.token_file +
-                                      ": the file has no line with a rider's token; "
-                                      "give the token file of surefoot serve"));
+                                      ": the file has no line with the token of the rider; give "
+                                      "the token file that surefoot serve uses"));
         config.gate.show_token(access->rider);
     }
     config.link.step_duration_ns = ns_from_seconds(options.step_s);
@@ -133,7 +134,7 @@ int rex_link_verb(const RexLinkOptions& options) {
     if (options.common.json) print_answer(rex_link_json(options.url, rows));
     if (nobody_to_ask(rows)) {
         log_error(
-            fmt::format("no gate answered at {}, so every movement was inhibited; start surefoot "
+            fmt::format("no gate answered at {}, so the link allowed no movement; start surefoot "
                         "serve or surefoot-gate, or correct --url",
                         options.url));
         return kExitFailed;
@@ -146,37 +147,38 @@ int rex_link_verb(const RexLinkOptions& options) {
 void add_rex_link(VerbGroup verbs) {
     auto [verb, o] = verbs.add<RexLinkOptions>(
         "rex-link",
-        "act as the controller of a REX: ask the gate twice about each movement of the joystick "
-        "and move after the second OK; exit code 1 = no gate listens",
+        "act as the controller of a REX: ask the gate twice about each movement of the joystick, "
+        "and move after the second OK; exit code 1 = no gate listens at the address",
         "surefoot rex-link --url ws://127.0.0.1:9090 --script "
         "service/rex_link/example_joystick.txt --tones service/rex_link/tones",
         rex_link_verb,
         Reads::no_settings);
     verb.option("--url",
                 o.url,
-                "address of the gate: an IP address or localhost (default ws://127.0.0.1:9090)")
+                "WebSocket address of the gate, as an IP address or localhost (default "
+                "ws://127.0.0.1:9090)")
         .value("ws://ADDRESS[:PORT][/PATH]");
     verb.option("--token-file",
                 o.token_file,
-                "token file of surefoot serve; the rider's token in it keeps a connection slot at "
-                "the gate")
+                "token file that surefoot serve uses. With the token of the rider in this file, "
+                "the gate keeps a connection slot for the link")
         .value("FILE");
-    const Option script = verb.option(
-        "--script",
-        o.script_file,
-        "file of joystick codes: lines 'time_s code', or joystick.csv of a simulated walk");
+    const Option script = verb.option("--script",
+                                      o.script_file,
+                                      "file of joystick codes: lines 'time_s code', or "
+                                      "joystick.csv of a recording by 'surefoot sim'");
     script.value("FILE");
     verb.flag("--keys",
               o.keys,
-              "steer with the keyboard: arrows or w a s d = step, q and e = turn, space = rest, x "
-              "= end")
+              "steer with the keyboard: arrow keys or w a s d = step, q = turn left, e = turn "
+              "right, space bar = rest, x = end")
         .excludes(script);
     verb.option("--tones",
                 o.tones_dir,
-                "folder of the tone files (made by tools/tones); they are played with the program "
-                "aplay, if it is installed")
+                "folder of the tone files, which tools/tones makes. The verb plays them with the "
+                "program aplay, if aplay is installed")
         .value("DIR");
-    verb.option("--step-time", o.step_s, "duration of a movement, in s (default 10)")
+    verb.option("--step-time", o.step_s, "duration of one movement of the REX, in s (default 10)")
         .value("S")
         .in(0.01, 60.0);
 }

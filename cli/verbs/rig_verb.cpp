@@ -19,11 +19,11 @@ struct RigOptions {
     CommonOptions common;
     std::string file;
     std::string format = "surefoot";  ///< format of the written file
-    std::string resolution;           ///< "WxH"; empty = the resolution in the file
-    std::string out;                  ///< empty = print only, write no file
+    std::string resolution;           ///< image size "WxH" [px]; empty = the size in the file
+    std::string out;                  ///< file to write; empty = print only
 };
 
-/// Reads a size such as "672x376"; empty for an empty text.
+/// Reads an image size such as "672x376". Returns an empty optional for an empty text.
 Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
     if (text.empty()) return std::optional<io::ImageSize>{};
     const auto sides = io::split(text, "xX");
@@ -35,10 +35,12 @@ Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
                              sides.size() == 2 ? side(sides[1]) : 0};
     if (size.width > 0 && size.height > 0) return std::optional(size);
     return usage_error(
-        fmt::format("--resolution '{}': expected WIDTHxHEIGHT in px, each from 2 to 16384", text));
+        fmt::format("--resolution '{}' is not an image size; give WIDTHxHEIGHT in px, each from 2 "
+                    "to 16384, for example 672x376",
+                    text));
 }
 
-/// Reads the rig of a file, at the requested image size.
+/// Reads the rig of a file and scales it to the requested image size.
 Result<io::RigFile> load(const RigOptions& options) {
     const auto size = parse_size(options.resolution);
     if (!size) return size.error();
@@ -49,11 +51,11 @@ Result<io::RigFile> load(const RigOptions& options) {
         return input_error(fmt::format("{}: {}", options.file, scaled.error().message));
     }
     if (file->rig.left.width != (*size)->width) {
-        file->notes.push_back(
-            fmt::format("scaled from {} x {} px; this is correct only if the images show the whole "
-                        "field of view",
-                        file->rig.left.width,
-                        file->rig.left.height));
+        file->notes.push_back(fmt::format(
+            "the calibration was scaled from {} x {} px to the size of --resolution; this is "
+            "correct only if the images of both sizes show the same field of view",
+            file->rig.left.width,
+            file->rig.left.height));
     }
     file->rig = std::move(scaled).value();
     return file;
@@ -78,7 +80,8 @@ void print_camera(const char* name, const camera::Camera& camera) {
     std::visit(
         [&](const auto& m) {
             fmt::print(
-                "{} camera: {}x{} px, {}, focal {:.2f} {:.2f} px, principal {:.2f} {:.2f} px\n",
+                "{} camera: {}x{} px, {}, focal length x {:.2f} px, y {:.2f} px, principal point x "
+                "{:.2f} px, y {:.2f} px\n",
                 name,
                 camera.width,
                 camera.height,
@@ -104,9 +107,11 @@ void print_summary(const RigOptions& options, const io::RigFile& file) {
     const auto rectifier = camera::Rectifier::make(rig);
     if (!rectifier) return;
     const double px_m = rectifier->rig().depth_to_disparity_px_m();
-    fmt::print("rectified focal {:.2f} px; one pixel of disparity at 1 m is {:.2f} mm of depth\n",
-               rectifier->rig().fx_px,
-               1e3 / px_m);
+    fmt::print(
+        "focal length of the rectified images {:.2f} px; at a distance of 1 m, one pixel of "
+        "disparity is {:.2f} mm of depth\n",
+        rectifier->rig().fx_px,
+        1e3 / px_m);
 }
 
 /// `surefoot rig`: checks, prints and converts a calibration file.
@@ -122,9 +127,10 @@ int rig(const RigOptions& options) {
         written = std::move(files).value();
         const std::vector<std::string> lost = io::lost_in(format, file->rig);
         if (!lost.empty()) {
-            log_warning(fmt::format("{} files cannot store {}; it is left out",
-                                    io::name_of(format),
-                                    fmt::join(lost, ", ")));
+            log_warning(fmt::format(
+                "files of the format {} cannot store {}; the written file lacks these values",
+                io::name_of(format),
+                fmt::join(lost, ", ")));
         }
     }
     if (options.common.json) {
@@ -149,22 +155,24 @@ void add_rig(VerbGroup verbs) {
     verb.option(
             "file",
             o.file,
-            "rig.yaml, OpenCV or Kalibr YAML, ROS camera_info (the left file or a folder), "
-            "ORB-SLAM settings, ZED SN*.conf, KITTI calib.txt or calib_cam_to_cam.txt, Middlebury "
-            "calib.txt, EuRoC folder")
+            "calibration to read: rig.yaml of Surefoot, OpenCV or Kalibr YAML, ROS camera_info "
+            "(file of the left camera, or folder), ORB-SLAM settings, ZED SN*.conf, KITTI "
+            "calib.txt or calib_cam_to_cam.txt, Middlebury calib.txt, or a folder in EuRoC layout")
         .required()
         .value("FILE");
     const Option out =
         verb.option(
-                "--out", o.out, "file to write; for ros a folder, or the file of the left camera")
+                "--out",
+                o.out,
+                "calibration file to write; with --as ros, a folder or the file of the left camera")
             .value("FILE");
-    verb.option("--as", o.format, "format of the written file (default surefoot)")
+    verb.option("--as", o.format, "format of the file that --out writes (default surefoot)")
         .one_of({"surefoot", "opencv", "kalibr", "ros", "zed"})
         .needs(out);
     verb.option("--resolution",
                 o.resolution,
-                "size of the images, in px: selects the entry of a ZED file, and scales other "
-                "files if the aspect ratio is the same")
+                "size of the images, in px. In a ZED file it selects the entry of this size; the "
+                "calibration of another file is scaled, if the aspect ratio is the same")
         .value("WxH");
 }
 

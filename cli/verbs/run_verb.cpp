@@ -43,8 +43,8 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    // Remove results of an earlier run, so that nobody, above all the gate, takes them for results
-    // of this run.
+    // Remove the results of an earlier run. Otherwise the gate or a user could take the old results
+    // for results of this run.
     std::vector<std::string> names{
         "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
     for (const char* layer : kLayerNames) names.push_back(fmt::format("{}.asc", layer));
@@ -73,10 +73,11 @@ int run(const RunOptions& options) {
         print_answer(run_json(record, *pipeline, written));
     } else {
         fmt::print("{}", run_summary(record, *pipeline));
-        if (written) fmt::print("results in {0}/; open {0}/report.html first\n", options.out_dir);
+        if (written)
+            fmt::print("the results are in {0}/; open {0}/report.html first\n", options.out_dir);
     }
-    // The run and the writing may both have failed. Each error is reported once; the error of the
-    // run decides the exit code.
+    // The run and the writing may both have failed. Each error is reported once, and the error of
+    // the run determines the exit code.
     if (!written) {
         log_error(
             fmt::format("{}; {} contains only a part of the results: free disk space and run again",
@@ -90,41 +91,45 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(VerbGroup verbs) {
-    auto [verb, o] =
-        verbs.add<RunOptions>("run",
-                              "run the whole chain on a recording, a video or a simulated scene",
-                              "surefoot run sim:floor --max-frames 8 --out out/floor\n"
-                              "  surefoot run sim:floor --max-frames 8 --set "
-                              "sim.sensor=analytic --out out/modelled --save-map "
-                              "out/modelled/floor.region",
-                              run);
+    auto [verb, o] = verbs.add<RunOptions>(
+        "run",
+        "run the whole chain (depth, odometry, elevation map, traversability, stairs) on a "
+        "recording, a video, a live camera or a simulated scene",
+        "surefoot run sim:floor --max-frames 8 --out out/floor\n"
+        "  surefoot run sim:floor --max-frames 8 --set "
+        "sim.sensor=analytic --out out/modelled --save-map "
+        "out/modelled/floor.region",
+        run);
     verb.option("source",
                 o.source,
-                "EuRoC or KITTI folder, folder or video of side-by-side images, TUM RGB-D folder, "
-                "sim:SCENE, or v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
+                "source of the frames: a folder in EuRoC, KITTI or TUM RGB-D layout, a folder or "
+                "video of side-by-side images, a simulated scene sim:SCENE, or a live camera "
+                "v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
         .required()
         .value("SOURCE");
     verb.option("--out", o.out_dir, "folder for the results").required().value("DIR");
     verb.option("--machine",
                 o.machine,
-                "machine file, or name of a built-in machine; sets the camera mount")
+                "machine that carries the camera: a machine file, or the name of a built-in "
+                "machine. It sets the position of the camera on the machine")
         .value("FILE|NAME");
     add_source_options(verb, o);
     verb.option(
             "--depth-every",
             o.depth_every,
-            "compute depth and map on every n-th frame only (default 1); odometry uses all frames")
+            "compute depth and map for every n-th frame only (default 1); odometry uses all frames")
         .in(1, 1000);
-    verb.flag("--layers", o.all_layers, "write every layer of the map");
+    verb.flag("--layers",
+              o.all_layers,
+              "write every layer of the map, not only elevation, variance and traversability");
     verb.option("--save-map",
                 o.save_map,
-                "file for the map at the end of the run, for 'surefoot map merge' and 'surefoot "
-                "map export'")
+                "file in which the run saves its map at the end; 'surefoot map' reads this file")
         .value("F.region");
     verb.option("--place",
                 o.place,
-                "place database: the run recognises the place, extends the database and writes it "
-                "again; a missing file is created")
+                "file of a place database. The run recognises places of the database, adds new "
+                "places and writes the file again; a missing file is created")
         .value("F.place");
 }
 

@@ -29,7 +29,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Prints names and descriptions of the scenes; with a folder also writes a picture of each scene.
+/// Prints the names and descriptions of the scenes. If options.out_dir is set, also writes a
+/// picture of each scene.
 int list(const SimOptions& options) {
     const auto scenes = sim::list_scenes();
     if (options.common.json) {
@@ -43,7 +44,7 @@ int list(const SimOptions& options) {
     return status ? kExitOk : report(status.error());
 }
 
-/// Grid that covers the whole path and the area visible from it.
+/// Returns a grid that covers the whole path and 6 m around it.
 sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d high = -low;
@@ -63,8 +64,8 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     return lattice;
 }
 
-/// Writes groundtruth.tum, elevation.asc (highest surface) and labels.asc. For RGB-D also writes
-/// groundtruth.txt, where users of the TUM layout expect the poses of the camera.
+/// Writes groundtruth.tum, elevation.asc (highest surface) and labels.asc. For an RGB-D recording
+/// also writes groundtruth.txt: in the TUM layout this file contains the poses of the camera.
 Status write_truth(const std::string& out,
                    const sim::SceneTruth& truth,
                    std::size_t frames,
@@ -96,8 +97,8 @@ Status write_truth(const std::string& out,
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
 }
 
-/// joystick.csv: the requests of the user of a walking machine, with their times. No lines for
-/// other motion models.
+/// Writes joystick.csv: the movements that the user of a walking machine requests, with their
+/// times. The file has only a header for other motion models.
 Status write_joystick(const std::string& out,
                       const sim::SceneTruth& truth,
                       std::int64_t last_frame_ns) {
@@ -113,8 +114,8 @@ Status write_joystick(const std::string& out,
     return io::write_file(out + "/joystick.csv", joystick);
 }
 
-/// safety.csv: which movements would truly be safe at each stance before a step or, for a trolley,
-/// at its stops. A hand-held camera has no stance, so it has no lines.
+/// Writes safety.csv: which movements are truly safe at each stance before a step. A trolley has
+/// stops instead of stances. The file has no lines for a hand-held camera, which has no stance.
 Status write_safety(const std::string& out,
                     const sim::SceneTruth& truth,
                     std::int64_t last_frame_ns,
@@ -135,7 +136,7 @@ Status write_safety(const std::string& out,
     return io::write_file(out + "/safety.csv", sim::safety_csv(labels));
 }
 
-/// Writes the truth of the recorded frames, also if the recording ended early.
+/// Writes the ground truth of the recorded frames, even if the recording ended early.
 Status write_all_truth(const std::string& out,
                        const sim::SceneTruth& truth,
                        int frames,
@@ -150,7 +151,8 @@ Status write_all_truth(const std::string& out,
     return writes.first();
 }
 
-/// Starts the recording or continues one of the same call; writes config.yaml beside it.
+/// Starts a recording, or continues a recording of the same call. Also writes config.yaml to the
+/// folder.
 Result<io::Recorder> start_simulated(const SimOptions& options,
                                      const Settings& settings,
                                      const sim::SceneSource& source) {
@@ -193,8 +195,9 @@ Copied record_frames(const SimOptions& options, sim::SceneSource& source, io::Re
 int simulate(const SimOptions& options) {
     if (options.list) return list(options);
     if (options.scene.empty() || (options.out_dir.empty() && options.scan_file.empty())) {
-        return report(usage_error(
-            "sim: give a scene and --out (or --scan); 'surefoot sim --list' shows the scenes"));
+        return report(
+            usage_error("sim: the scene or the output is missing; give a scene and --out or "
+                        "--scan. 'surefoot sim --list' shows the scenes"));
     }
     if (!options.scan_file.empty()) return scan(options);
     const auto settings = load_settings(options.common);
@@ -203,7 +206,8 @@ int simulate(const SimOptions& options) {
     if (!machine) return report(machine.error());
     if (!*machine)
         return report(
-            usage_error("--machine: give a machine file, or the name of a built-in machine"));
+            usage_error("--machine is empty: give a machine file, or the name of a built-in "
+                        "machine, for example rex"));
     const auto executor = make_executor(options.common);
     auto source = open_simulation({options.scene,
                                    options.rig,
@@ -225,8 +229,9 @@ int simulate(const SimOptions& options) {
         if (!truth && !copied.error) copied.error = truth.error();
     }
     if (const int known = (*source)->known_frames(); known > 0)
-        log_info(
-            fmt::format("{} of {} frames already existed and were kept", known, copied.frames));
+        log_info(fmt::format("{} of {} frames already existed in the folder; the verb kept them",
+                             known,
+                             copied.frames));
     if (options.common.json) {
         print_answer(copied_json(copied, options.out_dir));
     } else {
@@ -255,36 +260,44 @@ void add_sim(VerbGroup verbs) {
             "scene", o.scene, "name of a scene (see --list), or a scene file: my/scene.yaml[#NAME]")
         .value("SCENE");
     const Option out =
-        verb.option("--out",
-                    o.out_dir,
-                    "folder for the recording; a repeated call continues an interrupted recording")
+        verb.option(
+                "--out",
+                o.out_dir,
+                "folder for the recording; to continue an interrupted recording, repeat the call")
             .value("DIR");
     verb.option("--frames", o.frames, "stop after this number of frames").positive();
-    verb.option("--rate", o.rate_hz, "frame rate, in Hz").value("HZ").in(0.1, 1000.0);
+    verb.option("--rate", o.rate_hz, "frame rate of the simulated cameras, in Hz")
+        .value("HZ")
+        .in(0.1, 1000.0);
     verb.option("--rig",
                 o.rig,
-                "calibration file, or name of a built-in rig ('surefoot doctor' lists them)")
+                "rig of the simulated cameras: a calibration file, or the name of a built-in rig, "
+                "for example zed_vga")
         .value("FILE|NAME");
-    verb.option(
-            "--machine", o.machine, "machine whose steps are judged for safety.csv (default rex)")
+    verb.option("--machine",
+                o.machine,
+                "machine for which safety.csv says which movements are truly safe: a machine file, "
+                "or the name of a built-in machine (default rex)")
         .value("FILE|NAME");
-    verb.flag(
-        "--depth", o.depth, "also write the exact depth of every frame (PFM, about 1 MB each)");
+    verb.flag("--depth",
+              o.depth,
+              "also write the true depth of every frame (a PFM file of about 1 MB for each frame)");
     verb.flag("--list",
               o.list,
-              "print the names of the scenes; with --out also write pictures of each scene and "
-              "index.html");
+              "print the names and descriptions of the scenes; with --out also write a picture of "
+              "each scene and index.html");
     const Option scan =
         verb.option("--scan",
                     o.scan_file,
-                    "write terrestrial laser scans instead of a recording, all points in the world "
-                    "frame; up to 850 MB per station unless sim.laser.step_deg is larger")
+                    "write terrestrial laser scans of the scene instead of a recording, with all "
+                    "points in the world frame. A station needs up to 850 MB; a larger "
+                    "sim.laser.step_deg gives smaller files")
             .value("F.ply|DIR")
             .excludes(out);
     verb.option("--station",
                 o.stations,
-                "position of the scanner, in m; repeat the option for more stations (default: as "
-                "in the scene, or 1.6 m above the start of the path)")
+                "position of the laser scanner, in m; repeat the option for more stations "
+                "(default: the stations of the scene, or 1.6 m above the start of the path)")
         .value("X,Y,Z")
         .one_value_each()
         .needs(scan);
@@ -292,11 +305,11 @@ void add_sim(VerbGroup verbs) {
         verb.option(
                 "--tile",
                 o.tile_m,
-                "write the scan as a folder of square tiles with this side, in m, and index.json")
+                "write the scan to a folder, as square tiles with this side, in m, and index.json")
             .value("M")
             .in(0.5, 1000.0)
             .needs(scan);
-    verb.option("--tile-format", o.tile_format, "format of the tiles (default ply)")
+    verb.option("--tile-format", o.tile_format, "file format of the tiles of --tile (default ply)")
         .one_of({"ply", "pcd"})
         .needs(tile);
 }

@@ -19,15 +19,16 @@ struct SorOptions {
     CommonOptions common;
     std::string cloud;
     int neighbours = 7;
-    /// self: a point is its own neighbour (CloudCompare, Open3D); others: it is not (PCL).
+    /// self: a point is one of its neighbours (CloudCompare, Open3D); others: the point does not
+    /// count (PCL).
     std::string counting = "self";
-    double sigmas = 4.0;  ///< kept range above the mean neighbour distance, in standard deviations
+    double sigmas = 4.0;  ///< limit above the mean neighbour distance, in standard deviations
     std::string out_file;
 };
 
-constexpr std::size_t kTaken = 2048;  ///< points per task of a thread
+constexpr std::size_t kTaken = 2048;  ///< number of points in one task of a thread
 
-/// The points of a block whose entry in `keep` is 1, with all their attributes.
+/// Returns the points of a block whose entry in `keep` is 1, with all their attributes.
 io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& keep) {
     io::PointCloud kept;
     for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -77,13 +78,13 @@ Result<Written> write_kept(const SorOptions& options,
     return written;
 }
 
-/// `surefoot sor`: statistical outlier removal.
+/// `surefoot sor`: removes statistical outliers from a point cloud.
 int sor(const SorOptions& options) {
     const int others = options.counting == "others" ? options.neighbours : options.neighbours - 1;
     if (others < 1) {
         return report(
-            usage_error(fmt::format("--neighbours {}: give at least 2, because the point itself is "
-                                    "one of them; or add --counting others",
+            usage_error(fmt::format("--neighbours {}: give at least 2, because the point itself "
+                                    "counts as one neighbour; or add --counting others",
                                     options.neighbours)));
     }
     const auto executor = make_executor(options.common);
@@ -122,34 +123,37 @@ int sor(const SorOptions& options) {
 }  // namespace
 
 void add_sor(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<SorOptions>("sor",
-                                           "statistical outlier removal: remove points whose mean "
-                                           "distance to their neighbours is unusually large",
-                                           "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
-                                           sor,
-                                           Reads::no_settings);
+    auto [verb, o] =
+        verbs.add<SorOptions>("sor",
+                              "remove statistical outliers from a point cloud: points whose mean "
+                              "distance to their neighbours is unusually large",
+                              "surefoot sor out/stairs.ply --out out/stairs_clean.ply",
+                              sor,
+                              Reads::no_settings);
     verb.option("cloud", o.cloud, "point cloud: PLY, PCD, LAS, VTK or XYZ")
         .required()
         .value("CLOUD");
-    verb.option("--neighbours",
-                o.neighbours,
-                "number of neighbours K whose distances are averaged (default 7)")
+    verb.option(
+            "--neighbours",
+            o.neighbours,
+            "number K of nearest neighbours of a point whose distances are averaged (default 7)")
         .value("K")
         .in(1, 1000);
     verb.option("--counting",
                 o.counting,
-                "self: the point is one of the K, as in CloudCompare and Open3D (default); "
-                "others: it is not, as in PCL")
+                "whether a point counts as one of its K neighbours. self (default): it counts, as "
+                "in CloudCompare and Open3D; others: it does not count, as in PCL")
         .value("self|others")
         .one_of({"self", "others"});
     verb.option("--sigmas",
                 o.sigmas,
-                "limit: number of standard deviations above the mean distance (default 4)")
+                "remove points whose mean neighbour distance is more than this number of standard "
+                "deviations above the average (default 4)")
         .value("S")
         .in(0.0, 1e6);
     verb.option("--out",
                 o.out_file,
-                "file for the remaining points: PLY, PCD or XYZ; colours and values are kept")
+                "file for the remaining points with their colours and values: PLY, PCD or XYZ")
         .required()
         .value("F.ply");
 }

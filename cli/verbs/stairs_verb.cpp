@@ -23,7 +23,7 @@ namespace {
 struct StairsOptions {
     CommonOptions common;
     TerrainRequest terrain;
-    std::string out_dir;  ///< empty = no files are written
+    std::string out_dir;  ///< folder for the results; empty = no files
 };
 
 /// Terrain features of a map, and the class of each cell.
@@ -59,9 +59,11 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
         content.summary.push_back("assumed: " + sentence);
     content.sections.push_back({"Ground classes",
                                 {{"Edges, flights, drops, kerbs and doors", stairs_png},
-                                 {"The class of each cell", classes_png}},
+                                 {"Ground class of each cell", classes_png}},
                                 {features_table(found.features)}});
-    content.footer = "Machine-readable results: stairs.json. Settings: config.yaml.";
+    content.footer =
+        "The file stairs.json contains these results for other programs. The file config.yaml "
+        "contains the settings.";
     Writes writes;
     writes += io::write_file(options.out_dir + "/stairs.png", stairs_png);
     writes += io::write_file(options.out_dir + "/classes.png", classes_png);
@@ -98,7 +100,7 @@ void print_text(const StairsOptions& options,
         fmt::print("{}\n", note);
     for (const std::string& sentence : map.assumed) fmt::print("assumed: {}\n", sentence);
     if (!options.out_dir.empty())
-        fmt::print("stairs.json, treads.asc, stairs.png, classes.png and report.html in {}/\n",
+        fmt::print("stairs.json, treads.asc, stairs.png, classes.png and report.html are in {}/\n",
                    options.out_dir);
 }
 
@@ -131,40 +133,52 @@ int stairs(const StairsOptions& options) {
 }  // namespace
 
 void add_stairs(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<StairsOptions>(
-        "stairs",
-        "find flights, drops, kerbs, sills, doors and edges in a height map",
-        "surefoot stairs out/floor --out out/floor_edges\n"
-        "  surefoot stairs out/stairs.ply --from 0,0 --json",
-        stairs);
+    auto [verb, o] = verbs.add<StairsOptions>("stairs",
+                                              "find flights of stairs, drops, kerbs, sills, doors "
+                                              "and edges in a height map or a point cloud",
+                                              "surefoot stairs out/floor --out out/floor_edges\n"
+                                              "  surefoot stairs out/stairs.ply --from 0,0 --json",
+                                              stairs);
     verb.option("map",
                 o.terrain.map,
-                "output folder of 'surefoot run' (best with --layers), ESRI ASCII grid, PNG with "
-                "--scale and --height, or point cloud with z up (.ply, .pcd, .xyz)")
+                "map to search: the output folder of 'surefoot run' (best a run with --layers), an "
+                "ESRI ASCII grid, a PNG with --scale and --height, or a point cloud with z up "
+                "(.ply, .pcd, .xyz)")
         .required()
         .value("DEM|CLOUD|FOLDER");
-    verb.option("--out", o.out_dir, "folder for stairs.json, treads.asc and the pictures")
+    verb.option(
+            "--out",
+            o.out_dir,
+            "folder for stairs.json, treads.asc, report.html and the pictures (default: no files)")
         .value("DIR");
-    verb.option(
-            "--from",
-            o.terrain.from,
-            "position of the machine, in m; an edge that goes down from there is a drop (default: "
-            "base_link of a run, else the origin, else the border with the smallest x)")
+    verb.option("--from",
+                o.terrain.from,
+                "position of the machine, in m; an edge that goes down as seen from this position "
+                "is a drop. Default: base_link of a run, otherwise the origin, otherwise the "
+                "border with the smallest x")
         .value("X,Y");
-    verb.option("--scale", o.terrain.scale_m_per_px, "PNG: size of a pixel, in m")
+    verb.option("--scale",
+                o.terrain.scale_m_per_px,
+                "if the height map is a PNG: side of a pixel on the ground, in m")
         .value("M")
         .positive();
-    verb.option("--height", o.terrain.height_m, "PNG: height of the brightest value, in m")
+    verb.option("--height",
+                o.terrain.height_m,
+                "if the height map is a PNG: height that the brightest pixel value means, in m")
         .value("M")
         .positive();
-    verb.option("--resolution", o.terrain.resolution_m, "cloud: side of a cell, in m")
+    verb.option("--resolution",
+                o.terrain.resolution_m,
+                "if the map is a point cloud: side of a cell, in m")
         .value("M")
         .positive();
-    verb.option(
-            "--min-height", o.terrain.lowest_z_m, "cloud: leave out the points below this z, in m")
+    verb.option("--min-height",
+                o.terrain.lowest_z_m,
+                "if the map is a point cloud: leave out the points below this z, in m")
         .value("M");
-    verb.option(
-            "--max-height", o.terrain.highest_z_m, "cloud: leave out the points above this z, in m")
+    verb.option("--max-height",
+                o.terrain.highest_z_m,
+                "if the map is a point cloud: leave out the points above this z, in m")
         .value("M");
 }
 

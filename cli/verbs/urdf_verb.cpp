@@ -45,10 +45,12 @@ void add_urdf(VerbGroup verbs) {
                                             Reads::no_settings);
     verb.option("model",
                 o.model,
-                "model file (docs/reference/model_file.md), or name of a built-in model")
+                "model to write: a model file (docs/reference/model_file.md), or the name of a "
+                "built-in model, for example rex")
         .required()
         .value("FILE|NAME");
-    verb.option("--out", o.out_file, "file for the URDF (default: stdout)").value("FILE");
+    verb.option("--out", o.out_file, "file for the URDF (default: print the URDF on stdout)")
+        .value("FILE");
 }
 
 }  // namespace surefoot::app

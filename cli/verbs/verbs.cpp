@@ -20,11 +20,12 @@ void add_all_verbs(VerbGroup program) {
     add_gate(program);
     add_rex_link(program);
     add_serve(program);
-    add_audit(program.group(
-        "audit", "check and replay audit logs of verdicts", "surefoot audit verify out/audit"));
+    add_audit(program.group("audit",
+                            "check, list and replay audit logs of the gate",
+                            "surefoot audit verify out/audit"));
 
     const VerbGroup eval = program.group("eval",
-                                         "compare results with the ground truth",
+                                         "compare results of Surefoot with the ground truth",
                                          "surefoot eval trajectory out/floor/trajectory.tum "
                                          "out/floor_recording/groundtruth.tum --json");
     add_eval_trajectory(eval);

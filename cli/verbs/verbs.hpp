@@ -8,8 +8,8 @@ namespace surefoot::app {
 /// Adds every verb of the program, in the order of `surefoot --help`.
 void add_all_verbs(VerbGroup program);
 
-// One function for each verb, in the file VERB_verb.cpp. The file holds the options of the verb,
-// its help, its examples and the function that runs it.
+// Each function adds one verb and is in the file VERB_verb.cpp. This file contains the options, the
+// help, the examples and the code of the verb.
 void add_audit(VerbGroup verbs);
 void add_bench(VerbGroup verbs);
 void add_calibrate_mono(VerbGroup verbs);

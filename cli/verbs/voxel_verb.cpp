@@ -26,7 +26,7 @@ int voxel(const VoxelOptions& options) {
         print_answer(voxel_json(*thinned, options.size_m, options.out_file));
         return kExitOk;
     }
-    fmt::print("{} points of {} remain, one for each voxel of {:g} m; written to {}\n",
+    fmt::print("{} of {} points remain, one for each voxel with a side of {:g} m; written to {}\n",
                thinned->voxels,
                thinned->points,
                options.size_m,
@@ -50,12 +50,14 @@ void add_voxel(VerbGroup verbs) {
         .value("CLOUD");
     verb.option("--size",
                 o.size_m,
-                "side of a voxel, in m (default 0.001); the voxel borders lie on its multiples")
+                "side of a voxel, in m (default 0.001); the borders of the voxels lie on multiples "
+                "of this side")
         .value("M")
         .in(1e-5, 1e3);
     verb.option("--out",
                 o.out_file,
-                "file for the points: PLY, PCD or XYZ; positions only, ordered by x, y, z")
+                "file for the remaining points: PLY, PCD or XYZ. It contains only positions, "
+                "sorted by x, y and z")
         .required()
         .value("F.ply");
 }

@@ -8,11 +8,12 @@ namespace surefoot::app {
 namespace {
 
 std::atomic<bool> interrupt_seen{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+static_assert(std::atomic<bool>::is_always_lock_free,
+              "a signal handler sets this flag, so the flag must be lock-free");
 
 void on_signal(int signal) {
     if (!interrupt_seen.exchange(true)) return;
-    std::signal(signal, SIG_DFL);  // the second signal of either kind ends the program
+    std::signal(signal, SIG_DFL);  // the second signal, SIGINT or SIGTERM, ends the program
     std::raise(signal);
 }
 

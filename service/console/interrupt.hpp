@@ -3,10 +3,10 @@
 
 namespace surefoot::app {
 
-/// From this call on, the first Ctrl-C or SIGTERM only sets a flag (see `interrupted`). A second
-/// one, of either kind, ends the program at once.
+/// After this call, the first Ctrl-C or SIGTERM only sets a flag (see `interrupted`). A second
+/// Ctrl-C or SIGTERM ends the program at once.
 void watch_for_interrupts();
-/// True after a Ctrl-C or SIGTERM arrived.
+/// Returns true after a Ctrl-C or SIGTERM arrived.
 [[nodiscard]] bool interrupted();
 
 }  // namespace surefoot::app

@@ -24,8 +24,8 @@ spdlog::logger& logger() {
     return *instance;
 }
 
-// State of this call. If a verb fails without printing its JSON object, main prints one with the
-// first error.
+// State of this call of the program. If a verb fails without printing its JSON object,
+// run_command_line() prints an object with the first error.
 bool has_answered = false;
 std::string first_error_sentence;
 
@@ -40,7 +40,8 @@ bool answered() noexcept {
 }
 
 // Each function flushes stdout first, so that earlier results appear before the message even if
-// stdout is a pipe or a file. Results after an error message would look like a recovery.
+// stdout is a pipe or a file. Otherwise results that appear after an error message would look as if
+// the program had recovered.
 void log_info(const std::string& message) {
     std::fflush(stdout);
     logger().info(message);
@@ -57,7 +58,9 @@ void log_error(const std::string& message) {
 
 Status close_stdout() {
     const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-    return flushed ? Status() : Status(output_error("stdout: cannot write: is the disk full?"));
+    return flushed ? Status()
+                   : Status(output_error("stdout: cannot write the whole output; check whether the "
+                                         "disk is full and run again"));
 }
 
 const std::string& first_error() noexcept {

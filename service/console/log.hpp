@@ -7,17 +7,17 @@
 
 namespace surefoot::app {
 
-/// Prints the JSON object of a call with --json on stdout. A call prints exactly one.
+/// Prints the JSON object of a call with --json on stdout. Each call prints exactly one object.
 void print_answer(const std::string& json_object);
-/// True after print_answer was called.
+/// Returns true after print_answer was called.
 [[nodiscard]] bool answered() noexcept;
 
-// These functions print a line on stderr. Results go to stdout or into files.
+// Each function prints a line on stderr. Results go to stdout or to files.
 void log_info(const std::string& message);
 void log_warning(const std::string& message);
 void log_error(const std::string& message);
 
-/// The first message that log_error printed; empty if there was none.
+/// Returns the first message that log_error printed; empty if no error was logged.
 [[nodiscard]] const std::string& first_error() noexcept;
 
 /// Flushes stdout. Returns an error if this or any earlier write to stdout failed, because the

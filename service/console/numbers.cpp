@@ -10,7 +10,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Reads exactly N finite numbers separated by commas. `count` is N as a word.
+/// Reads exactly N finite numbers separated by commas. `count` is N as a word, for the error
+/// message.
 template <std::size_t N>
 Result<std::array<double, N>> parse_numbers(const std::string& option,
                                             const std::string& text,
@@ -25,7 +26,11 @@ Result<std::array<double, N>> parse_numbers(const std::string& option,
                                : io::parse_double(text.substr(begin, end - begin));
         if (!value || !std::isfinite(*value)) {
             return usage_error(
-                fmt::format("{} '{}': give {} finite numbers {}", option, text, count, meaning));
+                fmt::format("{} '{}': give {} finite numbers separated by commas: {}",
+                            option,
+                            text,
+                            count,
+                            meaning));
         }
         values[i] = *value;
         begin = end + 1;

@@ -14,12 +14,12 @@ namespace surefoot::app {
                                                                 const std::string& text,
                                                                 const std::string& meaning);
 
-/// Parses four numbers "a,b,c,d" in the same way.
+/// Reads four numbers "a,b,c,d", like parse_three_numbers().
 [[nodiscard]] Result<std::array<double, 4>> parse_four_numbers(const std::string& option,
                                                                const std::string& text,
                                                                const std::string& meaning);
 
-/// Parses two numbers "a,b" in the same way.
+/// Reads two numbers "a,b", like parse_three_numbers().
 [[nodiscard]] Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
                                                               const std::string& text,
                                                               const std::string& meaning);

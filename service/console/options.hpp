@@ -23,26 +23,26 @@ struct CommonOptions {
     std::vector<std::string> settings;  ///< key=value
     std::string preset;
     bool json = false;
-    int threads = 0;  ///< 0 = as many as the machine has cores
+    int threads = 0;  ///< number of threads; 0 = all cores
     std::uint64_t seed = 1;
 };
 
-/// How to read recordings that Surefoot did not write. Empty = the default of the reader.
+/// Rules for reading recordings of other programs. An empty member means the default of the reader.
 struct ReadingOptions {
     std::optional<double> pair_tolerance_s;   ///< largest time between the two images of a frame
-    std::optional<double> depth_codes_per_m;  ///< RGB-D: depth image value of 1 m
-    std::optional<int> image_bits;            ///< 16-bit images: bits of the largest value
-    bool skip_broken = false;                 ///< skip and count frames that cannot be read
+    std::optional<double> depth_codes_per_m;  ///< RGB-D: pixel value that means 1 m
+    std::optional<int> image_bits;            ///< 16-bit images: number of used bits
+    bool skip_broken = false;                 ///< true = skip and count unreadable frames
 };
 
-/// A source of frames and how to open it.
+/// A source of frames and the options for opening it.
 struct SourceOptions {
     ReadingOptions reading;
     std::string source;    ///< path, sim:SCENE or v4l2:DEVICE
-    std::string rig_file;  ///< calibration that replaces that of the source
-    std::string imu_file;  ///< IMU samples of another device
+    std::string rig_file;  ///< calibration file that replaces the calibration of the source
+    std::string imu_file;  ///< file of IMU samples from another device
     double rate_hz = 0.0;  ///< rate of a source without time stamps; 0 = the rate of the source
-    int max_frames = 0;    ///< 0 = all
+    int max_frames = 0;    ///< largest number of frames; 0 = all
 };
 
 }  // namespace surefoot::app

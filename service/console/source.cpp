@@ -41,8 +41,8 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
-/// Logs the notes of the calibration reader. A recording passes on only its rig, without notes, so
-/// the small file of --rig is read a second time, for the size of the images.
+/// Logs the notes of the calibration reader. A recording returns only its rig, without the notes.
+/// So this function reads the small file of --rig a second time, with the image size of the rig.
 void log_rig_notes(const SourceRequest& request, const camera::StereoRig& rig) {
     std::vector<std::string> notes;
     if (!request.rig_file.empty()) {
@@ -65,14 +65,16 @@ Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& requ
     if (!address) return address.error();
     if (request.rate_hz > 0.0) {
         return usage_error(
-            fmt::format("--rate: a live camera has its own rate; write {}{}@WIDTHxHEIGHT@{:g}",
+            fmt::format("--rate does not work with a live camera; give the rate in the source "
+                        "instead: {}{}@WIDTHxHEIGHT@{:g}",
                         kLivePrefix,
                         address->device,
                         request.rate_hz));
     }
     if (request.rig_file.empty()) {
-        return usage_error(request.source +
-                           ": a live camera needs its calibration; give --rig rig.yaml");
+        return usage_error(
+            request.source +
+            ": a live camera needs a calibration; give its file, for example --rig rig.yaml");
     }
     const auto rig = read_noted_rig(request.rig_file);
     if (!rig) return rig.error();
@@ -147,7 +149,9 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
                                                          Executor& executor) {
     if (request.source.starts_with(kSimPrefix)) {
         if (!request.imu_file.empty())
-            return usage_error("--imu: a simulated scene has its own IMU (sim.imu)");
+            return usage_error(
+                "--imu does not work with a simulated scene, which has its own IMU; remove --imu "
+                "and use the setting sim.imu");
         auto scene = open_simulation(request, executor);
         if (!scene) return scene.error();
         return std::unique_ptr<camera::FrameSource>(std::move(scene).value());

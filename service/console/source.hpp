@@ -18,21 +18,21 @@
 
 namespace surefoot::app {
 
-/// The source to open, and the way to open it.
+/// The source to open, and the options for opening it.
 struct SourceRequest {
     std::string source;  ///< path, sim:SCENE or v4l2:DEVICE
     std::string rig_file;
-    double rate_hz = 0.0;  ///< 0 = the rate of the source
-    int max_frames = 0;    ///< 0 = all
+    double rate_hz = 0.0;  ///< frame rate; 0 = the rate of the source
+    int max_frames = 0;    ///< largest number of frames; 0 = all
     std::uint64_t seed = 1;
     sim::SceneOptions sim = {};  ///< further options of a simulated scene
     io::CameraConfig live = {};  ///< options of a live camera
-    std::string imu_file = {};   ///< IMU samples of another device, see io::with_imu
+    std::string imu_file = {};   ///< file of IMU samples, see io::with_imu
     int first_frame = 0;         ///< first frame of a recording; earlier frames are skipped
     ReadingOptions reading = {};
 };
 
-/// The request for the source that the options name.
+/// Returns the request for the source that the options name.
 [[nodiscard]] SourceRequest request_of(const SourceOptions& options,
                                        const CommonOptions& common,
                                        const Settings& settings);
@@ -40,7 +40,7 @@ struct SourceRequest {
 /// Copies the reading options of the command line to the options of the readers.
 void apply(const ReadingOptions& reading, io::OpenOptions& options);
 
-/// Prefix of the name of a live camera.
+/// Prefix of a source that is a live camera.
 inline constexpr std::string_view kLivePrefix = "v4l2:";
 
 /// Opens a recording, video, live camera or simulated scene.
@@ -52,7 +52,7 @@ inline constexpr std::string_view kLivePrefix = "v4l2:";
 [[nodiscard]] Result<std::unique_ptr<sim::SceneSource>> open_simulation(
     const SourceRequest& request, Executor& executor);
 
-/// Reads a calibration file. Notes of the reader go to the log.
+/// Reads a calibration file, and logs the notes of the reader as warnings.
 [[nodiscard]] Result<camera::StereoRig> read_noted_rig(const std::string& path);
 /// Reads a calibration file, or returns the built-in rig of that name.
 [[nodiscard]] Result<camera::StereoRig> load_rig(const std::string& path_or_name);

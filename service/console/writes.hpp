@@ -16,7 +16,7 @@ class Writes {
         ++failed_;
         if (first_.ok()) first_ = std::move(status);
     }
-    /// The first failure. Its message also gives the number of further failures.
+    /// Returns the first failure. Its message also gives the number of other failures.
     [[nodiscard]] Status first() const {
         if (failed_ < 2) return first_;
         return Error{first_.error().code,

@@ -10,9 +10,9 @@
 
 namespace surefoot::app {
 
-/// Checks in the first image pairs of a source whether the cameras are swapped and whether the rows
-/// of left and right image match. It stops after the first pair with enough corners, and after
-/// five pairs at the latest.
+/// Checks the first image pairs of a source: are the cameras swapped, and do the rows of left and
+/// right image match? The check stops after the first pair with enough corners, at the latest after
+/// five pairs.
 class CameraOrderCheck {
   public:
     /// `source`: name of the source in messages.
@@ -25,7 +25,7 @@ class CameraOrderCheck {
 
   private:
     std::string source_;
-    int left_ = 5;  ///< pairs that may still be checked
+    int left_ = 5;  ///< number of pairs that may still be checked
 };
 
 }  // namespace surefoot::app

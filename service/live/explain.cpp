@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kViewHalf_m = 1.5;
 
-/// Layer of the heights around the query.
+/// Heights around the position of the query.
 struct View {
     grid::GridGeometry geometry;
     grid::Layer height_m;
@@ -52,8 +52,8 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
     return view;
 }
 
-/// Cells of the view with an overhang above them. Example: the floor under a table top that the
-/// camera saw from a distance.
+/// Returns the cells of the view below an overhang, for example the floor below a table top that
+/// the camera saw from a distance.
 eval::Dots hanging(const View& view, const grid::MapSnapshot& map) {
     eval::Dots dots;
     dots.label = "overhang";

@@ -11,7 +11,7 @@
 namespace surefoot::app {
 
 /// Writes a picture of the heights around the machine. It shows the feet before and after the step,
-/// the volume that the body sweeps, and the cell that decided the verdict.
+/// the body after the step, and the cell that decided the verdict.
 [[nodiscard]] Status write_explanation(const std::string& file,
                                        const Machine& machine,
                                        const gate::Query& query,

@@ -12,13 +12,13 @@
 
 namespace surefoot::app {
 
-/// The files of models/, compiled into this program. surefoot-gate does not contain them, because
-/// it draws no pictures.
+/// Returns the files of models/, which this program contains. surefoot-gate does not contain these
+/// files, because it draws no pictures.
 [[nodiscard]] const std::vector<machines::Resource>& model_resources();
 
 /// Loads the model of a machine by path or by built-in name. Every failure is a usage error.
 [[nodiscard]] Result<io::MachineModel> find_model(const std::string& path_or_name);
-/// The built-in model of this name; nullopt if there is none.
+/// Returns the built-in model of this name; nullopt if no such model exists.
 [[nodiscard]] std::optional<io::MachineModel> built_in_model(std::string_view name);
 
 }  // namespace surefoot::app

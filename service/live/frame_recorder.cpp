@@ -28,7 +28,8 @@ std::size_t bytes_of(const StereoFrame& frame) {
     return frame.left.size() + frame.right.size() + sizeof(float) * frame.depth_m.size();
 }
 
-/// Copy of the parts of a frame that a recording stores; `imu_before` precedes its IMU samples.
+/// Returns a copy of the parts of a frame that a recording stores. The samples `imu_before` come
+/// before the IMU samples of the frame.
 StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_before) {
     StereoFrame part;
     part.time_ns = frame.time_ns;
@@ -41,7 +42,7 @@ StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_b
     return part;
 }
 
-/// Creates a new folder in `parent`, named by the time in UTC.
+/// Creates a new folder in `parent`. The name is the time in UTC.
 Result<std::string> new_folder(const std::string& parent, std::time_t now) {
     if (auto made = io::make_folder(parent); !made) return made.error();
     const std::string name =
@@ -52,18 +53,25 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
         std::error_code error;
         if (std::filesystem::create_directory(folder, error)) return folder;
         if (error) {
-            return output_error(
-                fmt::format("{}: cannot make this folder: {}", folder, error.message()));
+            return output_error(fmt::format(
+                "{}: this folder cannot be created: {}; give another folder with --record-dir",
+                folder,
+                error.message()));
         }
     }
-    return output_error(fmt::format(
-        "{}: this folder and others of this name already exist; try again in a second", name));
+    return output_error(
+        fmt::format("{}: this folder and 99 folders with the same time in their names already "
+                    "exist; try again in a second",
+                    name));
 }
 
-/// Why a source cannot be recorded; empty if it can.
+/// Returns the reason why the source cannot be recorded; empty if recording is possible.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
-    if (config.record_dir.empty()) return "restart serve with --record-dir DIR";
-    if (source.modelled_depth) return "sim.sensor = analytic makes no images to record";
+    if (config.record_dir.empty())
+        return "to allow recordings, restart serve with --record-dir DIR";
+    if (source.modelled_depth)
+        return "this source has no images to record, because sim.sensor is analytic; restart serve "
+               "with another sim.sensor";
     return {};
 }
 
@@ -149,7 +157,7 @@ void FrameRecorder::run() {
     }
 }
 
-/// Waits for a request to record; false when the service ends.
+/// Waits for a request to record. Returns false when the service ends.
 bool FrameRecorder::wait_for_wish() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return wanted_ || stopped_; });
@@ -160,11 +168,11 @@ Result<io::Recorder> FrameRecorder::open(std::string& folder) const {
     if (auto made = io::make_folder(config_.record_dir); !made) return made.error();
     const auto free = io::free_bytes(config_.record_dir);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(
-            fmt::format("{}: the disk has {} free, and {} must stay free; free disk space",
-                        config_.record_dir,
-                        megabytes(*free),
-                        megabytes(config_.reserve_bytes)));
+        return output_error(fmt::format(
+            "{}: only {} are free on this disk, but {} must stay free; delete files and try again",
+            config_.record_dir,
+            megabytes(*free),
+            megabytes(config_.reserve_bytes)));
     }
     auto made = new_folder(config_.record_dir, config_.utc_now());
     if (!made) return made.error();
@@ -186,7 +194,7 @@ void FrameRecorder::record() {
         last_taken_ns_.reset();
         taking_ = end_ == End::none;
     }
-    log_info(fmt::format("recording to {} (a page asked for it)", state_.folder));
+    log_info(fmt::format("recording to {}, because a page started a recording", state_.folder));
     tell(page::RecordingStage::recording);
     Status written;
     while (const auto frame = next_frame()) {
@@ -196,7 +204,8 @@ void FrameRecorder::record() {
     conclude(written, *recorder);
 }
 
-/// Waits for the next queued frame; nullopt when the recording ends and the queue is empty.
+/// Waits for the next queued frame and returns it. Returns nullopt when the recording ends and the
+/// queue is empty.
 std::optional<StereoFrame> FrameRecorder::next_frame() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return !queue_.empty() || end_ != End::none; });
@@ -210,8 +219,9 @@ std::optional<StereoFrame> FrameRecorder::next_frame() {
 Status FrameRecorder::write(const StereoFrame& frame, io::Recorder& recorder) {
     const auto free = io::free_bytes(state_.folder);
     if (free && *free < config_.reserve_bytes) {
-        return output_error(
-            fmt::format("the disk is full: {} must stay free", megabytes(config_.reserve_bytes)));
+        return output_error(fmt::format(
+            "the disk is almost full, and {} must stay free; delete files and record again",
+            megabytes(config_.reserve_bytes)));
     }
     if (auto added = recorder.add(frame); !added) return added;
     if (state_.frames == 0) first_stamp_ns_ = frame.time_ns;
@@ -238,17 +248,17 @@ void FrameRecorder::tell(page::RecordingStage stage, std::string text) {
 std::string FrameRecorder::reason_in_words() {
     const std::lock_guard lock(mutex_);
     switch (end_) {
-        case End::went_back: return "; the source went back in time, so the recording ended";
-        case End::source_ended: return "; the source has ended";
-        case End::service_ended: return "; the service has ended";
+        case End::went_back: return "; the recording ended, because the source went back in time";
+        case End::source_ended: return "; the recording ended with the source";
+        case End::service_ended: return "; the recording ended with the service";
         case End::none:
         case End::wished: break;
     }
     return {};
 }
 
-/// Closes the recording and reports it. After a failed write, the frames before it form a valid
-/// recording.
+/// Closes the recording and reports its result. After a failed write, the earlier frames form a
+/// valid recording.
 void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
     {
         const std::lock_guard lock(mutex_);
@@ -264,9 +274,10 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
                                    state_.folder,
                                    outcome ? reason_in_words() : "; " + outcome.error().message);
     if (state_.left_out > 0)
-        text += fmt::format("; {} frames were left out, because the disk was too slow",
-                            state_.left_out);
-    if (state_.frames == 0) {  // we created the folder, and it holds no frame
+        text +=
+            fmt::format("; {} frames were left out of the recording, because the disk was too slow",
+                        state_.left_out);
+    if (state_.frames == 0) {  // this class created the folder, and the folder contains no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);
         text = outcome ? "no frame arrived, so there is no recording" : outcome.error().message;

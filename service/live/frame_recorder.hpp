@@ -19,25 +19,25 @@
 namespace surefoot::app {
 
 struct FrameRecorderConfig {
-    std::string record_dir;  ///< each recording is a new folder in it; empty = recording is off
-    /// Largest size of the queue of frames that wait for the disk. The default holds 4 s of stereo
-    /// images of 672 x 376 px at 30 Hz.
+    std::string record_dir;  ///< parent folder of all recordings; empty = recording is off
+    /// Largest size [bytes] of the queue of frames that wait for the disk. The default is enough
+    /// for 4 s of stereo images of 672 x 376 px at 30 Hz.
     std::size_t queue_bytes = 64U << 20U;
-    /// Recording stops when the disk has less free space than this. The gate's audit log may be on
-    /// the same disk.
+    /// Least free space [bytes] of the disk; below it the recording stops. The audit log of the
+    /// gate may be on the same disk.
     std::uint64_t reserve_bytes = 500'000'000;
-    std::time_t (*utc_now)() = [] { return std::time(nullptr); };  ///< folder names use this time
+    std::time_t (*utc_now)() = [] { return std::time(nullptr); };  ///< time in folder names (UTC)
 };
 
 /// Records the frames of a source while a web page requests it (docs/how_to/page.md), in the format
 /// of `surefoot record`.
 ///
 /// A separate thread of low priority writes to the disk. `take` only copies the frame into a queue
-/// and never waits for the disk. A frame that does not fit into the queue is left out and counted;
-/// its IMU samples are stored with the next frame. All public functions are thread-safe.
+/// and never waits for the disk. A frame that does not fit into the queue is left out and counted.
+/// Its IMU samples are stored with the next frame. All public functions are thread-safe.
 class FrameRecorder {
   public:
-    /// Tells the desk whether recording is possible, and if not, why.
+    /// Tells the desk whether recording is possible. If not, also gives the reason.
     FrameRecorder(FrameRecorderConfig config,
                   const camera::StereoRig& rig,
                   const camera::SourceInfo& source,
@@ -53,7 +53,7 @@ class FrameRecorder {
     void source_ended();
 
   private:
-    /// Why a recording ended; the first reason counts.
+    /// Reason why a recording ended. If there are several, the first reason is kept.
     enum class End : std::uint8_t { none, wished, went_back, source_ended, service_ended };
 
     void ask(const page::RecordWish& wish);
@@ -73,7 +73,7 @@ class FrameRecorder {
     const camera::StereoRig rig_;
     page::RecordingDesk& desk_;
 
-    // Used by the writing thread only (and by the constructor before that thread starts).
+    // Only the writing thread uses these members, and the constructor before it starts that thread.
     page::RecordingState state_;
     std::int64_t first_stamp_ns_ = 0;
     std::int64_t last_stamp_ns_ = 0;
@@ -86,14 +86,14 @@ class FrameRecorder {
     std::int64_t left_out_ = 0;
     std::optional<std::int64_t> last_taken_ns_;
     bool wanted_ = false;
-    bool taking_ = false;  ///< `take` queues frames
+    bool taking_ = false;  ///< true while `take` queues frames
     bool stopped_ = false;
     End end_ = End::none;
     std::thread thread_;
 };
 
-/// Wraps a source and passes each frame that it delivers to a recorder as well. It keeps references
-/// to both; they must outlive it.
+/// Wraps a source and also passes each delivered frame to a recorder. Source and recorder must
+/// outlive this object.
 class RecordedSource final : public camera::FrameSource {
   public:
     RecordedSource(camera::FrameSource& source, FrameRecorder& recorder)

@@ -195,7 +195,8 @@ TEST_F(FrameRecorderTest, ASourceThatEndsEndsItsRecording) {
     RecordedSource recorded_source(source, recorder);
     begin();
     while (recorded_source.next().value()) continue;
-    EXPECT_NE(wait_for(RecordingStage::ready).text.find("the source has ended"), std::string::npos);
+    EXPECT_NE(wait_for(RecordingStage::ready).text.find("ended with the source"),
+              std::string::npos);
     EXPECT_EQ(info().frames, 5);
 }
 
@@ -230,7 +231,7 @@ TEST_F(FrameRecorderTest, ADiskIsNeverFilledToTheBrim) {
     config_.reserve_bytes = 1ULL << 60U;
     const FrameRecorder recorder(config_, rig(), {}, desk_);
     ASSERT_TRUE(desk_.ask({true}));
-    EXPECT_NE(wait_for(RecordingStage::failed).text.find("the disk has"), std::string::npos);
+    EXPECT_NE(wait_for(RecordingStage::failed).text.find("free on this disk"), std::string::npos);
 }
 
 /// Limits the file size while it lives, so that writes fail as on a full disk.

@@ -23,20 +23,22 @@ namespace {
 
 constexpr std::int64_t kRestartEvery_ns = 500'000'000;
 
-/// Path of surefoot-gate, which lies in the folder of this program.
+/// Returns the path of surefoot-gate, which must be in the folder of this program.
 Result<std::string> find_program() {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
     const auto gate = self.parent_path() / "surefoot-gate";
     if (::access(gate.c_str(), X_OK) == 0) return gate.string();
-    return input_error("the program surefoot-gate is missing in the folder of " + self.string());
+    return input_error("the program surefoot-gate is missing; install it in the folder of " +
+                       self.string());
 }
 
-/// Longest time until the gate has written its first line. After it the start has failed.
+/// Longest time that the gate may need to write its first line. After this time the start counts as
+/// failed.
 constexpr std::chrono::seconds kLongestStart{20};
 
-/// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait
-/// ran out.
+/// Returns the first line that the gate writes. The line may be incomplete if the gate closed the
+/// pipe or the time ran out.
 std::string first_line(int file) {
     const auto end = std::chrono::steady_clock::now() + kLongestStart;
     std::string line;
@@ -57,7 +59,8 @@ std::string first_line(int file) {
     return line;
 }
 
-/// "listening on ws://127.0.0.1:9090" -> 9090; 0 for any other text.
+/// Reads the port from a line such as "listening on ws://127.0.0.1:9090". Returns 0 for other
+/// texts.
 std::uint16_t port_of(const std::string& line) {
     const auto colon = line.rfind(':');
     std::uint16_t port = 0;
@@ -70,9 +73,10 @@ std::uint16_t port_of(const std::string& line) {
 [[noreturn]] void become_gate(
     const char* program, char* const* words, int output, int line, pid_t parent) {
     ::dup2(output, STDOUT_FILENO);
-    ::fcntl(line, F_SETFD, 0);  // keep it open across execv
-    // A session of its own: Linux shares the processor among sessions before it compares nice
-    // values, so load from perception must not delay the gate. Ctrl-C then reaches only serve.
+    ::fcntl(line, F_SETFD, 0);  // keep the socket open across execv
+    // Give the gate a session of its own, so that the load of perception cannot delay it. Linux
+    // shares the processor among sessions before it compares nice values. Ctrl-C then reaches only
+    // serve.
     ::setsid();
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() == parent) ::execv(program, words);
@@ -118,15 +122,19 @@ void GateChild::hang_up() noexcept {
 Status GateChild::launch(std::vector<std::string> arguments) {
     hang_up();
     int output[2];
-    // A socket pair, because another process of this user could open a pipe in /proc and read the
-    // key.
+    // Use a socket pair for the key: another process of this user could open a pipe in /proc and
+    // read the key.
     int line[2];
     if (::pipe2(output, O_CLOEXEC) != 0)
-        return input_error("the gate process cannot be started: the system gives no pipe");
+        return input_error(
+            "the gate process cannot be started, because the system refuses a pipe; close other "
+            "programs and start again");
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
         ::close(output[0]);
         ::close(output[1]);
-        return input_error("the gate process cannot be started: the system gives no socket pair");
+        return input_error(
+            "the gate process cannot be started, because the system refuses a socket pair; close "
+            "other programs and start again");
     }
     arguments.insert(arguments.end(), {"--parent-fd", std::to_string(line[1])});
     std::vector<char*> words{program_.data()};
@@ -145,12 +153,13 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     port_ = port_of(said);
     if (port_ != 0) return {};
     if (process_ > 0) {
-        ::kill(process_, SIGKILL);  // the gate may hang
+        ::kill(process_, SIGKILL);  // SIGKILL, because the gate may hang
         ::waitpid(process_, nullptr, 0);
     }
     process_ = -1;
     hang_up();
-    return input_error("the gate process did not start (see its message above): " + program_);
+    return input_error("the gate process did not start; its own message above gives the reason: " +
+                       program_);
 }
 
 Result<bool> GateChild::watch(std::int64_t now_ns) {
@@ -161,7 +170,7 @@ Result<bool> GateChild::watch(std::int64_t now_ns) {
     if (now_ns < next_start_ns_) return false;
     next_start_ns_ = now_ns + kRestartEvery_ns;
     if (auto launched = launch(how_.arguments); !launched)
-        return launched.error();  // the next call retries
+        return launched.error();  // the next call tries again to start the gate
     ++restarts_;
     return true;
 }

@@ -14,25 +14,25 @@ namespace surefoot::app {
 
 /// Starts the gate process (surefoot-gate) and restarts it when it dies.
 ///
-/// While the gate process is down its clients get no answer, so no step is allowed. A restarted
+/// While the gate process does not run, its clients get no answer, so no step is allowed. A new
 /// gate begins in state INIT. The gate process inherits the priority of the thread that starts it.
-/// It ends when this process ends, even after a crash: it sees its end of a socket pair close, and
-/// the kernel sends it SIGTERM.
+/// The gate process ends when this process ends, even after a crash: the socket pair between both
+/// processes closes, and the kernel sends SIGTERM to the gate process.
 class GateChild {
   public:
     /// Arguments and key for the gate process.
     struct Start {
         std::vector<std::string> arguments;        ///< arguments of every start
-        std::vector<std::string> first_arguments;  ///< for the first start, added to `arguments`
-        gate_process::ChecksumKey key;  ///< snapshot channel key; sent through the socket pair
+        std::vector<std::string> first_arguments;  ///< more arguments of the first start
+        gate_process::ChecksumKey key;             ///< key of the map channel; sent by socket pair
     };
     /// Starts the program surefoot-gate from the folder of this program (or from its place in a
-    /// build tree). Returns when it listens. Returns an error if it ends or is silent
-    /// for 20 s before.
+    /// build tree). Returns when the gate listens. Returns an error if the gate ends before that,
+    /// or is silent for 20 s.
     [[nodiscard]] static Result<GateChild> start(Start how);
     GateChild(GateChild&& other) noexcept;
     GateChild& operator=(GateChild&&) = delete;
-    /// Ends the gate process and waits for its end.
+    /// Sends SIGTERM to the gate process and waits for its end.
     ~GateChild();
 
     /// Restarts the gate process if it has died, at most twice a second. Returns true if this call

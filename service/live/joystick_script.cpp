@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kHeader = "time_s,end_s,command";
 
-/// Adds a line; false if its time or code is invalid, or its time is before the previous line's.
+/// Adds a line. Returns false if its time or code is invalid, or if its time is before the time of
+/// the previous line.
 bool add(std::vector<JoystickLine>& script, std::string_view time_s, std::string_view command) {
     const auto time_ns = io::parse_seconds_as_ns(time_s);
     const auto code = io::parse_int64(command);
@@ -37,12 +38,12 @@ Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                     : words.size() == 3 && add(script, words[0], words[2]) &&
                                           add(script, words[1], "0");
         if (!understood) {
-            return input_error(
-                fmt::format("{}:{}: {}: give a time in s, not before that of the previous line, "
-                            "and a code from 0 to 255; or time_s,end_s,command",
-                            name,
-                            lines.number(),
-                            io::quoted(line)));
+            return input_error(fmt::format(
+                "{}:{}: {} is not a valid line; give a time in s and a code from 0 to 255, or "
+                "time_s,end_s,command. Times must not decrease from line to line",
+                name,
+                lines.number(),
+                io::quoted(line)));
         }
     }
     return script;

@@ -58,7 +58,7 @@ KeyboardJoystick::KeyboardJoystick() {
     termios settings{};
     if (tcgetattr(STDIN_FILENO, &settings) != 0) return;
     before_ = settings;
-    settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C still interrupts
+    settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C still sends SIGINT
     tcsetattr(STDIN_FILENO, TCSANOW, &settings);
 }
 

@@ -12,11 +12,11 @@ namespace surefoot::app {
 /// Translates keys into joystick codes. A code stays until another key changes it.
 class KeyReader {
   public:
-    /// Feeds bytes from the terminal. w/a/s/d or arrow keys: step ahead, left, back, right; q and
-    /// e: turn left and right; space bar: rest. Other keys have no effect.
+    /// Reads bytes from the terminal. w, a, s, d or arrow keys: step ahead, left, back, right. q:
+    /// turn left; e: turn right; space bar: rest; x: end. Other keys have no effect.
     void read(std::string_view bytes);
     [[nodiscard]] std::uint8_t code() const noexcept { return code_; }
-    /// True after x or Ctrl-D.
+    /// Returns true after the user pressed x or Ctrl-D.
     [[nodiscard]] bool finished() const noexcept { return finished_; }
 
   private:
@@ -24,7 +24,7 @@ class KeyReader {
     void key(char byte);
     void arrow(char byte);
 
-    Escape escape_ = Escape::none;  ///< an arrow key is ESC [ A to D; its bytes may come separately
+    Escape escape_ = Escape::none;  ///< an arrow key sends ESC [ A to D, maybe byte by byte
     std::uint8_t code_ = 0;
     bool finished_ = false;
 };
@@ -38,7 +38,7 @@ class KeyboardJoystick {
     KeyboardJoystick(const KeyboardJoystick&) = delete;
     KeyboardJoystick& operator=(const KeyboardJoystick&) = delete;
 
-    /// The current code, or nullopt after the user has finished or stdin has ended. Does not wait.
+    /// Returns the current code, or nullopt after x, Ctrl-D or the end of stdin. Does not wait.
     [[nodiscard]] std::optional<std::uint8_t> poll();
 
   private:

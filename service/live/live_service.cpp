@@ -29,14 +29,15 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRemembered_s = 10.0;  ///< of a simulated walk; no frame shows an older motion
+/// Length of the stored motion of a simulated walk. No frame shows an older motion.
+constexpr double kRemembered_s = 10.0;
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
-/// Sets the niceness of all threads except the first one. The answers of the gate have the highest
-/// priority, then the first thread, which restarts the gate with its own priority. Linux stores the
-/// priority per thread, so this function sets it for every existing thread; threads that those
-/// start inherit it. The error contains the errno text of one of the failed threads. A thread that
-/// has already ended is not an error.
+/// Sets the niceness of all threads except the first thread. The gate must have the highest
+/// priority. The first thread comes next, because it restarts the gate, and the new gate inherits
+/// its priority. Linux stores the priority per thread, so this function sets the niceness of every
+/// existing thread. New threads inherit the niceness. The error contains the errno text of one
+/// failed thread. A thread that has already ended is not an error.
 Status be_nice(int niceness) {
     int refusal = 0;
     std::error_code error;
@@ -47,7 +48,8 @@ Status be_nice(int niceness) {
     }
     if (refusal == 0) return {};
     return usage_error(
-        fmt::format("service.niceness: the system refuses {}: {}; restart serve with --nice {}",
+        fmt::format("service.niceness: the system refuses the value {}: {}; to use this value, "
+                    "restart serve with --nice {}",
                     niceness,
                     std::strerror(refusal),
                     niceness));
@@ -123,12 +125,12 @@ void LiveService::look_after(GateChild& gate, MapChannel& channel) {
     if (!started || !*started) return;
     log_warning(
         fmt::format("the gate process ended and was restarted ({} restarts so far); no movement is "
-                    "allowed until it is ready",
+                    "allowed until the gate is ready",
                     gate.restarts()));
     tell_where(gate);
 }
 
-/// Applies the operator attestation to the pictures as the gate does: from the first map on.
+/// Applies the operator attestation to the pictures from the first map on, as the gate does.
 void LiveService::remember_word(const LiveSession& session) {
     if (session.published() == 0) return;
     if (!word_given_) {
@@ -189,7 +191,8 @@ bool LiveService::follow_pages(LiveSession& session, const gate_process::Snapsho
     return !playback.jump_wanted();
 }
 
-/// Processes the source with a new pipeline (one map, one odom frame), from its next frame on.
+/// Processes the source from its next frame on with a new pipeline, which has a new map and a new
+/// odom frame.
 Result<LiveSession::End> LiveService::perceive_anew(camera::FrameSource& source,
                                                     gate_process::SnapshotWriter& writer) {
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
@@ -220,7 +223,8 @@ Result<LiveSession::End> LiveService::perceive_anew(camera::FrameSource& source,
     return end;
 }
 
-/// The frame to continue from. At the end of a recording waits for a jump of a page.
+/// Returns the frame to continue from. At the end of a recording, waits until a page jumps to a
+/// frame.
 std::optional<int> LiveService::next_jump(LiveSession::End end) {
     page::Playback& playback = page_->controls().playback;
     if (end == LiveSession::End::source_ended && playback.state() && !options_.once) {
@@ -235,7 +239,7 @@ Status LiveService::perceive(std::unique_ptr<camera::FrameSource> source,
         const auto end = perceive_anew(*source, writer);
         if (!end) return end.error();
         if (*end == LiveSession::End::restart_wanted) {
-            log_warning("the gate was re-armed: the map and the odom frame start again");
+            log_warning("the gate was re-armed, so the map and the odom frame start again");
         } else {
             const auto frame = next_jump(*end);
             if (!frame) return {};
@@ -289,7 +293,8 @@ Status LiveService::introduce(const camera::FrameSource& source,
     return {};
 }
 
-/// Pages see every setting of the run and can change the settings of the service.
+/// Offers the settings to pages. Pages see every setting of the run and can change the settings of
+/// the service.
 void LiveService::offer_settings(bool is_scene) {
     ServiceConfig first;
     first.speed = speed_;
@@ -325,27 +330,29 @@ Status LiveService::apply(const ServiceConfig& wanted) {
 Result<std::string> LiveService::change(const page::SettingWish& wish) {
     auto changed = service_settings_->change(wish);
     if (changed) {
-        log_info(fmt::format("{} is now {} (a page asked for it)", wish.key, *changed));
+        log_info(
+            fmt::format("{} is now {}, because a page changed this setting", wish.key, *changed));
     } else {
-        log_warning(fmt::format("{} (a page asked for it)", changed.error().message));
+        log_warning(fmt::format("a page cannot change a setting: {}", changed.error().message));
     }
     return changed;
 }
 
-/// Starts the steered walk if --walk or --joystick asks for it.
+/// Starts the steered walk if --walk or --joystick was given.
 Status LiveService::steer(camera::FrameSource& source,
                           const std::string& rider_token,
                           std::uint16_t gate_port) {
     if (options_.walk.empty() && !options_.joystick) return {};
     if (!options_.walk.empty() && options_.joystick)
-        return usage_error("give either --walk or --joystick, not both");
+        return usage_error(
+            "--walk and --joystick cannot work together; give --walk or --joystick, not both");
     if (options_.joystick && options_.no_page)
-        return usage_error("--joystick needs the page; remove --no-page");
+        return usage_error("--joystick needs the page, on which the joystick is; remove --no-page");
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
     if (scene == nullptr || !scene->commanded())
         return usage_error(
-            "--walk and --joystick steer a simulated scene (sim:SCENE) only; no other source can "
-            "be steered");
+            "--walk and --joystick can steer only a simulated scene; give a source sim:SCENE, or "
+            "remove --walk and --joystick");
     std::unique_ptr<Walker> walker;
     if (options_.joystick) {
         walker = page_walker(page_->controls().steering);
@@ -397,7 +404,8 @@ Status LiveService::run() {
     Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
     walk_.reset();
     if (!perceived) return perceived;
-    while (!options_.once && !interrupted()) {  // the gate keeps answering that the frames are old
+    // Without new frames the gate answers that the frames are old.
+    while (!options_.once && !interrupted()) {
         look_after(*gate, channel);
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }

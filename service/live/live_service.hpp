@@ -70,16 +70,16 @@ class LiveService {
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
     const ServeOptions& options_;
-    Settings settings_;  ///< adapted to the rig of the source
+    Settings settings_;  ///< settings, adapted to the rig of the source
     const std::optional<io::MachineFile>& machine_;
     const std::optional<io::MachineModel>& model_;
     Executor& executor_;
-    /// Destroyed after `page_`, because pages change it.
+    /// Declared before `page_`, so it is destroyed later: pages change these settings.
     std::optional<ServiceSettings> service_settings_;
     std::atomic<int> niceness_{0};
     std::atomic<double> scene_speed_{0.0};
     std::unique_ptr<PageService> page_;
-    std::optional<FrameRecorder> recorder_;  ///< destroyed before `page_`, which it notifies
+    std::optional<FrameRecorder> recorder_;  ///< destroyed before `page_`, to which it reports
     page::PageHello hello_;
     double speed_ = 1.0;  ///< playback speed relative to real time; 0 = unpaced
     std::unique_ptr<SteeredWalk> walk_;

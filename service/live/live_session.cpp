@@ -52,9 +52,10 @@ void LiveSession::pace(double speed) noexcept {
     first_steady_ns_ = 0;
 }
 
-/// Steady time at which a frame that just arrived was exposed. A live camera's stamp is used,
-/// because the frame may have waited in the driver or on the wire. A stamp in the future is kept:
-/// the age of its image is unknown, and the gate refuses such a frame.
+/// Returns the steady time at which a frame that just arrived was exposed. For a live camera this
+/// is the stamp of the frame, because the frame may have waited in the driver or on the wire. A
+/// stamp in the future stays unchanged: the age of the image is unknown, and the gate refuses such
+/// a frame.
 std::int64_t LiveSession::exposed_ns(std::int64_t stamp_ns) const {
     return source_.info().steady_stamps ? stamp_ns : clock_();
 }

@@ -17,14 +17,14 @@
 
 namespace surefoot::app {
 
-/// Maps the stamps of the last 64 frames to the steady clock, with which the gate measures ages.
-/// A live camera stamps its frames with that clock. The stamps of a recording or a simulation come
-/// from another clock, so the arrival time is used for them.
+/// Maps the stamps of the last 64 frames to the steady clock, which the gate uses for ages. A live
+/// camera stamps its frames with that clock. The stamps of a recording or a simulation come from
+/// another clock, so this class uses the arrival time of their frames.
 class Arrivals {
   public:
     void note(std::int64_t stamp_ns, std::int64_t steady_ns) noexcept;
-    /// Steady time of the frame with this stamp; 0 (older than every frame) if it is not among the
-    /// last ones.
+    /// Returns the steady time of the frame with this stamp; 0 (older than every frame) if the
+    /// stamp is not one of the last 64.
     [[nodiscard]] std::int64_t steady_ns(std::int64_t stamp_ns) const noexcept;
 
   private:
@@ -38,12 +38,12 @@ class Arrivals {
 
 /// Runs a pipeline over a source and publishes a map snapshot after every frame.
 ///
-/// It ends when the source ends, the user interrupts, or the gate requests a restart. Swapped
-/// cameras are an error. It keeps references to pipeline, source and writer, which must outlive it.
+/// The session ends when the source ends, the user interrupts the program, or the gate requests a
+/// restart. Swapped cameras are an error. Pipeline, source and writer must outlive the session.
 /// Not thread-safe.
 class LiveSession {
   public:
-    /// Called before each frame is fetched from the source; false ends the session.
+    /// Called before a frame is fetched from the source. The result false ends the session.
     using BeforeFrame = std::function<bool()>;
     /// Called after the snapshot of a frame is published. `map_time_ns`: stamp of the last frame
     /// that updated the map, on the clock of the source.
@@ -65,7 +65,7 @@ class LiveSession {
                                   const AfterFrame& after_frame = {});
     /// Changes the playback speed from the next frame on.
     void pace(double speed) noexcept;
-    /// The last published snapshot.
+    /// Returns the last published snapshot.
     [[nodiscard]] const grid::MapSnapshot& last() const noexcept { return *snapshot_; }
     [[nodiscard]] std::uint64_t published() const noexcept { return published_; }
 

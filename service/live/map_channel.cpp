@@ -23,8 +23,8 @@ std::string channel_begin() {
     return fmt::format("surefoot-{}-", ::getuid());
 }
 
-/// Removes channel files that killed services of this user left behind: the process id in the name
-/// no longer exists.
+/// Removes the channel files of killed services of this user. No process has the process id in the
+/// name of such a file.
 void remove_orphaned_channels() {
     const std::string begin = channel_begin();
     std::error_code error;
@@ -48,7 +48,8 @@ void MapChannel::look_after(std::int64_t now_ns) {
     next_ns_ = now_ns + kMendEvery_ns;
     const auto mended = writer.mend();
     if (mended && *mended)
-        log_warning(fmt::format("the snapshot channel was damaged and is repaired: {}", **mended));
+        log_warning(fmt::format("the file of the map channel was damaged; serve repaired it: {}",
+                                **mended));
     if (!mended && mended.error().message != told_) log_error(mended.error().message);
     told_ = mended ? "" : mended.error().message;
 }

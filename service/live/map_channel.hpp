@@ -25,11 +25,11 @@ class MapChannel {
   private:
     static constexpr std::int64_t kMendEvery_ns = 250'000'000;
     std::int64_t next_ns_ = 0;
-    std::string told_;  ///< last logged error, to log it only once
+    std::string told_;  ///< last logged error; each error is logged only once
 };
 
-/// Path of the channel file: `wanted`, or a file in shared memory if `wanted` is empty. In that
-/// case it first removes the files of killed services of this user.
+/// Returns the path of the channel file: `wanted`, or a file in shared memory if `wanted` is empty.
+/// In the second case first removes the files of killed services of this user.
 [[nodiscard]] std::string channel_path(const std::string& wanted);
 
 }  // namespace surefoot::app

@@ -13,13 +13,13 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest disparity of the corner search, to limit its run time. Below this value the search uses
-/// the disparity range of the matcher.
+/// Largest disparity of the corner search; it limits the run time. If the disparity range of the
+/// matcher is smaller, the search uses the range of the matcher.
 constexpr int kMaxCornerDisparity_px = 256;
-/// Rows to search up and down: unrectified images of real rigs differ by tens of rows.
+/// Number of rows to search up and down: unrectified images of real rigs differ by tens of rows.
 constexpr int kFarRows_px = 32;
-/// Largest acceptable median row difference. Above it, a matcher that searches along rows loses
-/// accuracy and matches.
+/// Largest acceptable median row difference. If the difference is larger, a matcher that searches
+/// along rows loses accuracy and matches.
 constexpr double kMaxRowError_px = 0.5;
 
 std::string size_text(const GreyImage& image) {
@@ -28,21 +28,26 @@ std::string size_text(const GreyImage& image) {
 
 Status check_sizes(const StereoFrame& frame, const std::optional<camera::StereoRig>& rig) {
     if (frame.left.width() != frame.right.width() || frame.left.height() != frame.right.height()) {
-        return input_error(fmt::format(
-            "the images differ in size: left {}, right {} px; give two images of one size",
-            size_text(frame.left),
-            size_text(frame.right)));
+        return input_error(
+            fmt::format("the images differ in size: the left image has {} px, the right image {} "
+                        "px; give two images of one size",
+                        size_text(frame.left),
+                        size_text(frame.right)));
     }
     if (!rig) return {};
     if (!rig->right) {
-        return input_error(fmt::format("rig '{}' has one camera; depth needs two", rig->name));
+        return input_error(fmt::format(
+            "rig '{}' has one camera, but depth needs two; give a calibration of two cameras",
+            rig->name));
     }
     if (frame.left.width() != rig->left.width || frame.left.height() != rig->left.height) {
-        return input_error(fmt::format("the images are {} px but rig '{}' was calibrated at {}x{}",
-                                       size_text(frame.left),
-                                       rig->name,
-                                       rig->left.width,
-                                       rig->left.height));
+        return input_error(
+            fmt::format("the images have {} px, but rig '{}' was calibrated for {}x{} px; give "
+                        "images of this size, or the calibration for the size of the images",
+                        size_text(frame.left),
+                        rig->name,
+                        rig->left.width,
+                        rig->left.height));
     }
     return {};
 }
@@ -62,7 +67,7 @@ Status refuse_swapped(const stereo::PairCheck& check) {
     if (!check.swapped()) return {};
     return input_error(
         fmt::format("left and right camera seem to be swapped: {} of {} corners lie farther right "
-                    "in the right image than in the left one; swap the two images",
+                    "in the right image than in the left image; swap the two images",
                     check.backward,
                     check.matched));
 }
@@ -70,22 +75,23 @@ Status refuse_swapped(const stereo::PairCheck& check) {
 std::string row_problem(const stereo::PairCheck& check, bool has_rig) {
     if (!check.enough()) {
         return fmt::format(
-            "only {} of {} corners were found again within {} rows, so the rectification of the "
-            "pair cannot be checked",
+            "only {} of {} corners of the left image were found in the right image within {} rows. "
+            "So the rectification of the pair cannot be checked; use a scene with more texture",
             check.matched,
             check.corners,
             kFarRows_px);
     }
     if (check.row_error_px <= kMaxRowError_px) return {};
     return fmt::format(
-        "rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; limit {}): {}, or the "
-        "objects are nearer than stereo.disparities allows (raise it)",
+        "rows differ by {:.2f} px (median over {} corners; signed median {:+.2f} px; limit {} px): "
+        "{}. Or the objects are nearer than stereo.disparities allows; then increase "
+        "stereo.disparities",
         check.row_error_px,
         check.matched,
         check.row_offset_px,
         kMaxRowError_px,
-        has_rig ? "the calibration does not fit these images"
-                : "the pair is not rectified; give its --rig");
+        has_rig ? "the calibration does not fit these images; calibrate the cameras again"
+                : "the pair is not rectified; give its calibration with --rig");
 }
 
 Result<MeasuredPair> measure_pair(const StereoFrame& frame,
@@ -105,10 +111,11 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
     const GreyImage& left = measured.pair.left;
     const GreyImage& right = measured.pair.right;
     if (left.width() <= config.stereo.disparities) {
-        return input_error(fmt::format(
-            "images of {} px are too narrow for stereo.disparities = {}; set a smaller value",
-            size_text(left),
-            config.stereo.disparities));
+        return input_error(
+            fmt::format("images of {} px are too narrow for stereo.disparities = {}; set "
+                        "stereo.disparities to a smaller value",
+                        size_text(left),
+                        config.stereo.disparities));
     }
     measured.check = check_rows(measured.pair, config.stereo.disparities);
     if (auto status = refuse_swapped(measured.check); !status) return status.error();

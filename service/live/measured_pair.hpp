@@ -15,18 +15,18 @@ namespace surefoot::app {
 /// Depth of one pair of images, and the check of the rectification.
 struct MeasuredPair {
     camera::RectifiedPair pair;
-    std::optional<camera::RectifiedRig> rig;  ///< empty = the input pair was already rectified
+    std::optional<camera::RectifiedRig> rig;  ///< nullopt = the input was already rectified
     DepthImage depth;
     stereo::PairCheck check;
 };
 
-/// Matches with a larger outlier probability are drawn, but do not become points and do not count
-/// in the figures.
+/// Largest outlier probability of a trusted match. Other matches are drawn, but they do not become
+/// points and do not count in the figures.
 inline constexpr float kTrustedOutlierProbability = 0.5F;
 
-/// Rectifies the frame if a rig is given, and matches it as the pipeline does. Input errors: the
-/// image sizes differ or do not fit the rig, the images are not wider than the disparity range, or
-/// the cameras are swapped.
+/// Rectifies the frame if a rig is given, and matches the images as the pipeline does. Returns an
+/// input error if the image sizes differ or do not fit the rig, if the images are not wider than
+/// the disparity range, or if the cameras are swapped.
 [[nodiscard]] Result<MeasuredPair> measure_pair(const StereoFrame& frame,
                                                 const std::optional<camera::StereoRig>& rig,
                                                 const pipeline::PipelineConfig& config,
@@ -38,19 +38,19 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
                                                  const pipeline::PipelineConfig& config,
                                                  Executor& executor);
 
-/// Compares the rows of corresponding corners in a rectified pair. Searches a few rows first;
-/// searches more rows, which takes longer, only if too few corners matched.
+/// Compares the rows of corresponding corners in a rectified pair. First searches a few rows.
+/// Searches more rows, which takes longer, only if too few corners match.
 [[nodiscard]] stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities);
-/// Input error if the left and the right camera are swapped.
+/// Returns an input error if the left and the right camera are swapped.
 [[nodiscard]] Status refuse_swapped(const stereo::PairCheck& check);
-/// Describes a row error of the pair; empty if the rows agree.
+/// Describes the row error of a pair; empty if the rows match.
 [[nodiscard]] std::string row_problem(const stereo::PairCheck& check, bool has_rig);
 
 /// Density and precision of a depth image.
 struct PairFigures {
-    double density_percent = 0.0;  ///< pixels with a match
-    double trusted_percent = 0.0;  ///< pixels with a match of low outlier probability
-    double median_sigma_px = 0.0;  ///< of the trusted matches; NaN = no trusted matches
+    double density_percent = 0.0;  ///< share of pixels with a match
+    double trusted_percent = 0.0;  ///< share of pixels with a trusted match
+    double median_sigma_px = 0.0;  ///< median sigma of trusted matches; NaN = none
 };
 [[nodiscard]] PairFigures figures_of(const DepthImage& depth);
 

@@ -25,7 +25,7 @@ Result<std::unique_ptr<PageService>> PageService::start(const ServeOptions& opti
     service->server_ = std::move(server).value();
     if (options.page_port != 0 && service->server_->port() != options.page_port)
         log_warning(
-            fmt::format("port {} is in use; the page uses the next free one", options.page_port));
+            fmt::format("port {} is in use; the page takes the next free port", options.page_port));
     return service;
 }
 

@@ -14,7 +14,7 @@
 
 namespace surefoot::app {
 
-/// The live page on its own thread. Does nothing if the user disabled the page.
+/// Serves the live page on its own thread. Does nothing if the user disabled the page.
 class PageService {
   public:
     static Result<std::unique_ptr<PageService>> start(const ServeOptions& options,
@@ -27,7 +27,7 @@ class PageService {
         thread_.join();
     }
 
-    /// Sends this introduction to all present and later viewers. Call again when the port of the
+    /// Sends the hello message to all current and later viewers. Call it again when the port of the
     /// gate changes.
     void introduce(const page::PageHello& hello, const std::optional<io::MachineFile>& machine) {
         if (!server_) return;

@@ -21,7 +21,8 @@ constexpr double kStairs_hz = 3.0;
 constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
-/// Layers that need only a copy, no computation.
+/// Names of the layers that a page can show. These layers are only copied, not computed for the
+/// page.
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
 std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {
@@ -44,7 +45,7 @@ const char* kind_of(const camera::SourceInfo& info) {
     return info.steady_stamps ? "live" : "recording";
 }
 
-/// True if `due_ns` has passed; then sets `due_ns` one period later.
+/// Returns true if `due_ns` has passed, and then sets `due_ns` to one period from now.
 bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
     if (now_ns < due_ns) return false;
     // in range: a page cannot wish for less than PageWish::kSlowest_hz
@@ -56,9 +57,9 @@ double median(const std::deque<double>& values) {
     return upper_median(std::vector<double>(values.begin(), values.end()));
 }
 
-/// The part of a map that is shown. A small map is shown whole; of a large map, only the 64 x 64
-/// cell blocks around its known cells. Whole blocks keep the size of the picture
-/// stable while cells are added.
+/// Returns the part of a map that is shown. A small map is shown completely. Of a large map only
+/// the rectangle of blocks of 64 x 64 cells around the known cells is shown. Whole blocks keep the
+/// size of the picture stable while cells are added.
 eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer& height_m) {
     constexpr int kLarge = 512;
     constexpr int kBlock = 64;
@@ -171,7 +172,7 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     if (report.motion.health != Health::ok)
         status.reasons.emplace_back(to_string(report.motion.reason));
     if (report.camera != CameraState::ok) status.reasons.emplace_back(to_string(report.camera));
-    status.text = report.known_cells == 0 ? "the map has no ground yet" : source_;
+    status.text = report.known_cells == 0 ? "the map does not contain ground yet" : source_;
     const double span_s = seconds_from_ns(lately_ns_.back() - lately_ns_.front());
     status.rate_hz = span_s > 0.0 ? static_cast<double>(lately_ns_.size() - 1) / span_s : 0.0;
     status.stages.clear();
@@ -184,8 +185,8 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     }
 }
 
-/// Copies images, layers and features, only if a page wants them and not faster than pages are
-/// served.
+/// Copies images, layers and features if a page wants them, but not more often than pages receive
+/// them.
 void PageTelemetry::fill_extras(const pipeline::Pipeline& pipeline,
                                 const FrameReport& report,
                                 std::uint64_t map_version,
@@ -238,7 +239,9 @@ void PageTelemetry::tell_the_end(const pipeline::Pipeline& pipeline) {
 
 void PageTelemetry::tell_new_beginning() {
     // The previous features lie in the old odom frame.
-    tell_state(page::SourceState::waiting, "the map and the position start again", {});
+    tell_state(page::SourceState::waiting,
+               "the map and the position start again; wait for the first frame",
+               {});
 }
 
 void PageTelemetry::tell_state(page::SourceState state,

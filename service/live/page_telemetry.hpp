@@ -20,13 +20,13 @@
 
 namespace surefoot::app {
 
-/// Floor in front of a level machine that is nearer than the camera can see: a polygon in base_link
-/// [m], counter-clockwise. Empty if the lower image border does not meet the floor in front of the
-/// machine.
+/// Returns the floor in front of a level machine that is too near for the camera: a polygon in
+/// base_link [m], counter-clockwise. Empty if the lower image border does not meet the floor in
+/// front of the machine.
 [[nodiscard]] std::vector<page::PageHello::GroundPoint> blind_zone_of(
     const camera::RectifiedRig& rig, double sole_depth_m);
 
-/// First message to a page. `gate_port` may change later.
+/// Returns the first message to a page. `gate_port` may change later.
 [[nodiscard]] page::PageHello hello_of(const camera::FrameSource& source,
                                        const camera::StereoRig& rig,
                                        const std::optional<io::MachineFile>& machine,
@@ -43,8 +43,8 @@ class PageTelemetry {
     PageTelemetry(page::PageFeed& feed, std::string source, JointsAt joints_at = {})
         : feed_(feed), source_(std::move(source)), joints_at_(std::move(joints_at)) {}
     /// Call after every frame. `map` is the snapshot of this frame. `map_time_ns` is the stamp of
-    /// the last frame that updated the map, on the clock of the source. `now_steady_ns` is
-    /// steady-clock time.
+    /// the last frame that updated the map, on the clock of the source. `now_steady_ns` is the time
+    /// on the steady clock.
     void tell(const pipeline::Pipeline& pipeline,
               const FrameReport& report,
               const grid::MapSnapshot& map,

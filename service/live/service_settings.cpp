@@ -14,7 +14,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Longer suffixes first, because "_m_s2" also ends with "_s2".
+/// Units by the suffix of a name. A longer suffix comes first, because "_m_s" also ends with "_s".
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kUnits{
     {{"_m_s2", "m/s\u00b2"},
      {"_deg_s", "deg/s"},
@@ -63,17 +63,18 @@ void ServiceConfig::describe(ConfigVisitor& visitor) {
                    map_hz,
                    kLeast_hz,
                    page::PageWish::kMaxMap_hz,
-                   "largest number of maps per second for one page");
+                   "largest number of maps that one page receives in a second");
     visitor.number("image_hz",
                    image_hz,
                    kLeast_hz,
                    page::PageWish::kMaxImage_hz,
-                   "largest number of image pairs per second for one page");
-    visitor.number("layer_hz",
-                   layer_hz,
-                   kLeast_hz,
-                   page::PageWish::kMaxMap_hz,
-                   "largest number of layers per second for one engineer's view");
+                   "largest number of image pairs that one page receives in a second");
+    visitor.number(
+        "layer_hz",
+        layer_hz,
+        kLeast_hz,
+        page::PageWish::kMaxMap_hz,
+        "largest number of times in a second that one page receives the layers that it shows");
     visitor.end_group();
     visitor.begin_group("service");
     visitor.number(
@@ -86,8 +87,8 @@ void ServiceConfig::describe(ConfigVisitor& visitor) {
                     niceness,
                     0,
                     19,
-                    "niceness of perception: a larger value leaves more processor time to the "
-                    "gate; never below the value at the start");
+                    "niceness of the threads of perception; a larger value leaves more processor "
+                    "time to the gate. It cannot go below the value of --nice");
     visitor.end_group();
 }
 
@@ -116,13 +117,14 @@ std::vector<page::PageSetting> ServiceSettings::for_pages(const Settings& run) c
     return settings;
 }
 
-/// Refuses a niceness below that of the start: perception must never get more processor time, so
-/// that the gate answers in time.
+/// Refuses a niceness below the niceness at the start. The gate answers in time only if perception
+/// never gets more processor time than at the start.
 Status ServiceSettings::check(const ServiceConfig& wanted) const {
     if (wanted.niceness < first_niceness_) {
         return usage_error(
-            fmt::format("service.niceness: {} is refused: serve was started with {} (--nice), and "
-                        "the niceness may only increase, so that the gate answers in time",
+            fmt::format("service.niceness: the value {} is refused, because serve was started with "
+                        "--nice {}. The gate answers in time only if the niceness does not go "
+                        "below this value; give a larger value",
                         wanted.niceness,
                         first_niceness_));
     }

@@ -13,7 +13,7 @@
 
 namespace surefoot::app {
 
-/// Settings that may change while the service runs. No setting here affects a verdict. All pipeline
+/// Settings that may change while the service runs. These settings affect no verdict. All pipeline
 /// settings need a restart, because they determine the map that the gate uses and are part of the
 /// configuration hash of each verdict. Limits of the gate and of the machine cannot be changed from
 /// a page.
@@ -27,22 +27,22 @@ struct ServiceConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Unit of a setting from the suffix of its name: "length_m" -> "m"; empty if the name has no unit.
+/// Returns the unit in the suffix of a name, for example "m" for "length_m"; empty if none.
 [[nodiscard]] std::string unit_of(const std::string& key);
 
 /// The settings of a service and of its run, as pages see them. Every change of a setting is
 /// checked here. Thread-safe.
 class ServiceSettings {
   public:
-    /// Applies a change, or returns the reason why it cannot.
+    /// Applies a change, or returns the reason why the change is not possible.
     using Apply = std::function<Status(const ServiceConfig& wanted)>;
 
     /// `can_pace`: the source is a simulated scene, so its speed can change. The niceness of
     /// `first` is the lowest niceness that a later change may set.
     ServiceSettings(const ServiceConfig& first, bool can_pace, Apply apply);
 
-    /// All settings: first those that may change, then the settings of the run, which are
-    /// read-only.
+    /// Returns all settings: first the settings that may change, then the settings of the run,
+    /// which are read-only.
     [[nodiscard]] std::vector<page::PageSetting> for_pages(const Settings& run) const;
     /// Changes one setting. Returns the new value as text, or the reason of the refusal.
     [[nodiscard]] Result<std::string> change(const page::SettingWish& wish);

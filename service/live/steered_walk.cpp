@@ -13,10 +13,10 @@ namespace surefoot::app {
 namespace {
 
 constexpr std::int64_t kRest_ns = 400'000'000;  ///< pause between two movements
-/// Pause before asking again, if the gate could not judge.
+/// Pause before the next question, if the gate could not judge.
 constexpr std::int64_t kRetry_ns = 500'000'000;
-/// Longest time without a decision. A gate in state FAULT needs an operator to re-arm it; a script
-/// cannot do that.
+/// Longest time without a decision. Only an operator can re-arm a gate in state FAULT; a script
+/// cannot.
 constexpr std::int64_t kPatience_ns = 120'000'000'000;
 /// The machine must stand still for this time before the next request, because the simulated body
 /// still vibrates after a step.
@@ -52,7 +52,7 @@ class ScriptedWalker final : public Walker {
     std::optional<std::int64_t> unjudged_since_ns_;
 };
 
-/// The user of the page decides whether to ask again.
+/// Takes requests from a page. The user of the page decides whether to ask again.
 class PageWalker final : public Walker {
   public:
     explicit PageWalker(page::Steering& steering) : steering_(steering) {}
@@ -85,8 +85,8 @@ Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
     const char* const end = at + text.size();
     const auto wrong = [&] {
         return usage_error(
-            fmt::format("--walk {}: give joystick codes such as 9,9,17,25*12 (25*12 repeats code "
-                        "25 twelve times)",
+            fmt::format("--walk {} is not a list of joystick codes; give codes from 0 to 255, for "
+                        "example 9,9,17,25*12 (25*12 repeats code 25 twelve times)",
                         text));
     };
     while (at != end) {

@@ -28,19 +28,19 @@ struct AskedStep {
 class Walker {
   public:
     virtual ~Walker() = default;
-    /// Joystick code; 0 = at rest; empty = no more requests. Called while the machine stands.
-    /// `elapsed_ns`: time since the walk began.
+    /// Returns the joystick code; 0 = at rest; empty = no more requests. Called while the machine
+    /// stands. `elapsed_ns`: time since the walk began.
     [[nodiscard]] virtual std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns) = 0;
     /// Reports the outcome of a request. `judged`: the gate decided about the ground, with yes or
     /// no. Returns true if SteeredWalk::news() shall contain this outcome.
     virtual bool answered(const AskedStep& step, bool judged, std::int64_t elapsed_ns) = 0;
 };
 
-/// Requests the movements in order. If the gate cannot judge, for example while it warms up, waits
-/// and asks again. After a refusal continues with the next movement. After two minutes without a
-/// decision reports the last answer and stops.
+/// Returns a walker that requests the movements in order. If the gate cannot judge, for example
+/// while it warms up, the walker waits and asks again. After a refusal it continues with the next
+/// movement. After two minutes without a decision it stops.
 [[nodiscard]] std::unique_ptr<Walker> scripted_walker(std::vector<std::uint8_t> codes);
-/// Takes the requests from the joystick of a web page.
+/// Returns a walker that takes its requests from the joystick of a web page.
 [[nodiscard]] std::unique_ptr<Walker> page_walker(page::Steering& steering);
 
 /// Reads a list of joystick codes such as "9,9,17,25*12"; x*n repeats code x n times.
@@ -56,12 +56,12 @@ class SteeredWalk {
                 std::shared_ptr<sim::CommandedMotion> motion);
     SteeredWalk(const SteeredWalk&) = delete;
     SteeredWalk& operator=(const SteeredWalk&) = delete;
-    /// Stops and joins the thread.
+    /// Stops the walk and waits for the end of its thread.
     ~SteeredWalk();
 
     /// Call before the next frame is exposed. Movements start at `time_s` of the motion or later.
     void next_frame_begins(double time_s) noexcept { steer_from_s_ = time_s; }
-    /// True after the last request, when the machine stands. Thread-safe.
+    /// Returns true after the last request, when the machine stands. Thread-safe.
     [[nodiscard]] bool is_over() const noexcept { return over_; }
     /// Returns and clears the outcomes since the last call. Thread-safe.
     [[nodiscard]] std::vector<AskedStep> news();
@@ -78,7 +78,7 @@ class SteeredWalk {
     std::atomic<bool> stopped_{false};
     std::atomic<bool> over_{false};
 
-    // Used by the thread only.
+    // Only the thread of the walk uses these members.
     std::int64_t elapsed_ns_ = 0;
     AskedStep asked_;  ///< command 0 = no request
 

@@ -19,7 +19,7 @@ Result<TonePlayer> TonePlayer::open(const std::string& folder) {
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(file, ignored))
             return usage_error(
-                fmt::format("--tones: the file {} is missing; tools/tones creates it", file));
+                fmt::format("--tones: the file {} is missing; run tools/tones to create it", file));
     }
     return player;
 }
@@ -39,7 +39,8 @@ void TonePlayer::play(rex_link::Tone tone) {
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     pid_t pid = 0;
-    // Fails if `aplay` is not installed; the file name then still appears in the list of events.
+    // The call fails if `aplay` is not installed. The list of events then still contains the file
+    // name.
     if (posix_spawnp(&pid, program.c_str(), &actions, nullptr, words.data(), environ) == 0)
         playing_.push_back(pid);
     posix_spawn_file_actions_destroy(&actions);

@@ -11,11 +11,11 @@
 
 namespace surefoot::app {
 
-/// Plays the tones of a folder with the program `aplay`. Silent if `aplay` is not installed. Never
-/// blocks.
+/// Plays the tones of a folder with the program `aplay`. Plays no sound if `aplay` is not
+/// installed. Never blocks.
 class TonePlayer {
   public:
-    /// An empty folder name means silence. Usage error if the folder lacks one of the tones.
+    /// An empty folder name means no sound. Returns a usage error if the folder lacks a tone.
     [[nodiscard]] static Result<TonePlayer> open(const std::string& folder);
     TonePlayer(TonePlayer&&) = default;
     TonePlayer& operator=(TonePlayer&&) = default;
@@ -23,7 +23,7 @@ class TonePlayer {
     TonePlayer& operator=(const TonePlayer&) = delete;
     ~TonePlayer() = default;
 
-    /// The file of the tone; empty if there is no folder.
+    /// Returns the file of the tone; empty if there is no folder.
     [[nodiscard]] std::string file_of(rex_link::Tone tone) const;
     void play(rex_link::Tone tone);
 
@@ -31,7 +31,7 @@ class TonePlayer {
     explicit TonePlayer(std::string folder) : folder_(std::move(folder)) {}
 
     std::string folder_;
-    std::vector<pid_t> playing_;  ///< child processes that are not reaped yet
+    std::vector<pid_t> playing_;  ///< running or ended `aplay` processes
 };
 
 }  // namespace surefoot::app

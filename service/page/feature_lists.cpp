@@ -23,7 +23,8 @@ Json pose_json(const stairs::FeaturePose& pose) {
     return {number(pose.p_m.x()), number(pose.p_m.y()), number(pose.p_m.z()), number(pose.yaw_rad)};
 }
 
-/// Adds the tracking data of a tracked feature. `now_ns`: time of the newest observation of all.
+/// Adds the tracking data of a tracked feature. `now_ns`: time of the newest observation of all
+/// features.
 Json tracked_json(Json json, const stairs::Tracked& tracked, std::int64_t now_ns) {
     if (tracked.id == 0) return json;
     json["id"] = tracked.id;
@@ -100,7 +101,8 @@ Json list_json(const std::vector<T>& values,
     return list;
 }
 
-/// The lists as if the newest observation had found all features: comparing them ignores time.
+/// Returns the lists with equal observation times, so that a comparison of two results ignores
+/// time.
 Json timeless_lists(stairs::TerrainFeatures features) {
     const auto seen_now = [&features](auto& list) {
         for (auto& feature : list) feature.tracked.last_seen_ns = features.time_ns;

@@ -8,19 +8,19 @@
 
 namespace surefoot::page {
 
-/// The lists "flights", "drops", "kerbs", "sills", "doors" and "edges", as stairs.json and the
-/// page's "stairs" message have them (docs/reference/json.md). A pose is [x_m, y_m, z_m, yaw_rad]
-/// in the frame of the map. `std` is a standard error, `spread` the scatter of the single steps.
-/// Drops and kerbs have positive heights. A tracked feature also has `id`, `looks` (number of
-/// observations) and `last_seen_s` (age of the last observation at `features.time_ns`). A value
-/// that is NaN or infinite becomes null.
+/// Returns the lists "flights", "drops", "kerbs", "sills", "doors" and "edges" of stairs.json and
+/// of the "stairs" message (docs/reference/json.md). A pose is [x_m, y_m, z_m, yaw_rad] in the
+/// frame of the map. `std` is a standard error, `spread` the scatter of the single steps. Drops and
+/// kerbs have positive heights. A tracked feature also has `id`, `observations` (their number) and
+/// `last_seen_s` (age of the last observation at `features.time_ns`). A value that is NaN or
+/// infinite becomes null.
 [[nodiscard]] gate_process::Json feature_lists(const stairs::TerrainFeatures& features);
 
-/// The "stairs" message of messages.json, one line of JSON.
+/// Returns the "stairs" message of messages.json, one line of JSON.
 [[nodiscard]] std::string stairs_text(const stairs::TerrainFeatures& features);
 
-/// True when both hold the same features, apart from the times of the observations. A page then
-/// needs no new "stairs" message.
+/// Returns true if both contain the same features; the times of observations may differ. A page
+/// then needs no new "stairs" message.
 [[nodiscard]] bool say_the_same(const stairs::TerrainFeatures& one,
                                 const stairs::TerrainFeatures& other);
 

@@ -12,7 +12,8 @@
 namespace surefoot::page {
 namespace {
 
-/// Limit of unreadable texts. A few may come from a client of another version; more are a flood.
+/// Rate limit of unreadable texts. A client of another version may send a few; a client that sends
+/// more is disconnected.
 constexpr gate_process::RateLimit kUnreadable{1, 8};
 constexpr std::size_t kMostReplies = 64;
 
@@ -44,16 +45,18 @@ void FoxgloveClient::say(FoxgloveLevel level, const std::string& sentence) {
 
 Status FoxgloveClient::take(bool is_text, std::string_view bytes, std::int64_t now_ns) {
     if (replies_.size() >= kMostReplies)
-        return input_error("the client sends requests but does not read the replies");
+        return input_error(
+            "the client sends requests but does not read the replies; read each reply");
     if (!is_text) {
-        say(FoxgloveLevel::warning, "binary messages of clients are not supported");
+        say(FoxgloveLevel::warning, "a client cannot send binary messages; send text");
         return {};
     }
     const auto request = parse_foxglove_request(bytes);
     if (!request) {
         say(FoxgloveLevel::error, request.error().message);
         if (unreadable_.take(now_ns)) return {};
-        return input_error("too many unreadable messages: " + request.error().message);
+        return input_error("too many unreadable messages; the last problem: " +
+                           request.error().message);
     }
     std::visit([this](const auto& what) { take(what); }, *request);
     return {};
@@ -68,18 +71,23 @@ FoxgloveClient::Slot* FoxgloveClient::find(std::uint32_t id) {
 
 std::optional<std::string> FoxgloveClient::subscribe(FoxgloveSubscribe::Wish wish) {
     if (wish.channel == 0 || wish.channel > kFoxgloveChannelCount)
-        return fmt::format("subscribe: there is no channel {}", wish.channel);
+        return fmt::format(
+            "subscribe: there is no channel {}; use a channel id of the advertise message",
+            wish.channel);
     if (find(wish.subscription) != nullptr)
-        return fmt::format("subscribe: subscription {} already exists", wish.subscription);
+        return fmt::format("subscribe: subscription {} already exists; use another id",
+                           wish.subscription);
     Slot& slot = subscriptions_[wish.channel - 1];
     if (slot)
         return fmt::format(
-            "subscribe: channel {} already has subscription {}", wish.channel, slot->id);
+            "subscribe: this client already has a subscription to channel {}, with the id {}",
+            wish.channel,
+            slot->id);
     slot = Subscription{wish.subscription, {}, {}};
     return std::nullopt;
 }
 
-// One status message per request, however long its list is.
+// Sends one status message for a request, even if its list has several problems.
 void FoxgloveClient::take(const FoxgloveSubscribe& request) {
     std::optional<std::string> first_problem;
     for (const FoxgloveSubscribe::Wish wish : request.wishes) {
@@ -98,12 +106,13 @@ void FoxgloveClient::take(const FoxgloveUnsubscribe& request) {
     }
     if (unknown)
         say(FoxgloveLevel::warning,
-            fmt::format("unsubscribe: there is no subscription {}", *unknown));
+            fmt::format("unsubscribe: this client has no subscription {}", *unknown));
 }
 
 void FoxgloveClient::take(const FoxgloveUnserved& request) {
     say(FoxgloveLevel::warning,
-        fmt::format("{}: only subscribe and unsubscribe are supported", request.operation));
+        fmt::format("{}: this operation is not supported; use subscribe or unsubscribe",
+                    request.operation));
 }
 
 void FoxgloveClient::send_time(FoxgloveShow& show, std::vector<SocketMessage>& out) {
@@ -149,7 +158,8 @@ std::optional<FoxgloveChannel> FoxgloveClient::large_one_due(const FoxgloveShow&
         const std::uint64_t serial = show.serial(large.channel);
         if (!slot || serial == 0 || slot->seen == serial) continue;
         if (slot->sent_ns && now_ns - *slot->sent_ns < large.every_ns) continue;
-        // An empty optional is less than any time: a channel never sent before comes first.
+        // An empty optional is less than any time, so a channel without an earlier message comes
+        // first.
         if (first && first_sent_ns <= slot->sent_ns) continue;
         first = large.channel;
         first_sent_ns = slot->sent_ns;

@@ -22,13 +22,13 @@ struct SocketMessage {
     std::string bytes;
 };
 
-/// One client of the Foxglove WebSocket protocol: it reads the client's messages and decides which
-/// messages leave next. It has no socket, no thread and no clock; the caller passes the steady
-/// clock's `now_ns`.
+/// Serves one client of the Foxglove WebSocket protocol: reads the messages of the client and
+/// chooses the messages to send. This class has no socket, no thread and no clock. The caller
+/// passes the time `now_ns` of the steady clock.
 ///
-/// The client gets the newest message of each channel that it subscribed to, and the source's time
-/// with each frame. Ground, points and images share a budget of 2 MB/s. When several of them are
-/// due, the channel that waited longest goes first. Not thread-safe.
+/// The client gets the newest message of each subscribed channel, and the time of the source with
+/// each frame. Ground, points and images share a budget of 2 MB/s. If several of these channels
+/// are due, the channel that waited longest goes first. Not thread-safe.
 class FoxgloveClient {
   public:
     static constexpr std::int64_t kMostBytesPerSecond = 2'000'000;
@@ -41,25 +41,25 @@ class FoxgloveClient {
     FoxgloveClient(const std::string& name, const std::string& session);
 
     /// Reads one message of the client. A request that the service cannot serve is answered with a
-    /// status message. On an error the caller must close the connection and send the error's
-    /// sentence. An error means that the client sent too many unreadable texts, or too many
-    /// requests before it received the replies.
+    /// status message. Returns an error if the client sent too many unreadable texts, or too many
+    /// requests before it received the replies. Then the caller must close the connection and
+    /// send the text of the error.
     [[nodiscard]] Status take(bool is_text, std::string_view bytes, std::int64_t now_ns);
-    /// The messages to send now, in order. Call it only after all earlier messages have left: a
-    /// slow client then gets fewer messages, but never an old one.
+    /// Returns the messages to send now, in order. Call it only after all earlier messages have
+    /// left: a slow client then gets fewer messages, but never an old one.
     [[nodiscard]] std::vector<SocketMessage> next(FoxgloveShow& show, std::int64_t now_ns);
 
     [[nodiscard]] bool listens_to(FoxgloveChannel channel) const { return of(channel).has_value(); }
-    /// The topics of the gate that this client needs.
+    /// Returns the topics of the gate that this client needs.
     [[nodiscard]] GateTopics gate_topics() const {
         return {listens_to(FoxgloveChannel::verdict), listens_to(FoxgloveChannel::outlook)};
     }
 
   private:
     struct Subscription {
-        std::uint32_t id = 0;                 ///< chosen by the client
-        std::optional<std::uint64_t> seen;    ///< serial of the last message sent
-        std::optional<std::int64_t> sent_ns;  ///< time at which that message was sent
+        std::uint32_t id = 0;                 ///< id that the client chose
+        std::optional<std::uint64_t> seen;    ///< serial of the last sent message
+        std::optional<std::int64_t> sent_ns;  ///< time at which the last message was sent
     };
     using Slot = std::optional<Subscription>;
 

@@ -48,7 +48,7 @@ std::string with_data(const Json& head, std::string_view bytes) {
     return text += R"("})";
 }
 
-/// Foxglove cannot represent times before 1970; they become 0.
+/// Foxglove cannot represent times before 1970. Such times become 0.
 Json time_json(std::int64_t time_ns) {
     const std::int64_t said_ns = std::max<std::int64_t>(time_ns, 0);
     return {{"sec", said_ns / kNanosecondsPerSecond}, {"nsec", said_ns % kNanosecondsPerSecond}};
@@ -67,7 +67,7 @@ Json pose_json(const Pose& T) {
 /// Numeric types of Foxglove's PackedElementField.
 enum class NumericType : std::uint8_t { uint8 = 1, float32 = 7 };
 
-/// Describes the packed layout of an element: fields in order, without gaps.
+/// Describes the packed layout of an element: its fields follow each other without gaps.
 class Fields {
   public:
     Fields& add(const char* name, NumericType type) {
@@ -87,8 +87,9 @@ class Fields {
     std::size_t bytes_ = 0;
 };
 
-/// The page's colours, which people with common colour vision deficiencies can distinguish (Okabe
-/// and Ito, 2008): green = free, vermilion = unsafe, magenta = unsure.
+/// Writes the colour of a cell on the page. People with common colour vision deficiencies can
+/// distinguish these colours (Okabe and Ito, 2008): green = free, vermilion = unsafe, magenta =
+/// unsure.
 void write_colour(MessageWriter& write, const PageCell& cell) {
     constexpr unsigned kGroundBits = 3;
     struct Colour {
@@ -114,7 +115,7 @@ double metres(std::int64_t tenth_mm) {
 bool is_known(const PageCell& cell) {
     return cell.height_mm != PageCell::kUnknownHeight;
 }
-/// Height in odom.
+/// Returns the height of a cell in odom; NaN = unknown.
 float height_m(const PageMap& map, const PageCell& cell) {
     if (!is_known(cell)) return std::numeric_limits<float>::quiet_NaN();
     constexpr std::int64_t kTenthsPerMm = 10;
@@ -126,7 +127,7 @@ const PageCell& cell_at(const PageMap& map, int ix, int iy) {
                      static_cast<std::size_t>(ix)];
 }
 
-/// A rectangle of cells; the ends are exclusive.
+/// A rectangle of cells. The cells at x_end and y_end are outside.
 struct Window {
     int x_begin = 0;
     int y_begin = 0;
@@ -134,7 +135,7 @@ struct Window {
     int y_end = 0;
 };
 
-/// The smallest window around all cells with any data; the first cell if there are none.
+/// Returns the smallest window around all cells with data; the first cell if no cell has data.
 Window told_part(const PageMap& map) {
     Window part{map.nx, map.ny, 0, 0};
     for (int iy = 0; iy < map.ny; ++iy) {
@@ -150,7 +151,7 @@ Window told_part(const PageMap& map) {
     return part;
 }
 
-/// Position of a cell's lower corner in odom, with z = 0.
+/// Returns the pose of the corner of a cell with the smallest x and y, in odom, with z = 0.
 Pose corner_of(const PageMap& map, int ix, int iy) {
     return {Eigen::Quaterniond::Identity(),
             {metres(map.origin_x_tenth_mm + std::int64_t{ix} * map.resolution_tenth_mm),
@@ -164,7 +165,7 @@ std::optional<std::uint32_t> read_number(const Json& value) {
     return value.get<std::uint32_t>();
 }
 
-/// The array under `key`, or nullptr if there is none.
+/// Returns the array under `key`, or nullptr if there is no array.
 const Json* list_in(const Json& json, const char* key) {
     const auto found = json.find(key);
     return found != json.end() && found->is_array() ? &*found : nullptr;
@@ -172,7 +173,7 @@ const Json* list_in(const Json& json, const char* key) {
 
 Result<FoxgloveRequest> read_subscribe(const Json& json) {
     const auto wrong = input_error(
-        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]}, 32-bit numbers)");
+        R"(subscribe: expected {"subscriptions": [{"id": 0, "channelId": 1}]} with 32-bit ids)");
     const Json* const list = list_in(json, "subscriptions");
     if (list == nullptr) return wrong;
     FoxgloveSubscribe request;
@@ -188,7 +189,7 @@ Result<FoxgloveRequest> read_subscribe(const Json& json) {
 
 Result<FoxgloveRequest> read_unsubscribe(const Json& json) {
     const auto wrong =
-        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]}, 32-bit numbers)");
+        input_error(R"(unsubscribe: expected {"subscriptionIds": [0]} with 32-bit ids)");
     const Json* const list = list_in(json, "subscriptionIds");
     if (list == nullptr) return wrong;
     FoxgloveUnsubscribe request;
@@ -321,8 +322,8 @@ std::string ground_points_payload(const PageMap& map) {
         for (int ix = 0; ix < map.nx; ++ix) {
             const PageCell& cell = cell_at(map, ix, iy);
             if (!is_known(cell)) continue;
-            // Relative to the map's corner: far from the origin of odom a float32 cannot resolve
-            // millimetres.
+            // Positions are relative to the corner of the map, because far from the origin of odom
+            // a float32 cannot resolve millimetres.
             write << static_cast<float>((ix + 0.5) * side_m)
                   << static_cast<float>((iy + 0.5) * side_m) << height_m(map, cell);
             write_colour(write, cell);
@@ -388,7 +389,7 @@ Result<FoxgloveRequest> parse_foxglove_request(std::string_view text) {
     const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
-        return input_error("expected an object with an \"op\"");
+        return input_error("expected a JSON object with the key \"op\"");
     const auto op = json->at("op").get<std::string>();
     if (op == "subscribe") return read_subscribe(*json);
     if (op == "unsubscribe") return read_unsubscribe(*json);

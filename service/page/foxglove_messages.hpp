@@ -15,7 +15,7 @@
 #include "surefoot/core/result.hpp"
 
 /// The messages between the service and a client of the Foxglove WebSocket protocol; each function
-/// makes or reads one of them. Payloads are JSON that follows the schemas of foxglove_schemas.hpp.
+/// makes or reads one message. Payloads are JSON that follows the schemas of foxglove_schemas.hpp.
 /// No message is a permission to step. All functions are pure: no socket, no clock, no file.
 namespace surefoot::page {
 
@@ -26,9 +26,9 @@ enum class FoxgloveChannel : std::uint8_t {
     camera,         ///< foxglove.CompressedImage
     transforms,     ///< foxglove.FrameTransforms
     pose,           ///< foxglove.PoseInFrame
-    status,         ///< own schema: health, and the duration of each stage
-    verdict,        ///< own schema: each verdict of the gate
-    outlook,        ///< own schema: the verdict that the gate would give each movement
+    status,         ///< Surefoot schema: health, and duration of each stage
+    verdict,        ///< Surefoot schema: each verdict of the gate
+    outlook,        ///< Surefoot schema: the verdict that each movement would get
 };
 inline constexpr std::size_t kFoxgloveChannelCount = 8;
 inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
@@ -41,21 +41,21 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
                                               FoxgloveChannel::outlook};
 static_assert(kFoxgloveChannels.size() == kFoxgloveChannelCount);
 
-/// The channel's number in the protocol, from 1.
+/// Returns the number of the channel in the protocol; the first channel has the number 1.
 [[nodiscard]] constexpr std::uint32_t id_of(FoxgloveChannel channel) noexcept {
     return static_cast<std::uint32_t>(channel) + 1;
 }
 [[nodiscard]] const char* topic_of(FoxgloveChannel channel) noexcept;
 
-/// The subprotocol to answer with: the newest one that both sides support. `offered` is the value
-/// of the header Sec-WebSocket-Protocol, for example "foxglove.websocket.v1, foxglove.sdk.v1".
-/// Empty if the client offers no supported subprotocol.
+/// Returns the subprotocol to answer with: the newest that both sides support. `offered` is the
+/// value of the header Sec-WebSocket-Protocol, for example "foxglove.websocket.v1,
+/// foxglove.sdk.v1". Empty if the client offers no supported subprotocol.
 [[nodiscard]] std::optional<std::string_view> foxglove_protocol_of(
     std::string_view offered) noexcept;
 
 // Texts that the service sends.
-/// The first message of a connection. `session` identifies one run of the service: a client that
-/// reconnects to the same session may keep its channels.
+/// Returns the first message of a connection. `session` identifies one run of the service: a client
+/// that reconnects to the same session may keep its channels.
 [[nodiscard]] std::string foxglove_server_info(const std::string& name, const std::string& session);
 [[nodiscard]] std::string foxglove_advertise();
 enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
@@ -67,25 +67,25 @@ enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
                                            std::string_view payload);
 [[nodiscard]] std::string foxglove_time(std::int64_t time_ns);
 
-// Payloads. Lengths are in m; heights and positions are in odom.
-/// foxglove.Grid: the smallest rectangle of the map that holds all cells with any data, at least
-/// one cell, in the plane z = 0 of odom. Each cell has height_m (float32, NaN = unknown), sigma_mm
-/// and state (both as in PageCell) and a colour, which is transparent where the ground is unknown.
+// These functions make payloads. Lengths are in m. Heights and positions are in odom.
+/// Returns a foxglove.Grid in the plane z = 0 of odom: the smallest rectangle of the map with all
+/// cells that have data, at least one cell. A cell has height_m (float32, NaN = unknown), sigma_mm,
+/// state (both as in PageCell) and a colour. The colour of unknown ground is transparent.
 [[nodiscard]] std::string ground_payload(const PageMap& map);
-/// foxglove.PointCloud: one coloured point at the centre of each known cell.
+/// Returns a foxglove.PointCloud with one coloured point at the centre of each known cell.
 [[nodiscard]] std::string ground_points_payload(const PageMap& map);
-/// foxglove.CompressedImage of the rectified left camera.
+/// Returns a foxglove.CompressedImage of the rectified left camera.
 [[nodiscard]] std::string camera_payload(std::int64_t time_ns, std::string_view jpeg);
-/// foxglove.FrameTransforms: odom -> base_link, and base_link -> camera if it is known.
+/// Returns foxglove.FrameTransforms: odom -> base_link and, if known, base_link -> camera.
 [[nodiscard]] std::string transforms_payload(const PagePose& pose,
                                              const std::optional<Pose>& T_body_camera);
 [[nodiscard]] std::string pose_payload(const PagePose& pose);
 [[nodiscard]] std::string status_payload(const PageStatus& status, CameraState camera);
 
-// Requests of a client.
+// Requests that a client sends.
 struct FoxgloveSubscribe {
     struct Wish {
-        std::uint32_t subscription = 0;  ///< chosen by the client
+        std::uint32_t subscription = 0;  ///< id that the client chose
         std::uint32_t channel = 0;
     };
     std::vector<Wish> wishes;
@@ -93,7 +93,7 @@ struct FoxgloveSubscribe {
 struct FoxgloveUnsubscribe {
     std::vector<std::uint32_t> subscriptions;
 };
-/// An operation that the service does not offer.
+/// A request for an operation that the service does not offer.
 struct FoxgloveUnserved {
     std::string operation;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The foxglove.* schemas follow the published ones (github.com/foxglove/foxglove-sdk).
+// The foxglove.* schemas follow the published schemas (github.com/foxglove/foxglove-sdk).
 #include "service/page/foxglove_schemas.hpp"
 
 #include <initializer_list>

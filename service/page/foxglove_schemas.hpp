@@ -7,11 +7,11 @@
 
 namespace surefoot::page {
 
-/// The name of the channel's schema, for example "foxglove.Grid".
+/// Returns the name of the schema of a channel, for example "foxglove.Grid".
 [[nodiscard]] const char* schema_name_of(FoxgloveChannel channel) noexcept;
 
-/// The JSON schema of a channel's payload. Clients build tables from the schema, so each property
-/// has one plain type, each array has elements of one plain type, and each object lists its
+/// Returns the JSON schema of the payload of a channel. Clients build tables from the schema. So
+/// each property and each array element has one plain type, and each object lists its
 /// properties. Values that may be null, and lists of lists, are in the payload but not in the
 /// schema.
 [[nodiscard]] std::string schema_of(FoxgloveChannel channel);

@@ -8,7 +8,8 @@
 namespace surefoot::page {
 namespace {
 
-constexpr std::int64_t kStatusEvery_ns = 500'000'000;  ///< when no frame comes
+/// Period of the status while no frame comes.
+constexpr std::int64_t kStatusEvery_ns = 500'000'000;
 
 }  // namespace
 

@@ -33,21 +33,21 @@ class FoxgloveShow {
     /// another clock.
     void hear(GateNews news);
 
-    /// Changes whenever the channel has a new payload; 0 = no payload yet. Always 0 for `verdict`:
-    /// use verdicts().
+    /// Returns a number that changes with each new payload of the channel; 0 = no payload yet.
+    /// Always 0 for `verdict`: use verdicts().
     [[nodiscard]] std::uint64_t serial(FoxgloveChannel channel) const;
-    /// The newest payload; empty if the channel has none, for example no image or no finite pose.
+    /// Returns the newest payload; empty if the channel has none, for example without an image.
     /// Always empty for `verdict`.
     [[nodiscard]] const std::string& payload(FoxgloveChannel channel);
-    /// Time of the newest payload on the source's clock.
+    /// Returns the time of the newest payload on the clock of the source.
     [[nodiscard]] std::int64_t time_ns(FoxgloveChannel channel) const;
-    /// The last kRememberedVerdicts verdicts, oldest first.
+    /// Returns the last kRememberedVerdicts verdicts, oldest first.
     [[nodiscard]] const std::deque<Verdict>& verdicts() const { return verdicts_; }
-    /// Number of the newest frame; 0 = no frame yet.
+    /// Returns the number of the newest frame; 0 = no frame yet.
     [[nodiscard]] std::uint64_t frame_serial() const { return show_.serial(); }
-    /// Time of the newest frame on the source's clock.
+    /// Returns the time of the newest frame on the clock of the source.
     [[nodiscard]] std::int64_t now_ns() const { return show_.pose().time_ns; }
-    /// The name of the server in clients: program and source.
+    /// Returns the name of the server that clients show: program and source.
     [[nodiscard]] std::string name() const;
 
   private:

@@ -24,7 +24,8 @@ using beast::error_code;
 constexpr std::int64_t kRetryAfter_ns = 500'000'000;
 constexpr auto kConnect = std::chrono::seconds(2);
 constexpr auto kIdle = std::chrono::seconds(10);
-constexpr std::size_t kLongestNews_bytes = 64 * 1024;  ///< an outlook of 26 movements takes 5 kB
+/// Largest message of the gate. For comparison: an outlook of 26 movements takes 5 kB.
+constexpr std::size_t kLongestNews_bytes = 64 * 1024;
 
 constexpr const char* name_of(GateTopic topic) {
     return topic == GateTopic::verdict ? "/surefoot/verdict" : "/surefoot/outlook";
@@ -33,7 +34,7 @@ constexpr const char* type_of(GateTopic topic) {
     return topic == GateTopic::verdict ? "surefoot/Verdict" : "surefoot/Outlook";
 }
 
-/// The address to connect to. A server bound to all addresses is reached over loopback.
+/// Returns the address to connect to. For a server that listens at all addresses this is loopback.
 net::ip::address reachable(const std::string& address) {
     error_code error;
     const auto parsed = net::ip::make_address(address, error);
@@ -80,7 +81,7 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
         write();
     }
     [[nodiscard]] bool is_over() const { return over_; }
-    /// Closes the connection; the sink is not called any more.
+    /// Closes the connection. The sink gets no further call.
     void abandon() {
         over_ = true;
         sink_ = {};
@@ -92,7 +93,8 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
     void on_connect(error_code error) {
         if (over_) return;
         if (error) return abandon();
-        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
+        beast::get_lowest_layer(stream_).expires_never();  // from here on the timeouts of the
+                                                           // WebSocket apply
         stream_.set_option(websocket::stream_base::timeout{kConnect, kIdle, true});
         stream_.read_message_max(kLongestNews_bytes);
         const std::string target =

@@ -27,21 +27,21 @@ struct GateNews {
     GateTopic topic = GateTopic::verdict;
     std::string body;
 };
-/// Reads one text of the gate (rosbridge protocol). Empty unless the text publishes one of the
-/// topics above.
+/// Reads one text of the gate (rosbridge protocol). Returns empty unless the text publishes a topic
+/// of GateTopic.
 [[nodiscard]] std::optional<GateNews> read_gate_news(std::string_view text);
 
 /// Address of the gate's rosbridge service.
 struct GateService {
     std::string address;     ///< numeric IP address; 0.0.0.0 and :: mean this machine
-    std::uint16_t port = 0;  ///< 0 = not known yet
-    std::string token;       ///< empty = the gate needs none
+    std::uint16_t port = 0;  ///< TCP port; 0 = not known yet
+    std::string token;       ///< empty = the gate needs no token
     friend bool operator==(const GateService&, const GateService&) = default;
 };
 
-/// Subscribes to the gate's public topics as one more client of its rosbridge service. It sends no
-/// question. It is connected only while at least one topic is wanted. All work happens on the
-/// thread that runs `io`; `want` must be called on that thread.
+/// Subscribes to the gate's public topics as one more client of its rosbridge service. The listener
+/// asks the gate no question. It is connected only while a client wants a topic. All work happens
+/// on the thread that runs `io`; `want` must be called on that thread.
 class GateListener {
   public:
     using Sink = std::function<void(GateNews news)>;

@@ -30,12 +30,12 @@ std::optional<std::uint16_t> parse_port(std::string_view digits) {
     return port;
 }
 
-/// An IPv6 address without its brackets; any other host unchanged.
+/// Removes the brackets of an IPv6 address. Returns any other host unchanged.
 std::string bare(const std::string& host) {
     return host.starts_with('[') ? host.substr(1, host.size() - 2) : host;
 }
 
-/// True for an IP address without a zone. The check of the characters is needed because Boost
+/// Returns true for an IP address without a zone. The characters are checked first, because Boost
 /// accepts any text after '%' (the zone) or after a NUL.
 bool is_ip_address(const std::string& host) {
     if (host.find_first_not_of("0123456789abcdef:.[]") != std::string::npos) return false;
@@ -48,7 +48,7 @@ bool is_loopback_host(const std::string& host) {
     return host == "localhost" || gate_process::is_loopback_address(bare(host));
 }
 
-/// The parts of an origin; a missing port becomes the default port of the scheme.
+/// Splits an origin into its parts. A missing port becomes the default port of the scheme.
 std::optional<HostAndPort> parse_origin(std::string_view origin) {
     for (const auto& [scheme, port] :
          {std::pair<std::string_view, std::uint16_t>{"http://", kHttp}, {"https://", kHttps}}) {
@@ -121,9 +121,9 @@ bool is_own_origin(const PageAddress& page, std::string_view host, std::string_v
 }
 
 std::vector<std::pair<std::string_view, std::string>> security_headers(std::string_view host) {
-    // The page opens a socket to itself and one to the gate, whose port may change while the page
-    // stays open. CSP has no syntax for IPv6 addresses: for those, sockets to every host are
-    // allowed.
+    // The page opens a socket to its own server and a socket to the gate. The port of the gate may
+    // change while the page stays open. CSP has no syntax for IPv6 addresses. So a page at an IPv6
+    // address may open sockets to every host.
     std::string sockets;
     if (const auto parsed = parse_host(host)) {
         const std::string gate = parsed->host.starts_with('[') ? "" : "//" + parsed->host + ":*";
@@ -146,8 +146,8 @@ std::string wrong_host_text(const PageAddress& page) {
     const bool local = gate_process::is_loopback_address(page.bind_address);
     return std::string("This page is not served under the name and port of this request. Open ") +
            "http://" + (local ? "localhost" : "ADDRESS") + ":" + std::to_string(page.port) + "/" +
-           (local ? "" : ", where ADDRESS is the name of this computer or its address in numbers") +
-           ". A tunnel needs the same port number at both ends.\n";
+           (local ? "" : ", where ADDRESS is the name or the IP address of this computer") +
+           ". If you use a tunnel, give both ends the same port number.\n";
 }
 
 }  // namespace surefoot::page

@@ -16,36 +16,36 @@ namespace surefoot::page {
 struct PageAddress {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 0;
-    std::vector<std::string> names;    ///< names of this computer, e.g. "robot.local"; lower case
-    std::vector<std::string> origins;  ///< proxy or tunnel, e.g. "https://robot.example:444"
+    std::vector<std::string> names;    ///< names of this computer in lower case: "robot.local"
+    std::vector<std::string> origins;  ///< origins of a proxy or tunnel: "https://a.example:444"
 };
 
 /// The parts of a Host header, for example of "localhost:8080".
 struct HostAndPort {
-    std::string host;  ///< in lower case; an IPv6 address in brackets
+    std::string host;  ///< host in lower case; an IPv6 address has brackets
     std::optional<std::uint16_t> port;
 };
-/// Empty if the text is not a valid host.
+/// Reads a Host header. Returns empty if the text is not a valid host.
 [[nodiscard]] std::optional<HostAndPort> parse_host(std::string_view text);
 
-/// True when the Host header names this page: one of the page's names with the page's own port, or
-/// the host of one of its origins. The port may be missing: browsers omit it only if it is the
-/// default port, but simple programs may always omit it. If the page is served beyond loopback,
+/// Returns true if the Host header names this page: one of the page's names with the page's own
+/// port, or the host of one of its origins. The port may be missing: browsers omit it only if it is
+/// the default port, but simple programs may always omit it. If the page is served beyond loopback,
 /// every IP address is accepted, because DNS rebinding needs a name.
 [[nodiscard]] bool is_own_host(const PageAddress& page, std::string_view host);
-/// True if `origin` is this page, so that its scripts may open a socket. It must equal host and
-/// port of `host`, which must satisfy is_own_host(), or one of the page's origins. localhost,
+/// Returns true if `origin` is this page: its scripts may open a socket. `origin` must equal host
+/// and port of `host`, or an origin of the page. `host` must satisfy is_own_host(). localhost,
 /// 127.0.0.1 and [::1] count as the same host. Another port on this machine is another page.
 [[nodiscard]] bool is_own_origin(const PageAddress& page,
                                  std::string_view host,
                                  std::string_view origin);
 
-/// The headers of every HTTP answer. They prevent other pages from framing the page, guessing its
-/// content type or adding a script. `host`: the request's host, which must satisfy is_own_host();
-/// empty for a refused request.
+/// Returns the headers of every HTTP answer. They prevent other pages from framing the page,
+/// guessing its content type or adding a script. `host`: the request's host, which must satisfy
+/// is_own_host(); empty for a refused request.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> security_headers(
     std::string_view host);
-/// The text for a request with a wrong Host header: it names the address to open instead.
+/// Returns the answer to a request with a wrong Host header. It names the address to open.
 [[nodiscard]] std::string wrong_host_text(const PageAddress& page);
 
 }  // namespace surefoot::page

@@ -20,14 +20,14 @@ struct PageFrame {
     std::uint64_t serial = 0;  ///< number of the frame, from 1
     bool has_map = false;      ///< `map` is a complete, sealed snapshot
     grid::MapSnapshot map;
-    std::int64_t map_time_ns = 0;  ///< time of the last frame in the map, source's clock
+    std::int64_t map_time_ns = 0;  ///< time of the last frame in the map, clock of the source
     PagePose pose;
     PageStatus status;
-    /// The layers that a page wants; empty = no layers in this frame.
+    /// The layers that at least one page wants; empty = no layers in this frame.
     std::vector<PageLayer> layers;
     bool has_stairs = false;  ///< `stairs` was filled for this frame
     stairs::TerrainFeatures stairs;
-    std::int64_t images_time_ns = 0;  ///< 0 = no images in this frame
+    std::int64_t images_time_ns = 0;  ///< time of the images; 0 = no images in this frame
     GreyImage left;
     Image<float> disparity_px;  ///< NaN or infinite = unknown
 };
@@ -44,21 +44,21 @@ struct PageRates {
 /// Neither thread waits for the other longer than a swap of two pointers.
 class PageFeed {
   public:
-    // For the perception thread only; the wants_... functions are thread-safe.
-    /// The frame to fill next. It still holds the data of an earlier frame.
+    // Only the perception thread may call these functions, but wants_...() is thread-safe.
+    /// Returns the frame to fill next, which still holds the data of an earlier frame.
     [[nodiscard]] PageFrame& blank() noexcept { return *blank_; }
     /// Publishes the frame in blank(). Afterwards blank() refers to another frame.
     void hand_over();
-    /// True while a viewer wants this data; perception need not copy it otherwise.
+    /// Return true while a viewer wants the data. Otherwise perception need not copy the data.
     [[nodiscard]] bool wants_images() const noexcept { return wants_images_; }
     [[nodiscard]] bool wants_layers() const noexcept { return wants_layers_; }
     [[nodiscard]] bool wants_stairs() const noexcept { return wants_stairs_; }
 
-    // For the page's thread only.
+    // Only the thread of the page may call these functions.
     /// Swaps `frame` with the newest frame. Returns false and changes nothing if no new frame was
     /// published since the last call.
     [[nodiscard]] bool fetch(std::unique_ptr<PageFrame>& frame);
-    /// Tells perception which data the viewers want.
+    /// Tells perception which data at least one viewer wants.
     void want(bool images, bool layers, bool stairs) noexcept;
 
     PageRates rates;

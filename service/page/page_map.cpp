@@ -12,7 +12,7 @@ namespace surefoot::page {
 namespace {
 
 constexpr std::int64_t kTenthsPerMm = 10;
-constexpr std::int64_t kBaseStep_tenth_mm = 100'000;  ///< base heights are multiples of 10 m
+constexpr std::int64_t kBaseStep_tenth_mm = 100'000;  ///< a base height is a multiple of 10 m
 constexpr std::int64_t kBaseReach_tenth_mm = 200'000;
 
 std::size_t element(int ix, int iy, int nx) noexcept {
@@ -28,7 +28,7 @@ std::int32_t base_near(std::int64_t body_z_tenth_mm, std::int32_t before_tenth_m
     return static_cast<std::int32_t>(std::clamp(base, -kFarthest, kFarthest));
 }
 
-/// Height above the base, rounded to the nearest mm (half upwards) and saturated.
+/// Returns the height above the base, rounded to the nearest mm (half a mm upwards) and saturated.
 std::int16_t height_mm(std::int32_t height_tenth_mm, std::int32_t base_tenth_mm) noexcept {
     const std::int64_t over_base = static_cast<std::int64_t>(height_tenth_mm) - base_tenth_mm;
     const std::int64_t shifted = over_base + kTenthsPerMm / 2;
@@ -37,7 +37,8 @@ std::int16_t height_mm(std::int32_t height_tenth_mm, std::int32_t base_tenth_mm)
     return static_cast<std::int16_t>(std::clamp(mm, -kHighest, kHighest));
 }
 
-/// True if something on or over the cell is in the way of the machine's body.
+/// Returns true if an object on or above the cell is lower than the machine, so the body can hit
+/// it.
 bool is_too_low(const grid::MapSnapshot& snapshot,
                 std::size_t i,
                 const ColourLimits& limits) noexcept {
@@ -71,7 +72,7 @@ struct Shift {
     std::int64_t y = 0;
 };
 
-/// False if the cells of the two maps do not coincide.
+/// Computes the shift between two maps. Returns false if their cells do not coincide.
 bool shift_between(const PageMap& before, const PageMap& now, Shift& shift) noexcept {
     if (before.nx != now.nx || before.ny != now.ny || before.cells.size() != now.cells.size() ||
         before.resolution_tenth_mm != now.resolution_tenth_mm ||
@@ -88,11 +89,12 @@ struct Run {
     std::size_t first = 0;
     std::size_t count = 0;
 };
-/// A run takes as many bytes as two cells, so gaps up to that length are sent too.
+/// The head of a run takes as many bytes as two cells. So the cells of a gap of up to two cells are
+/// sent too.
 constexpr std::size_t kRunBytes = 8;
 constexpr std::size_t kBridged = kRunBytes / sizeof(PageCell);
 
-/// Runs of the cells for which `differs` holds, in order; short gaps are included.
+/// Returns the runs of the cells for which `differs` is true, in order. Short gaps belong to a run.
 template <typename Differs>
 std::vector<Run> runs_of(const PageMap& map, const Differs& differs) {
     std::vector<Run> runs;

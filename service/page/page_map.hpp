@@ -11,16 +11,16 @@
 
 namespace surefoot::page {
 
-/// The page's colour class of a cell: bits 0-1 of the cell's state. See ground_state().
+/// Colour class of a cell on the page: bits 0-1 of the state of the cell. See ground_state().
 enum class GroundState : std::uint8_t { unknown = 0, free = 1, unsafe = 2, unsure = 3 };
 
 /// Operator attestation: an operator confirmed this ground.
 inline constexpr std::uint8_t kAttestedBit = 1U << 2U;
-inline constexpr std::uint8_t kDropBit = 1U << 3U;  ///< evidence of a drop above the gate's limit
-/// Something in the way of the machine's body.
+inline constexpr std::uint8_t kDropBit = 1U << 3U;  ///< evidence of a drop beyond the limit
+/// An obstacle that the body of the machine can hit.
 inline constexpr std::uint8_t kOverheadBit = 1U << 4U;
 
-/// A cell as the page receives it. messages.json defines each value.
+/// A cell in the form that the page receives. messages.json defines each value.
 struct PageCell {
     static constexpr std::int16_t kUnknownHeight = std::numeric_limits<std::int16_t>::min();
     static constexpr std::uint8_t kSigmaSaturated_mm = 255;
@@ -30,10 +30,10 @@ struct PageCell {
     std::uint8_t state = 0;
     friend bool operator==(const PageCell&, const PageCell&) = default;
 };
-static_assert(sizeof(PageCell) == 4, "cells leave as they lie in memory");
+static_assert(sizeof(PageCell) == 4, "map_message() copies each cell as 4 bytes");
 
-/// The map as the page shows it. The element of cell (ix, iy) is iy * nx + ix, in odom, as in
-/// MapSnapshot.
+/// The map that the page shows, in odom. Cell (ix, iy) is the element iy * nx + ix of `cells`, as
+/// in MapSnapshot.
 struct PageMap {
     std::uint64_t version = 0;
     std::int64_t frame_time_ns = 0;  ///< time on the source's clock
@@ -47,24 +47,24 @@ struct PageMap {
     std::vector<PageCell> cells;
 };
 
-/// The machine's limits that decide the colour of a cell. The default for drop_evidence is its
-/// largest value.
+/// Limits of the machine that determine the colour of a cell. The default of drop_evidence is the
+/// largest possible value.
 struct ColourLimits {
     std::int32_t cell_sigma_tenth_mm = 0;
     std::int32_t up_tenth_mm = 0;
     std::int32_t down_tenth_mm = 0;
     std::uint8_t drop_evidence = std::numeric_limits<std::uint8_t>::max();
-    /// Highest body part; 0: no check for obstacles above the ground.
+    /// Height of the highest body part; 0 = no check for obstacles above the ground.
     std::int32_t machine_height_tenth_mm = 0;
 };
 [[nodiscard]] ColourLimits colour_limits(const Machine& machine) noexcept;
 
-/// The colour class of a cell, for display only, not a permission to step. It rates one cell and
-/// its four neighbours; the gate rates whole feet, their paths and the body.
+/// Returns the colour class of a cell, for display only: it is not a permission to step. It rates
+/// one cell and its four neighbours. The gate rates whole feet, their paths and the body.
 /// - unknown: the cell was never measured.
 /// - unsure: the cell's sigma exceeds the gate's limit for a cell.
-/// - unsafe: evidence of a drop; or an obstacle on or over the cell lower than the machine's
-///   height; or a height difference to a neighbour above the step limits of walking.
+/// - unsafe: the cell has evidence of a drop, or an obstacle on or above it is lower than the
+///   machine, or the height difference to a neighbour exceeds the step limits of walking.
 /// - free: all other cells.
 [[nodiscard]] GroundState ground_state(const grid::MapSnapshot& snapshot,
                                        int ix,
@@ -72,16 +72,16 @@ struct ColourLimits {
                                        const ColourLimits& limits) noexcept;
 
 /// Fills `out` from a valid snapshot (nx and ny within kMaxSide). `out.base_z_tenth_mm` stays the
-/// same while the machine is within 20 m of it in height, so that unchanged cells keep their values
+/// same while the height of the machine is within 20 m of it. So unchanged cells keep their values
 /// from message to message. Allocates memory only when the map grows.
 void fill_page_map(const grid::MapSnapshot& snapshot,
                    std::int64_t frame_time_ns,
                    const ColourLimits& limits,
                    PageMap& out);
 
-/// The binary map message. It holds only the cells that changed since `before`. It holds all known
-/// cells instead if `before` is null, if the two grids do not match (size, resolution, base height,
-/// or a shift by a fraction of a cell), or if that is shorter.
+/// Returns the binary map message with the cells that changed since `before`. The message contains
+/// all known cells if `before` is null, or the grids do not match (size, resolution, base height,
+/// or a shift by a fraction of a cell), or if all known cells need fewer bytes.
 [[nodiscard]] std::string map_message(const PageMap& map, const PageMap* before);
 
 }  // namespace surefoot::page

@@ -15,13 +15,14 @@ namespace {
 
 using gate_process::Json;
 
-/// A division, not a product with 1e-4: so 9900 is written exactly as 0.99.
+/// Divides by 1e4 instead of multiplying by 1e-4, so that 9900 is written exactly as 0.99.
 double metres(std::int32_t tenth_mm) noexcept {
     constexpr double kTenthMmPerMetre = 1e4;
     return tenth_mm / kTenthMmPerMetre;
 }
 
-/// In messages a larger value is better, as in the snapshot; the enum is the other way round.
+/// In messages and in the snapshot a larger value means better health. In the enum a smaller value
+/// means better health.
 std::uint8_t health_code(Health health) noexcept {
     switch (health) {
         case Health::ok: return 2;
@@ -92,9 +93,9 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
 }
 
 Status read_layers(const Json& names, std::span<const std::string> layers, PageWish& wish) {
-    if (!names.is_array()) return input_error("layers: expected a list of names");
+    if (!names.is_array()) return input_error("layers: expected a list of layer names");
     for (const Json& name : names) {
-        if (!name.is_string()) return input_error("layers: expected a list of names");
+        if (!name.is_string()) return input_error("layers: expected a list of layer names");
         const auto found = std::find(layers.begin(), layers.end(), name.get<std::string>());
         if (found == layers.end())
             return input_error("layers: there is no '" + name.get<std::string>() + "'");
@@ -106,7 +107,8 @@ Status read_layers(const Json& names, std::span<const std::string> layers, PageW
 }
 
 Status read_images(const Json& names, PageWish& wish) {
-    if (!names.is_array()) return input_error("images: expected a list of names");
+    if (!names.is_array())
+        return input_error("images: expected a list of image names (left, disparity)");
     for (const Json& name : names) {
         const auto found = std::find_if(kImageNames.begin(), kImageNames.end(), [&](const char* n) {
             return name.is_string() && name.get<std::string>() == n;
@@ -166,7 +168,7 @@ Result<PageRequest> read_record(const Json& json) {
     return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
-/// An integer from 0 to `most`; empty for all other values.
+/// Reads an integer from 0 to `most`. Returns empty for all other values.
 std::optional<int> read_count(const Json& value, int most) {
     if (!value.is_number_integer() || value < 0 || value > most) return std::nullopt;
     return value.get<int>();
@@ -176,7 +178,9 @@ Result<PageRequest> read_joystick(const Json& json) {
     constexpr int kMost = 255;
     const bool fits = json.size() == 2 && json.contains("command");
     const auto command = fits ? read_count(json.at("command"), kMost) : std::nullopt;
-    if (!command) return input_error("joystick: expected {\"command\": 0 to 255}; 0 = release");
+    if (!command)
+        return input_error(
+            "joystick: expected {\"command\": N} with N from 0 to 255; 0 releases the joystick");
     return PageRequest(JoystickWord{static_cast<std::uint8_t>(*command)});
 }
 
@@ -318,14 +322,15 @@ Result<PageRequest> parse_request(std::string_view text, std::span<const std::st
     const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
-        return input_error("expected an object with an \"op\"");
+        return input_error("expected a JSON object with the key \"op\"");
     const auto op = json->at("op").get<std::string>();
     if (op == "want") return read_wish(*json, layers);
     if (op == "joystick") return read_joystick(*json);
     if (op == "playback") return read_playback(*json);
     if (op == "set") return read_setting(*json);
     if (op == "record") return read_record(*json);
-    return input_error(fmt::format("there is no operation '{}'", op));
+    return input_error(
+        fmt::format("there is no operation '{}'; use want, joystick, playback, set or record", op));
 }
 
 }  // namespace surefoot::page

@@ -19,8 +19,8 @@
 #include "surefoot/core/machine.hpp"
 #include "surefoot/core/result.hpp"
 
-/// The messages between the service and its page, as messages.json defines them; each function
-/// makes or reads one of them. All functions are pure: no socket, no clock, no file.
+/// The messages between the service and its page, as messages.json defines them. Each function
+/// makes or reads one message. All functions are pure: no socket, no clock, no file.
 namespace surefoot::page {
 
 inline constexpr std::uint8_t kProtocol = 1;
@@ -38,19 +38,19 @@ void write_header(MessageWriter& write, MessageKind kind);
 struct PagePose {
     std::int64_t time_ns = 0;  ///< time on the source's clock
     Pose T_odom_body;
-    /// Uncertainty of x and y in odom and of yaw, accumulated over the motions since odom began.
+    /// Uncertainty of x and y in odom, and of yaw: sum over all motions since odom began.
     double variance_x_m2 = 0.0;
     double variance_y_m2 = 0.0;
     double covariance_xy_m2 = 0.0;
     double variance_yaw_rad2 = 0.0;
     Health health = Health::lost;
     CameraState camera = CameraState::unknown;
-    std::vector<float> joints_rad;  ///< in the order of PageHello::Machine::joints, or empty
+    std::vector<float> joints_rad;  ///< angles of PageHello::Machine::joints, or empty
 };
-/// The binary message "pose".
+/// Returns the binary message "pose".
 [[nodiscard]] std::string pose_message(const PagePose& pose);
 
-/// The binary message "image". `jpeg`: the encoded picture.
+/// Returns the binary message "image". `jpeg`: the encoded picture.
 [[nodiscard]] std::string image_message(std::int64_t time_ns,
                                         PageImage which,
                                         std::string_view jpeg);
@@ -64,18 +64,18 @@ struct PageLayer {
     std::uint16_t index = 0;  ///< index of the layer's name in PageHello::layers
     Image<float> values;
 };
-/// The binary message "layer": always the whole layer.
+/// Returns the binary message "layer", which always contains the whole layer.
 [[nodiscard]] std::string layer_message(const PageLayer& layer);
 
-/// The first message to a page: what the page needs to read all other messages.
+/// The first message to a page. The page needs its content to read all other messages.
 struct PageHello {
     struct Machine {
         std::string name;
         surefoot::Machine limits;
-        std::vector<std::string> part_names;  ///< names of the parts in limits.body, same order
+        std::vector<std::string> part_names;  ///< names of the parts of limits.body, in their order
         struct Joint {
             std::string name;
-            double stand_rad = 0.0;  ///< angle to show if a pose has no angles
+            double stand_rad = 0.0;  ///< angle that pages show if a pose has no angles
         };
         std::vector<Joint> joints;  ///< the movable joints of the model
         std::string urdf;           ///< the URDF text, served at kModelPath; empty = no model
@@ -84,26 +84,26 @@ struct PageHello {
         double x_m = 0.0;
         double y_m = 0.0;
     };
-    std::string program;      ///< "surefoot 0.1.0"
-    std::string source;       ///< the source as the user named it
-    std::string source_kind;  ///< simulated | recording | live
+    std::string program;      ///< for example "surefoot 0.1.0"
+    std::string source;       ///< name of the source that the user gave
+    std::string source_kind;  ///< simulated, recording or live
     std::uint16_t gate_port = 0;
     std::vector<std::string> layers;
     std::optional<Machine> machine;
-    std::vector<GroundPoint> blind_zone;  ///< polygon in base_link, see messages.json
+    std::vector<GroundPoint> blind_zone;  ///< corners in base_link, see messages.json
     bool can_steer = false;
     double rate_hz = 0.0;                 ///< frame rate of the source; 0 = not known
-    std::optional<Pose> T_body_camera{};  ///< rectified left camera in base_link, if known
+    std::optional<Pose> T_body_camera{};  ///< pose of the rectified left camera, if known
 };
-/// The "hello" message, JSON.
+/// Returns the "hello" message, JSON.
 [[nodiscard]] std::string hello_text(const PageHello& hello);
 
-/// The "steer" message for one page. `yours`: this page holds the joystick; `taken`: any page holds
-/// it. `last`: the result of the last requested movement.
+/// Returns the "steer" message of a page. `yours`: this page holds the joystick; `taken`: any page
+/// holds it. `last`: the result of the last requested movement.
 [[nodiscard]] std::string steer_text(bool yours, bool taken, const SteerOutcome& last);
 
 enum class SourceState : std::uint8_t { waiting, running, paused, ended };
-/// The name in messages, for example "waiting".
+/// Returns the name in messages, for example "waiting".
 [[nodiscard]] const char* to_string(SourceState state) noexcept;
 struct PageStage {
     const char* name = "";
@@ -115,7 +115,7 @@ struct PageStatus {
     std::int64_t frames = 0;
     double rate_hz = 0.0;  ///< measured frame rate of the last seconds
     SourceState state = SourceState::waiting;
-    std::string text;  ///< a sentence for the user
+    std::string text;  ///< a sentence about the state, for the user
     Health health = Health::lost;
     std::vector<std::string> reasons;
     std::vector<PageStage> stages;
@@ -123,12 +123,12 @@ struct PageStatus {
 };
 /// The state of the playback of a recording.
 struct PlaybackState {
-    int frame = 0;   ///< the frame shown last, or the target of a pending jump
-    int frames = 0;  ///< length of the recording; 0 = not known, no jumps
+    int frame = 0;   ///< last shown frame, or the target of a pending jump
+    int frames = 0;  ///< number of frames; 0 = unknown, jumps not possible
     bool paused = false;
-    double speed = 1.0;  ///< times real time
+    double speed = 1.0;  ///< playback speed as a factor of real time
 };
-/// `playback`: empty if the source is not a recording.
+/// Returns the "status" message. `playback`: empty if the source is not a recording.
 [[nodiscard]] std::string status_text(const PageStatus& status,
                                       const std::optional<PlaybackState>& playback);
 
@@ -146,7 +146,7 @@ struct PageWish {
     double image_hz = 2.0;
 };
 
-/// The page holds the joystick at `command`; 0 = the page releases the joystick.
+/// A page holds the joystick at `command`; 0 = the page releases the joystick.
 struct JoystickWord {
     std::uint8_t command = 0;
 };
@@ -158,13 +158,13 @@ struct PlaybackWish {
 
     std::optional<bool> paused;
     std::optional<double> speed;
-    std::optional<int> frame;  ///< continue from this frame; map and odom are reset
+    std::optional<int> frame;  ///< continue from this frame with a new map and odom
 };
 
 using PageRequest = std::variant<PageWish, JoystickWord, PlaybackWish, SettingWish, RecordWish>;
-/// Reads one message of a page, as messages.json defines it. Missing keys of "want" keep their
-/// defaults; rates and speeds are clamped to their limits. The error says in words which operation,
-/// key, layer, image or type is wrong. `layers`: PageHello::layers.
+/// Reads one message of a page, as messages.json defines it. Missing keys of "want" get their
+/// defaults; rates and speeds are limited to their range. The error says which operation, key,
+/// layer, image or type is wrong. `layers`: PageHello::layers.
 [[nodiscard]] Result<PageRequest> parse_request(std::string_view text,
                                                 std::span<const std::string> layers);
 

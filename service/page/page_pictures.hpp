@@ -7,10 +7,10 @@
 
 namespace surefoot::page {
 
-/// JPEG of a camera image; empty if the image is empty.
+/// Returns the JPEG of a camera image; empty if the image is empty.
 [[nodiscard]] std::string jpeg_of(const GreyImage& image);
-/// JPEG of a disparity image in false colours: bright = near, black = unknown. Colours are scaled
-/// to the largest disparity of the image. Empty if the image is empty.
+/// Returns the JPEG of a disparity image in false colours: bright = near, black = unknown. The
+/// largest disparity of the image gets the brightest colour. Empty if the image is empty.
 [[nodiscard]] std::string jpeg_of_disparity(const Image<float>& disparity_px);
 
 }  // namespace surefoot::page

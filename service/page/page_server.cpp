@@ -47,15 +47,15 @@ using gate_process::steady_ns;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr auto kTick = std::chrono::milliseconds(20);
-constexpr auto kHandshake = std::chrono::seconds(5);  ///< of a WebSocket
+constexpr auto kHandshake = std::chrono::seconds(5);  ///< limit of a WebSocket handshake
 constexpr auto kIdle = std::chrono::seconds(10);
 constexpr std::size_t kMaxMessageBytes = 4096;
 constexpr std::int64_t kStatusEvery_ns = 500'000'000;
-constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< counters of a recording
+constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< period of the counters of a recording
 constexpr std::int64_t kMostLayerBytesPerSecond =
-    1'200'000;  ///< share of layers in the 2 MB/s of a page
-// Limits of one viewer; beyond them it is disconnected. A wish may cost a whole map, a repeated
-// joystick command costs nothing.
+    1'200'000;  ///< largest data rate of layers; a page gets 2 MB/s in total
+// Rate limits of one viewer. A viewer that exceeds a limit is disconnected. A wish has the lower
+// limit, because it may cost a whole map; a repeated joystick command costs nothing.
 constexpr gate_process::RateLimit kWishes{5, 20};
 constexpr gate_process::RateLimit kMessages{40, 80};
 
@@ -63,7 +63,7 @@ std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// The names of this computer in its network: the host name, also with ".local".
+/// Returns the names of this computer in its network: the host name, without and with ".local".
 std::vector<std::string> own_names() {
     error_code error;
     std::string name = net::ip::host_name(error);
@@ -74,7 +74,8 @@ std::vector<std::string> own_names() {
     return {name, name + ".local"};
 }
 
-/// True if data arrived that is not a valid HTTP request (not just a closed connection).
+/// Returns true if data arrived that is not a valid HTTP request. A closed connection alone does
+/// not count.
 bool is_malformed(error_code error) {
     return error.category() == make_error_code(http::error::bad_method).category() &&
            error != http::error::end_of_stream && error != http::error::partial_message;
@@ -87,7 +88,7 @@ std::int64_t period_ns(double rate_hz) {
 
 }  // namespace
 
-/// The data of perception and of the gate that at least one viewer wants.
+/// Data of perception and of the gate that at least one viewer wants.
 struct Demand {
     bool images = false;
     bool layers = false;
@@ -126,8 +127,8 @@ class PageSockets {
     /// Sends the status to all viewers at the next tick.
     void tell_status() noexcept { ++status_serial_; }
     [[nodiscard]] std::uint64_t status_serial() const noexcept { return status_serial_; }
-    /// Makes the connection a viewer; another connection may be ended for it. False if no slot is
-    /// free.
+    /// Makes the connection a viewer. May end another connection to get a slot. Returns false if no
+    /// slot is free.
     [[nodiscard]] bool enter(std::uint64_t name);
     [[nodiscard]] PageAddress address() const;
 
@@ -137,7 +138,7 @@ class PageSockets {
     gate_process::Slots slots;
     Show show;
     FoxgloveShow foxglove{show};
-    /// Identifies this run of the service.
+    /// Identifier of this run of the service.
     const std::string session = fmt::format("{:x}", steady_ns());
 
   private:
@@ -150,12 +151,13 @@ class PageSockets {
     void on_tick();
 
     PageFeed& feed_;
-    net::io_context io_{1};  // destroyed last, with all pending handlers
+    net::io_context io_{1};  // destroyed after the members below, with all pending handlers
     tcp::acceptor acceptor_{io_};
     std::unique_ptr<gate_process::TlsDoor> tls_door_;
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
-    std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their pending handlers
+    // The pending handlers of a connection share it.
+    std::vector<std::shared_ptr<Viewer>> connections_;
     std::vector<std::string> names_ = own_names();
     std::uint64_t connections_so_far_ = 0;
     std::uint64_t status_serial_ = 0;
@@ -163,7 +165,7 @@ class PageSockets {
     bool accepting_ = false;
 };
 
-/// One connection: a request for a file, a page, or a Foxglove client.
+/// One connection. It is a request for a file, a page, or a Foxglove client.
 class Viewer : public std::enable_shared_from_this<Viewer> {
   public:
     /// `name`: unique number of the connection, never 0.
@@ -182,7 +184,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     [[nodiscard]] std::uint64_t name() const { return name_; }
 
   private:
-    /// The joystick's state as last sent to this viewer.
+    /// State of the joystick that this viewer received last.
     struct Hold {
         bool yours = false;
         bool taken = false;
@@ -237,14 +239,15 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::optional<FoxgloveClient> foxglove_;
     std::deque<SocketMessage> waiting_;
     SocketMessage writing_;
-    std::optional<std::int64_t> write_since_ns_;  ///< start of the write in progress
-    /// Sent a message: from now on each completed write counts as service in gate_process::Slots.
+    std::optional<std::int64_t> write_since_ns_;  ///< time at which the current write started
+    /// True after the viewer sent a message. Then each completed write counts as service in
+    /// gate_process::Slots.
     bool has_asked_ = false;
     bool looks_ = false;  ///< true for a WebSocket, false for a request for a file
     bool open_ = false;   ///< the WebSocket's handshake is complete
     bool ended_ = false;
 
-    // The state that this viewer already has.
+    // These members describe the data that this viewer already has.
     std::optional<PageMap> map_;
     std::uint64_t hello_serial_ = 0;
     std::uint64_t frame_serial_ = 0;
@@ -283,7 +286,9 @@ void Viewer::start() {
 void Viewer::on_request(error_code error) {
     if (ended_) return;
     if (is_malformed(error))
-        return answer(http::status::bad_request, "text/plain", "this is not an HTTP request\n");
+        return answer(http::status::bad_request,
+                      "text/plain",
+                      "this is not an HTTP request; open the page in a browser\n");
     if (error) return end();
     const auto& request = parser_->get();
     const std::string_view target = view(request.target());
@@ -293,7 +298,7 @@ void Viewer::on_request(error_code error) {
         if (!head && request.method() != http::verb::get)
             return answer(http::status::method_not_allowed,
                           "text/plain",
-                          "only GET and HEAD are supported\n");
+                          "only the HTTP methods GET and HEAD are supported\n");
         if (gate_process::path_of(target) == kModelPath) return send_model(head);
         return send_file(gate_process::path_of(target), head);
     }
@@ -303,19 +308,19 @@ void Viewer::on_request(error_code error) {
                               ? std::nullopt
                               : foxglove_protocol_of(view(offered->value()));
     if (!is_page && !foxglove)
-        return answer(
-            http::status::not_found,
-            "text/plain",
-            "the WebSocket of the page is at /page; Foxglove must offer its subprotocol\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no WebSocket at this path: a page must connect to /page, and a "
+                      "Foxglove client must offer a subprotocol of Foxglove\n");
     if (const auto refusal = refuse_socket(foxglove.has_value())) return answer(*refusal);
     if (!sockets_.enter(name_))
         return answer(http::status::service_unavailable,
                       "text/plain",
-                      "too many pages are open; close one and reload\n");
+                      "too many pages are open; close another page and reload this page\n");
     upgrade(foxglove);
 }
 
-/// Checks of every request, for files and for sockets: one Host header that names the page.
+/// Checks that a request for a file or a socket has exactly one Host header, which names the page.
 std::optional<Viewer::Refusal> Viewer::refuse_host() {
     const auto& request = parser_->get();
     const auto [first, last] = request.equal_range(http::field::host);
@@ -345,7 +350,7 @@ std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
     if (gate_process::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
         gate_process::Admission::welcome)
         return Refusal{http::status::unauthorized,
-                       "the address needs the token; add ?token=TOKEN to it\n"};
+                       "this address needs a token; add ?token=TOKEN to the address\n"};
     return std::nullopt;
 }
 
@@ -361,7 +366,9 @@ void Viewer::answer(http::status status, std::string_view type, std::string body
 void Viewer::send_file(std::string_view path, bool head) {
     const PageFile* const file = find_page_file(path);
     if (file == nullptr)
-        return answer(http::status::not_found, "text/plain", "there is no such file\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no file at this path; open the page at /\n");
     constexpr unsigned kHttp11 = 11;
     response_ = {http::status::ok, kHttp11};
     const std::string_view type = content_type_of(file->path);
@@ -385,16 +392,20 @@ void Viewer::send_response() {
                       [self = shared_from_this()](error_code, std::size_t) { self->end(); });
 }
 
-/// Sends the machine's model (URDF) that the current hello names.
+/// Sends the model of the machine (URDF) that the current hello message names.
 void Viewer::send_model(bool head) {
     const auto& machine = sockets_.show.hello.machine;
     if (!machine || machine->urdf.empty())
-        return answer(http::status::not_found, "text/plain", "there is no model of this machine\n");
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "there is no 3D model of this machine; to show a model, start serve with "
+                      "--model FILE\n");
     answer(http::status::ok, "application/xml", head ? std::string() : machine->urdf);
 }
 
 void Viewer::upgrade(std::optional<std::string_view> protocol) {
-    beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has its own timeouts
+    beast::get_lowest_layer(ws_).expires_never();  // from here on the timeouts of the WebSocket
+                                                   // apply
     ws_.set_option(websocket::stream_base::timeout{kHandshake, kIdle, true});
     ws_.read_message_max(kMaxMessageBytes);
     ws_.auto_fragment(false);  // one WebSocket frame per message
@@ -429,7 +440,8 @@ void Viewer::read() {
 }
 
 void Viewer::on_message() {
-    if (!messages_.take(steady_ns())) return say_goodbye("too many messages");
+    if (!messages_.take(steady_ns()))
+        return say_goodbye("too many messages: the limit is 40 in a second; reload the page");
     const auto bytes = buffer_.cdata();
     const Status heard = hear({static_cast<const char*>(bytes.data()), bytes.size()});
     buffer_.clear();
@@ -459,9 +471,10 @@ Demand Viewer::demand() const {
 }
 
 void Viewer::take(const PageWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     wish_ = wish;
-    // Everything wanted is sent again.
+    // Send all wanted data again.
     map_.reset();
     frame_serial_ = map_serial_ = layers_serial_ = images_serial_ = stairs_serial_ = 0;
     map_due_ns_ = images_due_ns_ = 0;
@@ -469,26 +482,31 @@ void Viewer::take(const PageWish& wish) {
 
 void Viewer::take(const JoystickWord& word) {
     if (!sockets_.show.hello.can_steer)
-        return say_goodbye("joystick: pages cannot steer this source");
-    // A page that may not hold the joystick learns it from the next "steer" message.
+        return say_goodbye(
+            "joystick: pages cannot steer this source; start serve with sim:SCENE and --joystick");
+    // The next "steer" message tells a page that another page holds the joystick.
     sockets_.controls.steering.hold(name_, word.command, steady_ns());
 }
 
 void Viewer::take(const PlaybackWish& wish) {
     if (!sockets_.controls.playback.state())
-        return say_goodbye("playback: this source is not a recording");
+        return say_goodbye(
+            "playback: this source is not a recording, so a page cannot pause it or change its "
+            "speed");
     sockets_.controls.playback.ask(wish);
     sockets_.tell_status();
 }
 
 void Viewer::take(const SettingWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     say(setting_text(sockets_.controls.settings.ask(wish)));
     write();
 }
 
 void Viewer::take(const RecordWish& wish) {
-    if (!wishes_.take(steady_ns())) return say_goodbye("too many requests");
+    if (!wishes_.take(steady_ns()))
+        return say_goodbye("too many requests: the limit is 5 in a second; reload the page");
     if (!sockets_.controls.recording.ask(wish))
         say_goodbye("record: " + sockets_.controls.recording.state().text);
 }
@@ -560,7 +578,8 @@ void Viewer::say_stairs() {
     say(show.stairs());
 }
 
-/// Settings are large and change rarely: a new wish alone does not send them again.
+/// Sends the settings if they changed. They are large and change rarely, so a new wish alone does
+/// not send them again.
 void Viewer::say_settings() {
     const PageSettings& settings = sockets_.controls.settings;
     const std::uint64_t serial = settings.serial();
@@ -569,7 +588,7 @@ void Viewer::say_settings() {
     say(settings_text(settings.all()));
 }
 
-/// Sends a new stage at once, but changed counters only every kCountEvery_ns.
+/// Sends a new stage of the recording at once. Sends changed counters only every kCountEvery_ns.
 void Viewer::say_recording(std::int64_t now_ns) {
     const RecordingDesk& desk = sockets_.controls.recording;
     const std::uint64_t serial = desk.serial();
@@ -585,7 +604,7 @@ void Viewer::say_recording(std::int64_t now_ns) {
 void Viewer::on_tick(std::int64_t now_ns) {
     if (write_since_ns_ && now_ns - *write_since_ns_ > sockets_.config.write_ms * kMs_ns)
         return end();
-    // While a write is pending no message is made: the next ones will be of the newest frame.
+    // Make no message while a write is pending, so that the next messages contain the newest frame.
     if (ended_ || !open_ || write_since_ns_ || !waiting_.empty()) return;
     if (foxglove_) {
         auto messages = foxglove_->next(sockets_.foxglove, now_ns);
@@ -655,16 +674,18 @@ Status PageSockets::listen() {
          ++more)
         error = listen_at(address, static_cast<std::uint16_t>(config.port + more));
     if (error) {
-        return input_error(fmt::format("the page cannot be served at {} port {}: {}",
-                                       config.bind_address,
-                                       config.port,
-                                       error.message()));
+        return input_error(
+            fmt::format("the page cannot be served at the address {}, port {}: {}; give another "
+                        "--bind or --page-port",
+                        config.bind_address,
+                        config.port,
+                        error.message()));
     }
     port_ = acceptor_.local_endpoint().port();
     return config.tls.empty() ? Status{} : listen_with_tls();
 }
 
-/// Replaces the acceptor by a TLS door on the same port.
+/// Replaces the acceptor with a TLS door on the same port.
 Status PageSockets::listen_with_tls() {
     error_code ignored;
     acceptor_.close(ignored);
@@ -710,7 +731,7 @@ void PageSockets::accept() {
     accepting_ = true;
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
-        if (error) return;  // no file handles left, or the peer has gone: the next tick tries again
+        if (error) return;  // no free file handle, or the peer has left: the next tick tries again
         const std::string peer = gate_process::peer_of(socket);
         admit(std::move(socket), peer);
         accept();
@@ -730,7 +751,7 @@ bool PageSockets::enter(std::uint64_t name) {
     return entry.granted;
 }
 
-/// Ends this connection because another one needs its slot.
+/// Ends the connection `name`, because another connection needs its slot.
 void PageSockets::end(std::optional<gate_process::Slots::Id> name) {
     if (!name) return;
     const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) {
@@ -779,15 +800,17 @@ std::size_t PageSockets::viewers() const {
 
 const char* PageServerConfig::problem() const {
     if (!gate_process::is_loopback_address(bind_address) && token.empty())
-        return "beyond this machine the page needs a token (--token-file)";
+        return "a page at an address beyond loopback needs a token; give its file with "
+               "--token-file";
     if (tls.certificate_file.empty() != tls.key_file.empty())
-        return "TLS needs both files: --certificate FILE and --key FILE";
+        return "TLS needs both files; give --certificate FILE and --key FILE";
     if (!gate_process::is_loopback_address(bind_address) && tls.empty() &&
         insecure != gate_process::kInsecureSentence)
-        return "beyond this machine the page needs TLS (--certificate FILE --key FILE), or the "
-               "sentence that allows it without TLS (--insecure)";
+        return "a page at an address beyond loopback needs TLS; give --certificate FILE and --key "
+               "FILE. To allow the page without TLS, give the confirmation sentence with "
+               "--insecure";
     if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)
-        return "header_ms, answer_ms and write_ms must be above 0";
+        return "header_ms, answer_ms and write_ms must each be above 0 ms";
     return slots.problem();
 }
 

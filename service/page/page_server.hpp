@@ -21,29 +21,29 @@
 namespace surefoot::page {
 
 struct PageServerConfig {
-    /// Beyond loopback: needs a token, and TLS or `insecure`.
+    /// Address to listen at. Beyond loopback the page needs a token, and TLS or `insecure`.
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = 8080;   ///< 0 = any free port
+    std::uint16_t port = 8080;   ///< TCP port; 0 = any free port
     int more_ports = 16;         ///< number of following ports to try if `port` is in use
-    std::string token;           ///< required in the WebSocket's URL as ?token=; empty = none
-    gate_process::TlsFiles tls;  ///< empty: plain HTTP, on loopback only
+    std::string token;           ///< the WebSocket's URL needs ?token=...; empty = no token
+    gate_process::TlsFiles tls;  ///< empty = plain HTTP, on loopback only
     std::string insecure;  ///< gate_process::kInsecureSentence allows plain HTTP beyond loopback
     /// Addresses of the page through a proxy or a tunnel, e.g. "https://robot.example".
     std::vector<std::string> origins;
-    /// Origins of Foxglove if it is a web page of another machine, or a local file (file://).
+    /// Origins of Foxglove if Foxglove is a web page of another machine or a local file (file://).
     std::vector<std::string> foxglove_origins;
-    /// Limits of connections. Only WebSockets count as clients; a request for a file ends before
-    /// that.
+    /// Limits of connections. Only WebSockets count as clients. A request for a file is never a
+    /// client.
     gate_process::SlotLimits slots{16, 0, 256, 8};
-    int header_ms = 5000;   ///< limit from the connection to the last byte of the request
-    int answer_ms = 20000;  ///< limit for sending a file
-    int write_ms = 10000;   ///< limit for sending one message to a viewer
+    int header_ms = 5000;   ///< longest time from connection to last byte of request
+    int answer_ms = 20000;  ///< longest time for sending a file
+    int write_ms = 10000;   ///< longest time for sending one message to a viewer
 
-    /// The first problem in words, or nullptr.
+    /// Returns the first problem in words, or nullptr.
     [[nodiscard]] const char* problem() const;
 };
 
-/// What pages may control: the source and the service, never the gate. All members are thread-safe.
+/// Controls of pages. Pages control the source and the service, never the gate. Thread-safe.
 struct PageControls {
     Steering steering;  ///< used only if PageHello::can_steer
     Playback playback;
@@ -53,14 +53,14 @@ struct PageControls {
 
 class PageSockets;
 
-/// Serves three things on one port: the embedded page over HTTP; its messages (messages.json) over
-/// a WebSocket at /page; and the Foxglove WebSocket protocol at every other path, for clients that
-/// offer its subprotocol.
+/// Serves three protocols on one port: the embedded page over HTTP; the messages of the page
+/// (messages.json) over a WebSocket at /page; and the Foxglove WebSocket protocol at every other
+/// path, for clients that offer a Foxglove subprotocol.
 ///
-/// All work happens on the thread that calls `run`. The next message for a viewer is made when the
-/// previous one has left: a slow viewer gets fewer messages, but never an old one. A viewer that
-/// sends an invalid message gets the reason and is disconnected. With a certificate everything uses
-/// TLS (gate_process::TlsDoor), but clients on the same machine may still connect without TLS.
+/// All work happens on the thread that calls `run`. The next message for a viewer is made after the
+/// previous message was sent: a slow viewer gets fewer messages, but never an old message. A viewer
+/// that sends an invalid message gets the reason and is disconnected. With a certificate the server
+/// uses TLS (gate_process::TlsDoor), but clients on this machine may still connect without TLS.
 ///
 /// A request must name the page by a name or address of this computer and the page's port. A web
 /// page that opens a socket must be the page itself (page_door.hpp) or a configured origin. The
@@ -78,13 +78,13 @@ class PageServer {
     ~PageServer();
 
     /// Sets the first message to pages and the limits that colour the ground (colour_limits()).
-    /// Call it before `run`, and again from any thread when something in it changed.
+    /// Call it before `run`, and after each change of these data, from any thread.
     void introduce(PageHello hello, ColourLimits colours);
     /// Serves until `stop` is called.
     void run();
     /// Ends `run`. Thread-safe.
     void stop();
-    /// The port that the server listens at; it differs from the configured one if that was 0 or in
+    /// Returns the port of the server. It differs from the configured port if that port was 0 or in
     /// use.
     [[nodiscard]] std::uint16_t port() const noexcept;
 

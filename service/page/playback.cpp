@@ -29,7 +29,7 @@ void Playback::ask(const PlaybackWish& wish) {
 
 void Playback::at(int frame) {
     const std::lock_guard lock(mutex_);
-    // While a jump is pending, the page's slider stays where the user left it.
+    // While a jump is pending, the slider of the page keeps the position that the user chose.
     if (state_ && !jump_) state_->frame = frame;
 }
 

@@ -14,15 +14,15 @@ class Playback {
   public:
     /// Declares that the source is a recording. Requests before this call have no effect.
     void offer(const PlaybackState& state);
-    /// Empty if the source is not a recording.
+    /// Returns the state; empty if the source is not a recording.
     [[nodiscard]] std::optional<PlaybackState> state() const;
 
-    /// A page's request. The frame of a jump is clamped to the recording.
+    /// Applies a request of a page. The frame of a jump is limited to the frames of the recording.
     void ask(const PlaybackWish& wish);
 
-    /// The player reports the frame that it showed last. Ignored while a jump is pending.
+    /// The player reports the last shown frame. The call has no effect while a jump is pending.
     void at(int frame);
-    /// Returns the target of a pending jump, once.
+    /// Returns the target of a pending jump and clears it.
     [[nodiscard]] std::optional<int> take_jump();
     [[nodiscard]] bool jump_wanted() const;
 

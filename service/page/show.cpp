@@ -12,7 +12,7 @@
 namespace surefoot::page {
 namespace {
 
-/// After this time without a frame the status reports the missing frames.
+/// If no frame arrives for this time, the status reports it.
 constexpr std::int64_t kLate_ns = kNanosecondsPerSecond;
 
 }  // namespace
@@ -37,7 +37,8 @@ void Show::look(PageFeed& feed, std::int64_t now_ns) {
     }
     if (frame_->has_stairs) take_stairs();
     if (frame_->images_time_ns == 0) return;
-    // Kept apart from the frame: a viewer may ask for the images after the next frame has come.
+    // Store the images apart from the frame: a viewer may request them after the next frame has
+    // arrived.
     images_time_ns_ = frame_->images_time_ns;
     std::swap(left_, frame_->left);
     std::swap(disparity_px_, frame_->disparity_px);

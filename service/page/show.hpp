@@ -14,33 +14,33 @@
 
 namespace surefoot::page {
 
-/// Holds the newest frame and the messages that are the same for all viewers; each message is made
-/// once. A changed serial means new content: a later serial is different, but not always greater.
-/// Not thread-safe: use it on the page's thread.
+/// Holds the newest frame and the messages that are the same for all viewers. Each message is made
+/// once. New content has another serial, which is not always greater. Not thread-safe: use it on
+/// the page's thread.
 class Show {
   public:
-    /// Replaces the hello and the limits that colour the ground.
+    /// Replaces the hello message and the limits that colour the ground.
     void introduce(PageHello its_hello, ColourLimits colours);
     /// Fetches the newest frame from `feed`, if there is a new one.
     void look(PageFeed& feed, std::int64_t now_ns);
 
-    /// Number of the newest frame; 0 = no frame yet.
+    /// Returns the number of the newest frame; 0 = no frame yet.
     [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }
     [[nodiscard]] const PagePose& pose() const { return frame_->pose; }
-    /// The binary message of the newest pose.
+    /// Returns the binary message of the newest pose.
     [[nodiscard]] const std::string& pose_bytes();
-    /// JPEG of the newest image; empty if there is none.
+    /// Returns the JPEG of the newest image; empty if no image has arrived.
     [[nodiscard]] const std::string& jpeg(PageImage which);
-    /// The binary message of the newest image.
+    /// Returns the binary message of the newest image.
     [[nodiscard]] std::string picture(PageImage which);
-    /// Time of the newest images on the source's clock; 0 = no images yet.
+    /// Returns the time of the newest images on the clock of the source; 0 = no images yet.
     [[nodiscard]] std::int64_t images_time_ns() const { return images_time_ns_; }
-    /// The binary message of a layer (index into PageHello::layers); empty if no frame brought it.
+    /// Returns the binary message of layer `index` of PageHello::layers; empty if none has arrived.
     [[nodiscard]] std::optional<std::string> layer(std::uint16_t index) const;
-    /// The newest "stairs" message; empty before the first one.
+    /// Returns the newest "stairs" message; empty before the first message.
     [[nodiscard]] const std::string& stairs() const { return stairs_text_; }
-    /// The status at `now_ns` (steady clock). It says so in words if no frame has come for a
-    /// second.
+    /// Returns the status at `now_ns` (steady clock). If no frame has arrived for 1 s, the text of
+    /// the status says so.
     [[nodiscard]] PageStatus status(std::int64_t now_ns,
                                     int viewers,
                                     const std::optional<PlaybackState>& playback) const;

@@ -7,13 +7,14 @@ namespace surefoot::page {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kSilence_ns = kSecond_ns;  ///< without a command: counts as a release
-/// The page keeps the joystick this long after the release.
+/// A command that is not repeated for this time counts as released.
+constexpr std::int64_t kSilence_ns = kSecond_ns;
+/// Time that a page keeps the joystick after the release.
 constexpr std::int64_t kKept_ns = 5 * kSecond_ns;
 
 }  // namespace
 
-/// Time of the release. A command that is not repeated ends after kSilence_ns.
+/// Returns the time of the release. A command that is not repeated ends after kSilence_ns.
 std::int64_t Steering::let_go_ns() const {
     return command_ == 0 ? last_word_ns_ : last_word_ns_ + kSilence_ns;
 }

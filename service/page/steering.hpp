@@ -7,13 +7,13 @@
 
 namespace surefoot::page {
 
-/// The result of the last movement that a page asked for.
+/// The result of the last movement that a page requested.
 struct SteerOutcome {
     std::uint64_t serial = 0;  ///< increases with each outcome
     std::uint8_t command = 0;
     std::string verdict;  ///< verdict of the gate's last answer; "-" if no answer came
     bool moved = false;
-    std::string text;  ///< the gate's reason, a sentence for the user
+    std::string text;  ///< reason that the gate gave, a sentence for the user
 };
 
 /// The joystick of a simulated machine, shared by all pages. Only one page holds it at a time. That
@@ -22,14 +22,14 @@ struct SteerOutcome {
 /// are those of the steady clock.
 class Steering {
   public:
-    /// The page `viewer` (never 0) holds the joystick at `command`, or releases it with 0. Returns
-    /// false and changes nothing while another page holds it.
+    /// The page `viewer` (never 0) holds the joystick at `command`, or releases the joystick with
+    /// 0. Returns false and changes nothing while another page holds the joystick.
     bool hold(std::uint64_t viewer, std::uint8_t command, std::int64_t now_ns);
-    /// The page `viewer` disconnected: it releases the joystick at once.
+    /// Releases the joystick at once if the disconnected page `viewer` held it.
     void leave(std::uint64_t viewer);
-    /// The page that holds the joystick; 0 = none.
+    /// Returns the page that holds the joystick; 0 = no page.
     [[nodiscard]] std::uint64_t holder(std::int64_t now_ns) const;
-    /// The current command; 0 = at rest.
+    /// Returns the current command; 0 = at rest.
     [[nodiscard]] std::uint8_t command(std::int64_t now_ns) const;
 
     /// Stores the outcome and gives it the next serial.

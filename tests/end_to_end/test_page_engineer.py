@@ -119,7 +119,7 @@ class Settings(PageTest):
         self.assertGreater(before, slow + 2)
         self.assertEqual([one["value"] for one in other.wait_for("settings", lambda said: len(other.told("settings")) > 1)["settings"]
                           if one["key"] == "service.speed"], ["0.01"])
-        self.assertIn("service.speed is now 0.01 (a page asked for it)", self.logged())
+        self.assertIn("service.speed is now 0.01, because a page changed this setting", self.logged())
         self.assertTrue(self.set(page, "service.speed", "0.2")["accepted"])
 
     def test_fewer_maps_are_sent(self):
@@ -160,7 +160,7 @@ class Settings(PageTest):
             self.assertFalse(answer["accepted"], key)
             self.assertIn(words, answer["text"])
             self.assertEqual(answer["value"], before.get(key, ""))
-        self.assertIn("page.map_hz: '50' is outside 0.2 .. 10 (a page asked for it)", self.logged())
+        self.assertIn("a page cannot change a setting: page.map_hz: '50' is outside 0.2 .. 10", self.logged())
         page = self.page()
         page.ask(op="set", key="page.map_hz", value=5)
         self.assertIn("expected", page.listen(3.0).goodbye[1])

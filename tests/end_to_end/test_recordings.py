@@ -188,7 +188,7 @@ class FullDisks(CliTest):
                      ["rate", pathlib.Path(self.shared.name) / "run" / "elevation.asc", "--out", self.dir / "rated"]):
             lines = self.lines(*call)
             self.assertRegex(lines[-1], r"^error: .*(File too large|cannot write)", "\n".join(lines))
-            self.assertFalse([line for line in lines if line.startswith("results in")], lines)
+            self.assertFalse([line for line in lines if line.startswith("the results are in")], lines)
 
     def test_run_says_how_much_is_missing_and_keeps_what_fits(self):
         out = self.dir / "out"

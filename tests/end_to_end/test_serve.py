@@ -241,7 +241,7 @@ class Faults(CliTest):
             (self.dir / "stderr").write_text("")
             lose()
             self.wait_for_words(words, 5.0)  # 0.25 s on a machine that is not busy
-            self.wait_for_words("is repaired", 5.0)
+            self.wait_for_words("serve repaired it", 5.0)
             self.wait_for_words("open again", 5.0)
             self.wait_for("OK")
         self.assertIsNone(self.service.poll())
