@@ -8,9 +8,9 @@
 
 namespace surefoot::app {
 
-Status CameraOrderCheck::look(const pipeline::Pipeline& pipeline,
-                              const FrameReport& report,
-                              bool quiet) {
+Status CameraOrderCheck::check(const pipeline::Pipeline& pipeline,
+                               const FrameReport& report,
+                               bool quiet) {
     const camera::RectifiedPair& pair = pipeline.pair();
     if (left_ == 0 || report.work != Work::full || pair.right.empty()) return {};
     const stereo::PairCheck check = check_rows(pair, pipeline.config().stereo.disparities);

@@ -19,9 +19,9 @@ class CameraOrderCheck {
     explicit CameraOrderCheck(std::string source) : source_(std::move(source)) {}
     /// Call after each frame. Returns an error if left and right camera are swapped. Rows that
     /// differ are logged as a warning unless `quiet`.
-    [[nodiscard]] Status look(const pipeline::Pipeline& pipeline,
-                              const FrameReport& report,
-                              bool quiet = false);
+    [[nodiscard]] Status check(const pipeline::Pipeline& pipeline,
+                               const FrameReport& report,
+                               bool quiet = false);
 
   private:
     std::string source_;

@@ -105,7 +105,7 @@ Result<LiveSession::End> LiveSession::run(double speed,
         pipeline_, [this] { return next(); }, source_.info().T_odom_first_body);
     const auto process = [&](const StereoFrame& frame) -> Status {
         const FrameReport report = pipeline_.process(frame, Work::full);
-        if (auto cameras = cameras_.look(pipeline_, report); !cameras) return cameras;
+        if (auto cameras = cameras_.check(pipeline_, report); !cameras) return cameras;
         const auto map_time_ns = publish();
         if (!map_time_ns) return map_time_ns.error();
         if (after_frame) after_frame(report, *map_time_ns);

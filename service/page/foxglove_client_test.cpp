@@ -44,8 +44,8 @@ struct Service {
     }
     std::vector<SocketMessage> turn() {
         now_ns += kTick_ns;
-        show.look(feed, now_ns);
-        foxglove.look(now_ns, std::nullopt);
+        show.update(feed, now_ns);
+        foxglove.update(now_ns, std::nullopt);
         return client.next(foxglove, now_ns);
     }
     Status ask(std::string_view text) { return client.take(true, text, now_ns); }

@@ -13,7 +13,7 @@ constexpr std::int64_t kStatusEvery_ns = 500'000'000;
 
 }  // namespace
 
-void FoxgloveShow::look(std::int64_t now_ns, const std::optional<PlaybackState>& playback) {
+void FoxgloveShow::update(std::int64_t now_ns, const std::optional<PlaybackState>& playback) {
     if (status_frame_ == show_.serial() && now_ns < status_due_ns_) return;
     status_frame_ = show_.serial();
     status_due_ns_ = now_ns + kStatusEvery_ns;

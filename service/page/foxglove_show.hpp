@@ -28,7 +28,7 @@ class FoxgloveShow {
     explicit FoxgloveShow(Show& show) : show_(show) {}
 
     /// Updates the status. Call it on every tick, after `Show::look`.
-    void look(std::int64_t now_ns, const std::optional<PlaybackState>& playback);
+    void update(std::int64_t now_ns, const std::optional<PlaybackState>& playback);
     /// Takes a message of the gate. The message gets the newest frame's time, because the gate uses
     /// another clock.
     void hear(GateNews news);

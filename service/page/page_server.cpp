@@ -775,8 +775,8 @@ void PageSockets::wait_for_tick() {
 
 void PageSockets::on_tick() {
     const std::int64_t now_ns = steady_ns();
-    show.look(feed_, now_ns);
-    foxglove.look(now_ns, controls.playback.state());
+    show.update(feed_, now_ns);
+    foxglove.update(now_ns, controls.playback.state());
     Demand demand;
     for (const auto& viewer : std::vector(connections_)) {
         viewer->on_tick(now_ns);

@@ -23,7 +23,7 @@ void Show::introduce(PageHello its_hello, ColourLimits colours) {
     ++hello_serial;
 }
 
-void Show::look(PageFeed& feed, std::int64_t now_ns) {
+void Show::update(PageFeed& feed, std::int64_t now_ns) {
     if (!feed.fetch(frame_)) return;
     fetched_ns_ = now_ns;
     pose_.clear();

@@ -22,7 +22,7 @@ class Show {
     /// Replaces the hello message and the limits that colour the ground.
     void introduce(PageHello its_hello, ColourLimits colours);
     /// Fetches the newest frame from `feed`, if there is a new one.
-    void look(PageFeed& feed, std::int64_t now_ns);
+    void update(PageFeed& feed, std::int64_t now_ns);
 
     /// Returns the number of the newest frame; 0 = no frame yet.
     [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }

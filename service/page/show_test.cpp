@@ -19,14 +19,14 @@ TEST(Show, KeepsTheNewestImageWhenFramesWithoutOneFollow) {
     PageFeed feed;
     Show show;
     hand_over(feed, 1, 7);
-    show.look(feed, 0);
+    show.update(feed, 0);
     const std::string first = show.jpeg(PageImage::left);
     hand_over(feed, 100, 8);
-    show.look(feed, 0);
+    show.update(feed, 0);
     const std::uint64_t serial = show.images_serial;
     for (std::uint64_t later : {101U, 102U, 103U}) {
         hand_over(feed, later, 0);
-        show.look(feed, 0);
+        show.update(feed, 0);
     }
     EXPECT_EQ(show.serial(), 103U);
     EXPECT_EQ(show.images_serial, serial);
@@ -42,7 +42,7 @@ TEST(Show, SaysWhenNoFrameComes) {
     EXPECT_EQ(show.status(0, 3, std::nullopt).state, SourceState::waiting);
     feed.blank().status.state = SourceState::running;
     hand_over(feed, 1, 0);
-    show.look(feed, 0);
+    show.update(feed, 0);
     EXPECT_EQ(show.status(900'000'000, 3, std::nullopt).state, SourceState::running);
     const PageStatus late = show.status(2'100'000'000, 3, std::nullopt);
     EXPECT_EQ(late.state, SourceState::waiting);

@@ -100,7 +100,7 @@ void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
     if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
-    if (const Status cameras = cameras_.look(pipeline_, report, quiet_); !cameras && !record_.error)
+    if (const Status cameras = cameras_.check(pipeline_, report, quiet_); !cameras && !record_.error)
         record_.error = cameras.error();
     record_.fusion += report.fusion;
     record_.frame_status += report.frame_status;
