@@ -89,10 +89,10 @@ Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair
 }
 
 Result<TrajectoryPair> read_pair(const EvalTrajectoryOptions& options) {
-    const bool told = !options.times_file.empty() || options.rate_hz > 0.0;
+    const bool time_is_known = !options.times_file.empty() || options.rate_hz > 0.0;
     auto estimate = io::read_trajectory(options.estimate, !options.times_file.empty());
     if (!estimate) return estimate.error();
-    auto truth = io::read_trajectory(options.truth, told);
+    auto truth = io::read_trajectory(options.truth, time_is_known);
     if (!truth) return truth.error();
     TrajectoryPair pair{std::move(estimate).value(), std::move(truth).value()};
     Status status = !options.times_file.empty() ? stamp_from_file(options.times_file, pair)

@@ -99,9 +99,9 @@ class ChannelNews {
   public:
     explicit ChannelNews(std::string path) : path_(std::move(path)) {}
     void tell(gate_process::ChannelState state) {
-        if (state == told_) return;
-        const bool was_lost = told_ == gate_process::ChannelState::lost;
-        told_ = state;
+        if (state == reported_) return;
+        const bool was_lost = reported_ == gate_process::ChannelState::lost;
+        reported_ = state;
         if (state == gate_process::ChannelState::lost)
             say("the channel was deleted, replaced or cut off; no step is allowed until perception "
                 "has created the channel again");
@@ -117,7 +117,7 @@ class ChannelNews {
         std::fflush(stderr);
     }
     std::string path_;
-    gate_process::ChannelState told_ = gate_process::ChannelState::absent;
+    gate_process::ChannelState reported_ = gate_process::ChannelState::absent;
 };
 
 /// Opens the server. If another process uses the port, retries for kPortPatience_ns and then

@@ -50,8 +50,8 @@ void MapChannel::look_after(std::int64_t now_ns) {
     if (mended && *mended)
         log_warning(fmt::format("the file of the map channel was damaged; serve repaired it: {}",
                                 **mended));
-    if (!mended && mended.error().message != told_) log_error(mended.error().message);
-    told_ = mended ? "" : mended.error().message;
+    if (!mended && mended.error().message != logged_) log_error(mended.error().message);
+    logged_ = mended ? "" : mended.error().message;
 }
 
 std::string channel_path(const std::string& wanted) {

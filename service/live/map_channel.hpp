@@ -25,7 +25,7 @@ class MapChannel {
   private:
     static constexpr std::int64_t kMendEvery_ns = 250'000'000;
     std::int64_t next_ns_ = 0;
-    std::string told_;  ///< last logged error; each error is logged only once
+    std::string logged_;  ///< last logged error; each error is logged only once
 };
 
 /// Returns the path of the channel file: `wanted`, or a file in shared memory if `wanted` is empty.

@@ -341,7 +341,8 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
         text += fmt::format(
             "self-calibration corrects the right camera by {:+.3f} deg about the line of sight, "
             "{:+.3f} deg up and down and {:+.3f} % of the focal length: corresponding rows "
-            "differed by {:.2f} px, now by {:.2f} px (median); trim.enabled=false turns it off\n",
+            "differed by {:.2f} px, now by {:.2f} px (median); self_calibration.enabled=false "
+            "turns it off\n",
             self_calibration->camera.roll_rad * 180.0 / std::numbers::pi,
             self_calibration->camera.pitch_rad * 180.0 / std::numbers::pi,
             100.0 * self_calibration->camera.focal_share,

@@ -60,9 +60,9 @@ Variety variety_of(const BoardBundle& bundle) {
 }
 
 /// Returns the reason why the result must not be used; empty if the result is valid.
-std::string doubt(const MonoCalibration& result,
-                  const CalibrationOptions& options,
-                  const Variety& variety) {
+std::string weakness_of(const MonoCalibration& result,
+                        const CalibrationOptions& options,
+                        const Variety& variety) {
     if (variety.tilt_deg < options.least_tilt_deg) return "the views are too similar";
     if (result.covariance.size() == 0) return "the views do not determine the camera";
     const double share = std::sqrt(result.covariance(0, 0)) / result.parameters[0];
@@ -164,7 +164,7 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     result.covariance =
         covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
-    if (const std::string found = doubt(result, options, variety); !found.empty()) {
+    if (const std::string found = weakness_of(result, options, variety); !found.empty()) {
         return failed(
             fmt::format("calibration: {}; the views differ by {:.1f} deg in tilt (at least {:.0f} "
                         "deg are needed) and by a factor of {:.2f} in the distance of the board: "

@@ -451,9 +451,9 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
                 odometry_->follow(now.time_ns, static_cast<int>(next_pose_), carried_body(now));
         }
         if (machine_ && arrives) {
-            const MotionEstimate told =
+            const MotionEstimate odometry =
                 machine_->follow(now.time_ns, static_cast<int>(next_pose_), now.T_world_body);
-            frame.machine_motion = {told.T_previous_body, told.relative_covariance};
+            frame.machine_motion = {odometry.T_previous_body, odometry.relative_covariance};
         }
         ++next_pose_;
         if (!arrives) continue;

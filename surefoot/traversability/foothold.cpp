@@ -138,7 +138,7 @@ void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Imag
     shape(ground.resolution_m);
     sums_.resize((static_cast<std::size_t>(nx_) + 1) * static_cast<std::size_t>(ny_));
     patch_m_.resize(nx_, ny_);
-    patch_doubt_m_.resize(nx_, ny_);
+    patch_k_sigma_m_.resize(nx_, ny_);
     for (RunMaxima* maxima : {&patch_high_, &patch_low_, &low_shown_, &low_possible_})
         maxima->reset(nx_, ny_);
     rows_.resize(static_cast<std::size_t>(ny_));
@@ -175,10 +175,10 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
         }
         const auto z_m = static_cast<double>(height_m);
         const double var_m2 = variance_of(ground, ix, iy);
-        const auto doubt_m = static_cast<float>(config_.sigma_factor * std::sqrt(var_m2));
+        const auto k_sigma_m = static_cast<float>(config_.sigma_factor * std::sqrt(var_m2));
         const bool is_agreed = ground.observations.empty() || ground.observations.at(ix, iy) > 1;
-        shown[ix] = is_agreed ? -(height_m + doubt_m) : kNothing;
-        possible[ix] = -(height_m - doubt_m);
+        shown[ix] = is_agreed ? -(height_m + k_sigma_m) : kNothing;
+        possible[ix] = -(height_m - k_sigma_m);
         total.z += z_m;
         total.xz += ix * z_m;
         total.var += var_m2;
@@ -205,12 +205,12 @@ void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
         }
         const bool known = inside && std::isfinite(z_m);
         const auto mean_m = static_cast<float>(z_m / cells);
-        const auto doubt_m =
+        const auto k_sigma_m =
             static_cast<float>(config_.sigma_factor * std::sqrt(var_m2 / cells * per_error));
         patch_m_.at(ix, iy) = known ? mean_m : kNanF;
-        patch_doubt_m_.at(ix, iy) = doubt_m;
-        patch_high_.row(iy)[ix] = known ? mean_m + doubt_m : kNothing;
-        patch_low_.row(iy)[ix] = known ? -(mean_m - doubt_m) : kNothing;
+        patch_k_sigma_m_.at(ix, iy) = k_sigma_m;
+        patch_high_.row(iy)[ix] = known ? mean_m + k_sigma_m : kNothing;
+        patch_low_.row(iy)[ix] = known ? -(mean_m - k_sigma_m) : kNothing;
     }
     patch_high_.build(iy);
     patch_low_.build(iy);
@@ -292,8 +292,8 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     const double slope_x = foot.xz / foot_moment_ / resolution_m_;
     const double slope_y = row.yz[at] / foot_moment_ / resolution_m_;
     const double slope = std::sqrt(slope_x * slope_x + slope_y * slope_y);
-    const double slope_doubt = slope_sigmas_per_m_ * std::sqrt(foot.var / foot_cells_);
-    if (slope - slope_doubt > config_.max_slope) return Foothold::tilted;
+    const double slope_k_sigma = slope_sigmas_per_m_ * std::sqrt(foot.var / foot_cells_);
+    if (slope - slope_k_sigma > config_.max_slope) return Foothold::tilted;
     Foothold found = Foothold::safe;
     // If the highest and the lowest patch are near every height of p, all patches are near p.
     const double rise_m = slope * (config_.foot_radius_m + config_.margin_m);
@@ -303,7 +303,7 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     if (!level) found = judge_patches(ix, iy, middle_m, slope_x, slope_y);
     if (found == Foothold::rough) return found;
     if (foot.tight >= overhead_cells_) return Foothold::low;
-    if (row.tight_band[at] > 0.0 || slope + slope_doubt > config_.max_slope ||
+    if (row.tight_band[at] > 0.0 || slope + slope_k_sigma > config_.max_slope ||
         middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m ||
         drop_begins(middle_m, slope, row.low_near[at]) ||
         (slope > 0.5 * config_.max_slope && tilts_at_a_yaw(ix, iy))) {
@@ -321,14 +321,14 @@ Foothold FootholdFinder::judge_patches(
     for (int dy = -foot; dy + patch_cells_ - 1 <= foot; ++dy) {
         const int p = patch_half_width(dy);
         const float* mean_m = patch_m_.row(iy + dy) + ix;
-        const float* doubt_m = patch_doubt_m_.row(iy + dy) + ix;
+        const float* k_sigma_m = patch_k_sigma_m_.row(iy + dy) + ix;
         const double row_m = middle_m + slope_y * (dy + to_middle) * resolution_m_;
         for (int dx = -p; dx <= p - patch_cells_ + 1; ++dx) {
             const double plane_m = row_m + slope_x * (dx + to_middle) * resolution_m_;
             const double residual_m = std::abs(static_cast<double>(mean_m[dx]) - plane_m);
-            const auto doubt = static_cast<double>(doubt_m[dx]);
-            if (residual_m - doubt > config_.max_residual_m) return Foothold::rough;
-            if (residual_m + doubt > config_.max_residual_m) found = Foothold::unsure;
+            const auto k_sigma = static_cast<double>(k_sigma_m[dx]);
+            if (residual_m - k_sigma > config_.max_residual_m) return Foothold::rough;
+            if (residual_m + k_sigma > config_.max_residual_m) found = Foothold::unsure;
         }
     }
     return found;

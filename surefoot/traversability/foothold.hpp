@@ -168,7 +168,7 @@ class FootholdFinder {
     double slope_sigmas_per_m_ = 0;  ///< k sigma of the slope for each metre of sigma of a cell
     std::vector<Sums> sums_;         ///< nx + 1 elements per row
     Image<float> patch_m_;           ///< mean of the patch that begins at a cell; NaN = unknown
-    Image<float> patch_doubt_m_;     ///< k sigma of the patch mean
+    Image<float> patch_k_sigma_m_;   ///< k sigma of the patch mean
     RunMaxima patch_high_;           ///< patch mean + k sigma
     RunMaxima patch_low_;            ///< -(patch mean - k sigma)
     RunMaxima low_shown_;            ///< -(height + k sigma), observations agree; or -free_above

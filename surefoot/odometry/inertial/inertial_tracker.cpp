@@ -172,11 +172,11 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
     listen(off, expected);
     if (!still_agrees(chi2)) return std::nullopt;
     // After one large difference, belief and readings count as less certain than they state.
-    const double doubt = std::max(chi2 / kChi2Limit, 1.0);
+    const double inflation = std::max(chi2 / kChi2Limit, 1.0);
     InertialBelief before = *belief_;
-    before.covariance *= doubt;
+    before.covariance *= inflation;
     ImuMotion motion = step_.motion;
-    motion.covariance *= doubt;
+    motion.covariance *= inflation;
 
     const InertialSolution path =
         fuse(model_,

@@ -286,15 +286,16 @@ void GroundClassifier::name_treads(const Terrain& terrain,
     for (std::size_t i = 0; i + 1 < flight.edges.size(); ++i) {
         const Edge& near = flight.edges[i];
         const Edge& far = flight.edges[i + 1];
-        const double told_m = 0.5 * (up ? near.upper_m + far.lower_m : near.lower_m + far.upper_m);
-        name_tread(terrain, {near.from_m, near.to_m, far.to_m, far.from_m}, told_m, out);
+        const double expected_m =
+            0.5 * (up ? near.upper_m + far.lower_m : near.lower_m + far.upper_m);
+        name_tread(terrain, {near.from_m, near.to_m, far.to_m, far.from_m}, expected_m, out);
     }
 }
 
 /// Fits the level of the cells inside the quad and marks the cells on that level.
 void GroundClassifier::name_tread(const Terrain& terrain,
                                   const Quad& quad,
-                                  double told_m,
+                                  double expected_m,
                                   GroundClasses& out) {
     const grid::GridGeometry& grid = terrain.geometry;
     const CellBox box = box_around(grid, quad, 0.0);
@@ -314,7 +315,7 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     if (heights_m_.size() < kLeastTreadCells) return;
     var_m2 /= static_cast<double>(heights_m_.size());
     const TreadLevel level = level_of(heights_m_, sorted_m_, var_m2, square(grid.resolution_m));
-    if (!(std::abs(level.height_m - told_m) <= std::max(kTread_m, 3.0 * level.sigma_m))) return;
+    if (!(std::abs(level.height_m - expected_m) <= std::max(kTread_m, 3.0 * level.sigma_m))) return;
     const PatchConfig& on_plane = config_.patches;
     for_inside([&](int ix, int iy) {
         GroundClass& name = out.of_cell.row(iy)[ix];

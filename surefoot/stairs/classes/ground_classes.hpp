@@ -82,7 +82,10 @@ class GroundClassifier {
     [[nodiscard]] GroundClass unseen_class(const NearGround& ground, float free_above_m) const;
     void name_cells(const Terrain& terrain, const PatchMap& patches, GroundClasses& out) const;
     void name_treads(const Terrain& terrain, const Flight& flight, GroundClasses& out);
-    void name_tread(const Terrain& terrain, const Quad& quad, double told_m, GroundClasses& out);
+    void name_tread(const Terrain& terrain,
+                    const Quad& quad,
+                    double expected_m,
+                    GroundClasses& out);
     void name_edge(const Terrain& terrain,
                    const Eigen::Vector2d& from_m,
                    const Eigen::Vector2d& to_m,
