@@ -51,8 +51,8 @@ def invented_part(folders, noise):
             points[matcher][rule] = (100 * invented / hidden, 100 * known / visible)  # of the approach
             body.append(row)
     body.sort(key=lambda row: rules.index(row[0].strip("*")))
-    lines = ["The table gives shares of the cells that are hidden behind a drop edge, and of the cells that both cameras see completely "
-             "(all drops and distances):", ""]
+    lines = ["The table gives shares of the hidden cells (behind a drop edge) and of the visible cells (both cameras see them completely), "
+             "for all drops and distances:", ""]
     lines += table(["pixels that the map uses", "matcher", *(f"{frames}: {cells}" for frames in ("one frame", "10 frames") for cells in
                     ("hidden cells invented", "hidden cells invented and more than 20 mm wrong", "visible cells known"))], body)
     return lines + ["", invented_picture(points, rules, noise), ""]
@@ -88,8 +88,8 @@ def kerbs_part(folder):
     rows = [r for r in read(folder / "invented.csv") if r["rule"] == DEFAULT_RULE]
     drops = list(dict.fromkeys(r["drop"] for r in rows))
     distances = list(dict.fromkeys(r["distance_m"] for r in rows))
-    lines = ["The table gives shares by drop and distance, for census with the default settings. Each cell of the table holds the share of the hidden "
-             "cells that stay unknown, the number of hidden cells, and the share of the visible cells that are known.",
+    lines = ["The table gives shares by drop and distance, for census with the default settings. Each entry holds the share of hidden "
+             "cells that stay unknown, the number of hidden cells, and the share of visible cells that are known.",
              ""]
     body = []
     for motion, name in (("one frame", "one frame"), ("approach", "10 frames")):
