@@ -309,7 +309,7 @@ def gate_misses(misses):
         kind, variant, danger = miss[:3]
         groups[tier, kind, variant, danger].append(miss)
     if not groups:
-        return ["None so far."]
+        return ["No hazard was missed so far."]
     body = [[*group, len(some), some[0][3], f"`{some[0][0]} {some[0][4]}`", some[0][5]] for group, some in sorted(groups.items())]
     return table(["tier", "scene", "map", "danger", "misses", "movement", "an example (`gate_scenes again`)", "truth"], body)
 

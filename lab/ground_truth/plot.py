@@ -25,7 +25,7 @@ def ground(lab):
                          *(worst(of_scene, key, digits) for key, digits in (("tilt_p50_deg", 2), ("tilt_p90_deg", 2),
                                                                             ("height_p50_mm", 1),
                                                                             ("height_p90_mm", 1)))])
-        lines += [f"### {profile}", ""]
+        lines += [f"### Camera profile {profile}", ""]
         lines += table(["scene", "tilt error of odom [deg]", "height error of odom [mm]", "single frames with an accepted plane",
                         "tilt error of single frames, 50 % [deg]", "tilt error of single frames, 90 % [deg]",
                         "height error of single frames, 50 % [mm]", "height error of single frames, 90 % [mm]"], body) + [""]

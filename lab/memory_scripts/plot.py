@@ -61,7 +61,7 @@ def memory_reasons(rows):
     lines += table(["script", "camera pitch, down", "step asked or on the way", "first reason", "refused steps",
                     "example: seed, step, movement; cell; measured value and limit; all reasons"], body)
     if missed:
-        lines += ["", "Dangerous steps that were allowed:", ""]
+        lines += ["", "The table lists the dangerous steps that the gate allowed:", ""]
         lines += table(["script", "camera pitch, down [deg]", "seed", "step", "movement", "danger", "drift, stated covariance", "pose error [mm]", "stated drift [mm]"],
                        [[r["script"] if r["holes"] == "seen" else r["script"] + ", filled", r["pitch_deg"], r["seed"], r["step"], r["command"], r["danger"],
                          f"{float(r['drift_percent']):g} %, {STATED[r['stated']]}", r["off_mm"], r["stated_drift_mm"]] for r in missed])
