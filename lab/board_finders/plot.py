@@ -10,6 +10,8 @@ IMAGE_SETS = (("chess_fisheye", "calibration/chess_fisheye", "chessboard:9x6:0.0
               ("chess_pinhole", "calibration/chess_pinhole", "chessboard:9x6:1"),
               ("bumblebee_chess", "real/bumblebee_chess", "chessboard:4x6:0.03"),
               ("mrpt_boards", "real/mrpt_boards", "chessboard:9x6:0.03"))
+FINDER_TITLES = {"ours": "our finder: boards correct (reported)", "SB": "OpenCV SB", "SB exhaustive": "OpenCV SB, exhaustive search",
+                 "SB accuracy": "OpenCV SB, accuracy flag", "classic, fast check": "OpenCV classic, fast check", "classic": "OpenCV classic"}
 EMPTY_SETS = (("garden_walk", "real/garden_walk", "chessboard:9x6:0.03"),
               ("bumblebee_pairs", "real/bumblebee_pairs", "chessboard:9x6:0.03"))
 
@@ -70,7 +72,7 @@ def finder_rows(rows):
         ms = sorted(float(r["ms"]) for r in rows if r["finder"] == finder)
         times.append(f"{statistics.median(ms):.0f} / {ms[-1]:.0f}")
     body.append(["time per image [ms]: median / longest", len(rows) // len(finders)] + times)
-    return ["set", "images"] + finders, body
+    return ["set or image condition", "images"] + [FINDER_TITLES.get(finder, finder) for finder in finders], body
 
 
 def empty_rows(rows):
@@ -79,7 +81,7 @@ def empty_rows(rows):
         mine = [r for r in rows if r["set"] == name]
         ms = sorted(float(r["ms"]) for r in mine)
         body.append([name, len(mine), sum(int(r["found"]) for r in mine), f"{statistics.median(ms):.0f} / {ms[-1]:.0f}"])
-    return ["set without a board", "images", "boards found", "time per image [ms]: median / longest"], body
+    return ["image set without a board", "images", "boards reported", "time per image [ms]: median / longest"], body
 
 
 def within(rows, error, sigma, times):
@@ -98,8 +100,8 @@ def rig_rows(rows):
                      within(mine, "baseline_mm", "baseline_sigma_mm", 3), f"{max(map(abs, shares)):.1f}",
                      f"{statistics.median(float(r['depth_sigma_mm']) for r in mine):.2f}",
                      within(mine, "depth_mm", "depth_sigma_mm", 3), f"{max(map(abs, depths)):.1f}"])
-    return ["lens", "rigs", "pairs used", "baseline: stated sigma, median [mm]", "errors within 3 sigma", "largest error [sigma]",
-            "depth at 1 m: stated sigma, median [mm]", "errors within 3 sigma", "largest error [sigma]"], body
+    return ["lens: angle of view and profile", "rigs", "image pairs used", "baseline: stated sigma, median [mm]", "baseline errors within 3 sigma", "largest baseline error [sigma]",
+            "depth at 1 m: stated sigma, median [mm]", "depth errors within 3 sigma", "largest depth error [sigma]"], body
 
 
 def advice_rows(rows):
@@ -111,8 +113,8 @@ def advice_rows(rows):
         pixels = [f"{float(r['better_px']):.2f} / {float(r['chosen_px']):.2f}" for r in mine if r["suggested"]]
         body.append([lens, mine[0]["kind"], chosen, ", ".join(f"{n} {name}" for name, n in counts.items()),
                      ", ".join(pixels) or "-", f"{sum(int(r['calibrated']) for r in mine)} of {len(mine)}"])
-    return ["lens", "true model", "chosen model", "suggested", "rms of the suggested / chosen model [px]",
-            "calibrated with the chosen model"], body
+    return ["lens: angle of view and profile", "true model", "chosen model", "suggested model, number of rigs",
+            "rms of the suggested / chosen model, one pair per suggestion [px]", "rigs calibrated with the chosen model"], body
 
 
 def boards(lab):

@@ -43,7 +43,8 @@ def calibration_lenses(rows):
                 body.append([lens, board, f"{len(mine)} of {CALIBRATION_SEEDS[1]}", each("noise_px", 3),
                              f"{100 * total('beyond') / total('pixels'):.2f} %", each("largest_sigmas", 1), total("without"),
                              each("median_px", 2), each("mean_square", 1)])
-    return table(["lens", "board", "calibrated", "noise of each seed [px]", "pixels beyond 3 sigma", "largest error of each seed [sigma]", "pixels without an image",
+    return table(["lens model", "board (kind:columns x rows:square side [m]:marker side [m])", "seeds calibrated", "corner noise of each seed [px]", "pixels beyond 3 sigma",
+                  "largest error of each seed [sigma]", "pixels that the estimate does not map",
                   "median error of each seed [px]", "mean squared Mahalanobis distance of each seed (2 expected)"], body)
 
 
@@ -55,7 +56,7 @@ def calibration_rigs(rows):
         within = abs(baseline) < 3 * sigma and turn < 3 * turn_sigma and square < 20.06
         body.append([r["lens"], r["seed"], f"{baseline:+.3f} ({sigma:.3f})", f"{turn:.3f} ({turn_sigma:.3f})", f"{square:.1f}",
                      "yes" if within else "**no**"])
-    return table(["lens", "seed", "baseline error (stated sigma) [mm]", "largest rotation error (stated sigma) [mrad]", "squared Mahalanobis distance (6 expected)",
+    return table(["lens model", "seed", "baseline error (stated sigma) [mm]", "largest rotation error (stated sigma) [mrad]", "squared Mahalanobis distance (6 expected)",
                   "within 3 sigma"], body)
 
 
@@ -78,8 +79,8 @@ def calibration_real(lab):
         body.append([name, model, f"{found['used']} of {found['views']} ({pairs})", f"{found['rms_px']:.4f} ({rms})",
                      f"{found['row_rms_px']:.4f} ({rows})", f"{found['row_focal_px']:.0f}", ", ".join(map(str, left_out)) or "none",
                      "yes" if met else "**no**"])
-    return table(["set", "model", "pairs used (at least)", "joint rms (at most) [px]", "row rms (at most) [px]", "focal length of the row rms [px]",
-                  "views left out", "met"], body)
+    return table(["set", "lens model", "pairs used (at least)", "joint reprojection rms (at most) [px]", "row error rms (at most) [px]",
+                  "mean focal length to which the row error refers [px]", "views left out", "limits met"], body)
 
 
 def calibration_held_out(lab):
@@ -100,7 +101,7 @@ def calibration_held_out(lab):
         square = float(board.split(":")[2])
         ends = [round(len(rows) * k / 3) for k in range(4)]
         body += [held_out_row(name, rows[first:last], square, square != 1.0) for first, last in zip(ends, ends[1:])]
-    return table(["set", "distance", "pairs", "depth error, mean", "depth error, rms", "scatter of depths about the plane",
+    return table(["set", "distance of the board", "pairs", "depth error, mean", "depth error, rms", "rms scatter of corner depths about the plane of the board",
                   "error of a length of 50 mm: mean [mm]", "error of a length of 50 mm: rms [mm]", "scatter of single lengths [mm]"], body)
 
 

@@ -51,10 +51,10 @@ def invented_part(folders, noise):
             points[matcher][rule] = (100 * invented / hidden, 100 * known / visible)  # of the approach
             body.append(row)
     body.sort(key=lambda row: rules.index(row[0].strip("*")))
-    lines = ["Shares of the cells that are hidden behind a drop edge, and of the cells that both cameras see completely "
-             "(all drops and distances):", ""]
-    lines += table(["pixels that the map uses", "matcher", "one frame: invented", "invented and more than 20 mm wrong", "visible floor known",
-                    "10 frames: invented", "invented and more than 20 mm wrong", "visible floor known"], body)
+    lines = ["The table gives shares of the hidden cells (behind a drop edge) and of the visible cells (both cameras see them completely), "
+             "for all drops and distances:", ""]
+    lines += table(["pixels that the map uses", "matcher", *(f"{frames}: {cells}" for frames in ("one frame", "10 frames") for cells in
+                    ("hidden cells invented", "hidden cells invented and more than 20 mm wrong", "visible cells known"))], body)
     return lines + ["", invented_picture(points, rules, noise), ""]
 
 
@@ -88,7 +88,8 @@ def kerbs_part(folder):
     rows = [r for r in read(folder / "invented.csv") if r["rule"] == DEFAULT_RULE]
     drops = list(dict.fromkeys(r["drop"] for r in rows))
     distances = list(dict.fromkeys(r["distance_m"] for r in rows))
-    lines = ["Shares by drop and distance, census with the default settings: hidden cells that stay unknown / visible cells that are known.",
+    lines = ["The table gives shares by drop and distance, for census with the default settings. Each entry holds the share of hidden "
+             "cells that stay unknown, the number of hidden cells, and the share of visible cells that are known.",
              ""]
     body = []
     for motion, name in (("one frame", "one frame"), ("approach", "10 frames")):
@@ -97,10 +98,10 @@ def kerbs_part(folder):
     near = shares([r for r in rows if r["drop"].startswith("kerb") and float(r["distance_m"]) < 1.6],
                   lambda r: (r["drop"], r["motion"]))
     body.sort(key=lambda row: drops.index(row[0]))
-    lines += table(["drop", "frames"] + [f"{d} m" for d in distances], body)
+    lines += table(["drop", "frames"] + [f"edge {d} m ahead: hidden cells unknown / visible cells known" for d in distances], body)
     together = [[drop, *(f"{share(near[drop, motion]):.1f} %" for share in (unknown_share, unsure_share) for motion in ("one frame", "approach"))]
                 for drop in drops if drop.startswith("kerb")]
-    lines += ["", "Hidden cells behind kerbs at 0.67-1.5 m together:", ""]
+    lines += ["", "The next table gives shares of the hidden cells behind kerbs, for all distances of 0.67-1.5 m together:", ""]
     return lines + table(["drop", "unknown, one frame", "unknown, 10 frames", "unknown or sigma above 10 mm, one frame",
                           "unknown or sigma above 10 mm, 10 frames"], together) + [""]
 
@@ -177,10 +178,12 @@ def correlation_part(folder, noise):
              *(f"{float(r['independent']):.1f} of {float(r['pixels_per_cell']):.0f}" for r in mine),
              f"{float(floor['correlation_between_frames']):.2f}"] if is_drawn else ["-"] * (5 + len(mine))))
     ranges = [r["range_m"] for r in cells if r["pattern"] == patterns[0]]
-    return ["Flat floor nearer than about 3 m that both cameras see. Correlation length: the distance at which the correlation of the "
-            "errors falls to 1/e. Independent pixels: how many of the pixels of a 25 mm cell have independent errors, by distance.", ""] + table(
-        ["floor", "matched", "trusted", "stated sigma, median [px]", "true scatter [px]", "correlation length along rows [px]",
-         "correlation length along columns [px]", *(f"independent pixels at {r} m" for r in ranges), "correlation with the next frame"], body) + [
+    return ["The next table is for flat floor nearer than about 3 m that both cameras see. The correlation length is the distance at which the "
+            "correlation of the errors falls to 1/e. The columns of independent pixels state how many of the pixels of a 25 mm cell have "
+            "independent errors.", ""] + table(
+        ["floor pattern", "pixels with a disparity", "trusted pixels", "stated sigma of the disparity, median [px]",
+         "true scatter of the disparity [px]", "correlation length along rows [px]",
+         "correlation length along columns [px]", *(f"independent pixels at {r} m" for r in ranges), "correlation of the errors with those of the next frame"], body) + [
              "", save(figure, f"correlation_noise{noise}"), ""]
 
 

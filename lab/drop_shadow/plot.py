@@ -25,10 +25,11 @@ def drop_shadow(lab):
                     f"({100 * filled_share(of(matcher, rule)):.0f} %)" for matcher in folders]
         body.append(row + [f"{height:.0f}" for height in fill_heights_mm(of("census", "every match"))])
     fill("correlated_depth", table(
-        ["edge ahead", "occluded strip by geometry", "occluded strip by the rays of both cameras", "first pixel with ground again",
+        ["distance of the edge", "length of the occluded strip by geometry", "length of the occluded strip by the rays of both cameras",
+         "distance behind the edge of the first pixel with ground again",
          "filled by every match, census", "filled by every match, sgbm", "filled with the defaults, census", "filled with the defaults, sgbm",
-         *(f"height of the fill, fifth {k} [mm]" for k in range(1, 6))],
-        body) + ["", "The height of the fill is that of every match of census, in fifths of the strip from the edge on.", "", "A cut along the camera's axis, 24 mm wide, first seed, census:", "", shadow_picture(folders["census"], {r["distance_m"]: 1e3 * float(r["geometry_m"]) for r in rows["census"]}), ""], "shadow")
+         *(f"median height of the fill, fifth {k} [mm]" for k in range(1, 6))],
+        body) + ["", "The height of the fill is that of every match of census. Fifth 1 of the strip lies at the edge.", "", "The picture shows a cut along the camera's axis, 24 mm wide, for the first seed and census:", "", shadow_picture(folders["census"], {r["distance_m"]: 1e3 * float(r["geometry_m"]) for r in rows["census"]}), ""], "shadow")
 
 
 def filled_share(rows):

@@ -39,7 +39,8 @@ def gate_scenes(lab):
     maps = gate_counts(folder / "maps")
     lines = ["### Map level: hazards that were allowed", ""] + gate_missed_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
     lines += ["", "### Map level: safe movements that were refused", ""] + gate_stops_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
-    lines += ["", "Reasons of the refusals at noise 1 (several reasons can apply):", ""]
+    lines += ["", "Reasons of the refused safe movements at noise 1, without `unseen`. One refusal may have several reasons "
+              "(`alone`: the only reason; `proof`: a proof that failed; `reason`: any reason):", ""]
     lines += gate_reasons_table(maps, "noise 1")
     lines += ["", "### All 26 movements, every hundredth scene", ""] + gate_all_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
     fill("gate_scenes", lines)
@@ -73,7 +74,7 @@ def gate_runs(lab):
         reasons = gate_reasons_table(counts, "noise 1")
         if len(reasons) > 2:  # more than the heading
             lines += ["", "Reasons of the refused safe movements above (movement of the scene, without `unseen`). "
-                      "One refusal may have several reasons:", ""] + reasons
+                      "One refusal may have several reasons (`alone`: the only reason; `proof`: a proof that failed; `reason`: any reason):", ""] + reasons
     if GATE_KEPT_MISSES.exists():
         misses = [(row["tier"], *(row[name] for name in MISS)) for row in read(GATE_KEPT_MISSES)]
     fill("gate_scenes", lines[1:], "runs")
@@ -156,8 +157,8 @@ def gate_missed_table(counts, variants):
         clean, noisy = counts[kind, "noise 0"], counts[kind, "noise 1"]
         row += [percent(noisy["hazards_unknown"], noisy["hazards"])]
         body.append(row + [percent(c["thesis_missed"], c["hazards"]) for c in (clean, noisy)])
-    return table(["hazard", *(f"missed, {v}" for v in variants), "noise 1: refused only because unknown", "policy of the thesis, noise 0: missed",
-                  "policy of the thesis, noise 1: missed"], body)
+    return table(["kind of hazard", *(f"missed, {v} (upper bound)" for v in variants), "noise 1: share refused only because of unknown cells",
+                  "policy of the thesis, noise 0: share missed", "policy of the thesis, noise 1: share missed"], body)
 
 
 def gate_stops_table(counts, variants):
@@ -167,13 +168,13 @@ def gate_stops_table(counts, variants):
         body.append([kind, of[0]["safe"], *(percent(c["refused"], c["safe"]) for c in of), *(percent(c["thesis_refused"], c["safe"]) for c in of[:3])])
     total = [sum((counts[k, v] for k in GATE_KINDS if k != "unseen"), collections.Counter()) for v in variants]
     body.append(["**all but unseen**", total[0]["safe"], *(percent(c["refused"], c["safe"]) for c in total), *(percent(c["thesis_refused"], c["safe"]) for c in total[:3])])
-    return table(["scene", "safe movements asked", *(f"refused, {v}" for v in variants), *(f"policy of the thesis, {v}" for v in variants[:3])], body)
+    return table(["kind of scene", "safe movements asked", *(f"refused, {v}" for v in variants), *(f"refused by the policy of the thesis, {v}" for v in variants[:3])], body)
 
 
 def gate_reasons_table(counts, variant):
     total = sum((counts[k, variant] for k in GATE_KINDS if k != "unseen"), collections.Counter())
     names = sorted((n for n in total if n.startswith(("reason:", "proof:", "alone:"))), key=lambda n: (n.split(":")[0], -total[n]))
-    return table(["kind", "reason", "share of the refused"], [[*n.split(":"), f"{total[n]} ({percent(total[n], total['refused'])})"] for n in names])
+    return table(["`alone`, `proof` or `reason`", "reason or failed proof", "refused movements (share of the refused)"], [[*n.split(":"), f"{total[n]} ({percent(total[n], total['refused'])})"] for n in names])
 
 
 def gate_all_table(counts, variants):
@@ -181,7 +182,7 @@ def gate_all_table(counts, variants):
     for variant in variants:
         total = sum((counts[k, variant] for k in GATE_KINDS if k != "unseen"), collections.Counter())
         body.append([variant, bound_of(total["all_missed"], total["all_hazards"]), total["all_safe"], percent(total["all_refused"], total["all_safe"])])
-    return table(["map", "missed", "safe movements asked", "refused"], body)
+    return table(["kind of map", "hazards missed (upper bound)", "safe movements asked", "share of the safe movements refused"], body)
 
 
 def gate_runs_table(counts):
@@ -194,7 +195,8 @@ def gate_runs_table(counts):
     body.append(["**all but unseen**", bound_of(total["missed"], total["hazards"]), f"{total['refused']} of {total['safe']}",
                  bound_of(total["all_missed"], total["all_hazards"]), f"{percent(total['all_refused'], total['all_safe'])} of {total['all_safe']}",
                  f"{total['thesis_missed']} of {total['hazards']}"])
-    return table(["hazard", "movement of the scene: missed", "movement of the scene: safe refused", "all 26 movements: missed", "all 26 movements: safe refused", "policy of the thesis: missed"], body)
+    return table(["kind of hazard", "movement of the scene: hazards missed (upper bound)", "movement of the scene: safe movements refused",
+                  "all 26 movements: hazards missed (upper bound)", "all 26 movements: safe movements refused", "policy of the thesis: hazards missed"], body)
 
 
 def gate_curve(counts):
@@ -238,7 +240,7 @@ def gate_curve(counts):
     save_at(figure, ROOT / "docs" / "img" / "gate_trade_off.png")
     body += [["policy of the thesis, noise", f"x {n:g}", bound_of(total[v]["thesis_missed"], total[v]["hazards"]), percent(total[v]["thesis_refused"], total[v]["safe"])]
              for n, v in noises]
-    return ["![hazards missed and safe movements refused](../img/gate_trade_off.png)", ""] + table(["changed value", "value", "missed", "safe refused"], body)
+    return ["![hazards missed and safe movements refused](../img/gate_trade_off.png)", ""] + table(["changed quantity, kind of map", "value (bold: value of the gate)", "hazards missed (upper bound)", "safe movements refused"], body)
 
 
 def gate_drift(counts):
@@ -252,7 +254,8 @@ def gate_drift(counts):
             kinds = ", ".join(f"{k} {counts[k, f'{name} {drift:g}']['missed']}" for k in GATE_KINDS if counts[k, f"{name} {drift:g}"]["missed"])
             row += [bound_of(total["missed"], total["hazards"]), kinds or "-", percent(total["refused"], total["safe"])]
         body.append(row)
-    return table(["drift, 1 sigma of each axis, true and stated", "noise 1: missed", "noise 1: kinds missed", "noise 1: safe refused", "overconfident: missed", "overconfident: kinds missed", "overconfident: safe refused"], body)
+    return table(["drift, 1 sigma of each axis, true and stated", "noise 1: hazards missed (upper bound)", "noise 1: kinds of missed hazards", "noise 1: safe movements refused",
+                  "overconfident: hazards missed (upper bound)", "overconfident: kinds of missed hazards", "overconfident: safe movements refused"], body)
 
 
 def map_noise_table(folder):
@@ -264,8 +267,8 @@ def map_noise_table(folder):
             body.append([f"x {noise}"] + ["not measured yet"] + ["-"] * 6)
             continue
         body.append([f"x {noise}"] + level_ground(read(file)))
-    return table(["image noise", "runs", "cells seen from 3 poses or more", "unknown ones of these", "stated sigma: 10 / 50 / 90 / 99 / 99.9 % [mm]",
-                  "standard deviation of the errors [stated sigma]", "share with an error of 20 mm or more", "correlation of errors at 1 / 2 / 3 / 6 cells"], body)
+    return table(["image noise", "runs used", "cells seen from 3 poses or more", "share of these cells that are unknown", "stated sigma: percentiles 10 / 50 / 90 / 99 / 99.9 [mm]",
+                  "standard deviation of the errors [stated sigma]", "share of cells with an error of 20 mm or more", "correlation of errors at a distance of 1 / 2 / 3 / 6 cells"], body)
 
 
 def level_ground(rows):
@@ -306,7 +309,7 @@ def gate_misses(misses):
         kind, variant, danger = miss[:3]
         groups[tier, kind, variant, danger].append(miss)
     if not groups:
-        return ["None so far."]
+        return ["No hazard was missed so far."]
     body = [[*group, len(some), some[0][3], f"`{some[0][0]} {some[0][4]}`", some[0][5]] for group, some in sorted(groups.items())]
     return table(["tier", "scene", "map", "danger", "misses", "movement", "an example (`gate_scenes again`)", "truth"], body)
 

@@ -31,7 +31,8 @@ def ground_search(lab):
     lines += [search_row(f"{kind}, floor visible (4 % or more)", [r for r in of(kind) if share(r) >= 0.04]) for kind in ("table", "bed")]
     lines += [search_row("walls, no floor", of("wall")),
               search_row("a table or a bed hides the floor", of("full_table") + [r for r in of("table") + of("bed") if share(r) < 0.04])]
-    fill("ground", table(["views", "number", "ground found", "wrong plane", "not found", "NEES of the tilt per unknown, mean", "NEES of the tilt per unknown, median"], lines), "search")
+    fill("ground", table(["group of views", "number of views", "ground found", "wrong plane found", "no plane found",
+                          "NEES of the tilt per degree of freedom (1 expected), mean", "NEES of the tilt per degree of freedom (1 expected), median"], lines), "search")
 
 
 EXPERIMENTS = {"ground_search": ground_search}

@@ -25,9 +25,10 @@ def ground(lab):
                          *(worst(of_scene, key, digits) for key, digits in (("tilt_p50_deg", 2), ("tilt_p90_deg", 2),
                                                                             ("height_p50_mm", 1),
                                                                             ("height_p90_mm", 1)))])
-        lines += [f"### {profile}", ""]
-        lines += table(["scene", "odom: tilt [deg]", "odom: height [mm]", "frames accepted", "tilt of single frames, 50 % [deg]", "tilt of single frames, 90 % [deg]",
-                        "height of single frames, 50 % [mm]", "height of single frames, 90 % [mm]"], body) + [""]
+        lines += [f"### Camera profile {profile}", ""]
+        lines += table(["scene", "tilt error of odom [deg]", "height error of odom [mm]", "single frames with an accepted plane",
+                        "tilt error of single frames, 50 % [deg]", "tilt error of single frames, 90 % [deg]",
+                        "height error of single frames, 50 % [mm]", "height error of single frames, 90 % [mm]"], body) + [""]
         for row in rows:
             if row["source"] != "plane":
                 lines += [f"{row['scene']} {row['seed']}: placed by {row['source']}, no plane was accepted.", ""]
@@ -46,8 +47,8 @@ def warm_up(lab):
                   WARM_FRAMES, "sim.exposure.sun_warm_up=true", "sim.rate_hz=5")
         for row in read(file):
             body.append([row[key] for key in ("scene", "seed", "profile", "waited_s", "source", "tilt_deg", "height_mm")])
-    return ["### Exposure warm-up in the sun", ""] + table(["scene", "seed", "profile", "waiting time [s]", "placed by", "odom: tilt [deg]",
-                                            "odom: height [mm]"], body) + [""]
+    return ["### Exposure warm-up in the sun", ""] + table(["scene", "seed", "camera profile", "waiting time [s]", "odom placed by",
+                                                                 "tilt error of odom [deg]", "height error of odom [mm]"], body) + [""]
 
 
 EXPERIMENTS = {"ground": ground}

@@ -21,10 +21,11 @@ def injections(lab):
         row, counts = injections_row(mine)
         body.append([f"H{number}", cause, *row])
         sums += counts
-    fill("injections", table(["hazard", "fault", "entry point", "drawn by the seed", "wanted class", "counted", "control runs OK", "runs with an OK too late (answers)",
-                              "fault to first inhibit: median / 99 % / most [ms]", "first reasons, number of injections"], body) +
-         ["", f"{sums['counted']} of {sums['injected']} injections count, {sums['controls_ok']} of {sums['controls']} control runs were OK throughout "
-          f"({sums['control_answers']} answers); an OK came too late in {sums['late']} injections.", ""])
+    fill("injections", table(["hazard", "fault", "entry point", "random choice of the seed", "wanted class of the answer", "injections that count",
+                              "control runs with only OK", "injections with an OK too late (number of such answers)",
+                              "time from the fault to the first inhibit: median / 99th percentile / largest [ms]", "first reasons, number of injections"], body) +
+         ["", f"{sums['counted']} of {sums['injected']} injections count. In {sums['controls_ok']} of {sums['controls']} control runs every answer was OK "
+          f"({sums['control_answers']} answers). In {sums['late']} injections an OK came too late.", ""])
 
 
 def injections_row(rows):

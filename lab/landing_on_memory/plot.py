@@ -49,8 +49,9 @@ def landing_part(rows, noise):
         if limit:
             axis.set_title(f"wanted: at most {limit} mm", fontsize=9)
     axes[0].legend(fontsize=8)
-    return table(["walk", "camera pitch", "camera height", "cameras", "landing feet with known ground", "age of the ground, median", "oldest", "height error p50 [mm]", "height error p99",
-                  "horizontal error p50 [mm]", "horizontal error p99"], body) + ["", save(figure, f"landing_noise{noise}"), ""]
+    return table(["walk", "camera pitch, down", "camera height", "number of cameras", "points under landing feet with known ground", "median age of the known ground",
+                  "largest age of the known ground", "height error, median [mm]", "height error, 99th percentile", "horizontal error, median [mm]",
+                  "horizontal error, 99th percentile"], body) + ["", save(figure, f"landing_noise{noise}"), ""]
 
 
 LANDING_SEEDS = {"mounts": (20_001, 3), "conditions": (20_001, 2)}
@@ -80,8 +81,9 @@ def landing_conditions(lab):
                      f"{unknown([r for r in mine if r['step'] != '0']):.1f} %", f"{p99('height_error_m'):.1f} mm",
                      f"{worst_of('height_error_m'):.1f}", f"{p99('horizontal_m'):.1f} mm", f"{worst_of('horizontal_m'):.1f}",
                      sum(last.values())])
-    fill("landing", table(["images", "camera pitch", "cameras", "seeds", "unknown, all steps", "unknown, first step", "unknown, later steps",
-                           "height error p99", "height error, worst [mm]", "horizontal error p99", "horizontal error, worst [mm]", "frames lost"], body), "conditions")
+    fill("landing", table(["condition of the images", "camera pitch, down", "number of cameras", "number of seeds", "points unknown, all steps",
+                           "points unknown, first step", "points unknown, later steps", "height error, 99th percentile", "height error, largest [mm]",
+                           "horizontal error, 99th percentile", "horizontal error, largest [mm]", "frames with lost odometry"], body), "conditions")
 
 
 EXPERIMENTS = {"landing": landing, "landing_conditions": landing_conditions}

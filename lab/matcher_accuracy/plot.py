@@ -23,8 +23,8 @@ def matching(lab):
 
 
 def truth_table(rows):
-    return table(["matched minus stored disparity [px]", "matches", "10 %", "25 %", "median", "75 %", "90 %",
-                  "median, far half", "median, near half"],
+    return table(["pair and matcher: matched minus stored disparity [px]", "number of matches", "10th percentile", "25th percentile", "median",
+                  "75th percentile", "90th percentile", "median of the far half", "median of the near half"],
                  [[f"{r['pair']}, {r['matcher']}", r["count"]] + [f"{float(r[key]):+.2f}" for key in
                   ("q10", "q25", "q50", "q75", "q90", "q50_far", "q50_near")] for r in rows])
 
@@ -43,10 +43,10 @@ def pairs_table(rows):
                     [f"{mean('bad_1', t):.2f} / {mean('bad_2', t):.2f}" for t in ("as published", "centred")] +
                     [f"{mean('density', 'centred'):.1f} %"])
     return table(["bad-1 / bad-2 [%]"] + [p if t == "as published" else f"{p}, truth + 0.5" for p, t in columns] +
-                 ["mean of the first four, as published", "mean of the first four, truth + 0.5", "density"], body)
+                 ["mean of the first four pairs, as published", "mean of the first four pairs, truth + 0.5", "share of pixels matched"], body)
 
 
-AIMS = {"chosen": "both", "for pairs": "pairs alone", "for simulated": "simulated images alone"}
+AIMS = {"chosen": "pairs and simulated images", "for pairs": "pairs alone", "for simulated": "simulated images alone"}
 
 
 def tuned_part(choices, rows):
@@ -54,7 +54,7 @@ def tuned_part(choices, rows):
     of = {(r["matcher"], r["set"]): r for r in choices}
     matchers = list(dict.fromkeys(r["matcher"] for r in choices))
     lines = ["### The best of 36 settings of each, chosen on cones, cloth3 and four simulated images", ""]
-    lines += table(["matcher"] + [f"chosen by {words}" for words in AIMS.values()] + ["loss (both)", "loss of the default settings"],
+    lines += table(["matcher"] + [f"settings chosen on {words}" for words in AIMS.values()] + ["loss of the settings chosen on both", "loss of the default settings"],
                    [[m] + [of[m, aim]["words"] for aim in AIMS] + [f"{float(of[m, 'chosen'][key]):.1f}" for key in ("loss", "loss_as_it_comes")]
                     for m in matchers])
     truths = {"as published": "pairs, truth as published", "centred": "pairs, truth + 0.5 for adirondack"}
@@ -69,9 +69,9 @@ def tuned_part(choices, rows):
         mine = [r for r in rows if r["kind"] in kinds and (r["set"], r["truth"]) == (aim, truth)]
         means_alone = len(kinds) > 1 or aim == "for simulated"
         body += held_out_rows(mine, matchers, name)[-1 if means_alone else 0:]
-    return lines + ["", "Bad-1 / bad-2 [%] after filling. The last column is bad-2 of our whole matcher minus that of the best OpenCV mode on "
+    return lines + ["", "The next table gives bad-1 / bad-2 [%] after filling. The last column is bad-2 of our whole matcher minus bad-2 of the best OpenCV mode on "
                     "that image (at most +0.5 is wanted). In the rows of means it is the difference to the best mean of one mode.",
-                    ""] + table(["image"] + matchers + ["bad-2 of ours minus OpenCV's best"], body) + [""]
+                    ""] + table(["bad-1 / bad-2 [%] after filling, by image"] + matchers + ["bad-2 of ours minus bad-2 of OpenCV's best mode (its name)"], body) + [""]
 
 
 def held_out_rows(rows, matchers, name):
@@ -101,7 +101,7 @@ def robustness_part(rows):
     """Image faults: means over the images of each fault."""
     matchers = list(dict.fromkeys((r["matcher"], r["set"]) for r in rows if not r["set"].startswith("for ")))
     matchers.sort(key=lambda m: m != ("our whole matcher", "as it comes"))
-    header = ["bad-1 / bad-2 [%]"] + [name if which == "chosen" else f"{name}, {which}" for name, which in matchers]
+    header = ["bad-1 / bad-2 [%]"] + [name if which == "chosen" else f"{name}, default settings" for name, which in matchers]
     filled, matched = [], []
     for kind, words in IMAGE_FAULTS.items():
         of = lambda m, key: statistics.mean(float(r[key]) for r in rows if (r["kind"], r["truth"], r["matcher"], r["set"])  # noqa: E731
@@ -110,10 +110,10 @@ def robustness_part(rows):
         matched.append([words] + [f"{of(m, 'matched_bad_1'):.1f} / {of(m, 'matched_bad_2'):.1f} of {of(m, 'density'):.0f} %" for m in matchers])
     images = {kind: list(dict.fromkeys(r["image"] for r in rows if r["kind"] == kind)) for kind in IMAGE_FAULTS}
     return ["### Image faults", "",
-            "Means over the images of each fault, with the simulated ZED and the settings chosen above, after filling. Every fault has "
-            "its own seeds, so compare along rows.", ""] + \
-        table(["fault", "images"], [[words, ", ".join(images[kind])] for kind, words in IMAGE_FAULTS.items()]) + [""] + \
-        table(header, filled) + ["", "Bad-1 / bad-2 of the matched pixels alone, and their share of the pixels that both cameras see:", ""] + \
+            "The tables give means over the images of each fault, with the simulated ZED and the settings chosen above, after filling. Every fault "
+            "has its own seeds, so compare only within a row.", ""] + \
+        table(["image fault", "simulated scenes"], [[words, ", ".join(images[kind])] for kind, words in IMAGE_FAULTS.items()]) + [""] + \
+        table(header, filled) + ["", "The next table gives bad-1 / bad-2 of the matched pixels alone, and their share of the pixels that both cameras see:", ""] + \
         table(header, matched) + [""]
 
 
@@ -131,11 +131,11 @@ def locking_part(rows):
             body.append([f"{matcher}, {words}", sum(counts)] + [f"{1e3 * mean:+.0f}" for mean in means] +
                         [f"**{1e3 * (max(means) - min(means)) / 2:.0f}**", f"{1e3 * rms:.0f}"])
     return ["### Whole pixels", "",
-            "Planes of rendered floors, matches within 1 px, default settings. The columns 0.0 to 0.9 give the mean error [1/1000 px] "
-            "by the fraction of the true disparity (0.0: within 0.05 px of a whole pixel). The range is that of these means; rms is "
-            "the rms error [1/1000 px].", "",
+            "The table is for planes of rendered floors, matches within 1 px and default settings. The columns of fractions give the mean error "
+            "by the fraction of the true disparity (0.0: within 0.05 px of a whole pixel).", "",
             locking_picture(rows, cameras), ""] + \
-        table(["matcher", "pixels"] + [f"{k / 10:.1f}" for k in range(10)] + ["half of the range", "rms"], body) + [""]
+        table(["matcher and camera", "number of pixels", "mean error at fraction 0.0 [1/1000 px]"] + [f"at {k / 10:.1f} [1/1000 px]" for k in range(1, 10)] +
+              ["half of the range of these means [1/1000 px]", "rms error [1/1000 px]"], body) + [""]
 
 
 def locking_picture(rows, cameras):

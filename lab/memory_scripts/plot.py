@@ -4,6 +4,7 @@ import collections
 from lab_figures import bound_of, fill, quantile, read, table
 
 MEMORY_SEEDS = (75_301, 30)
+STATED = {"own": "sound odometry", "told": "grows with the error"}
 
 
 def memory_scripts(lab):
@@ -37,10 +38,11 @@ def memory_table(rows):
             danger, safe = [r for r in asked if r["safe"] == "0"], [r for r in asked if r["safe"] == "1"]
             away = [float(r["off_mm"]) for r in asked]
             body.append([script if holes == "seen" else f"{script}, filled", f"{pitch} deg", f"{drift:g} %",
-                         {"own": "sound odometry", "told": "grows with the error"}[stated] if drift else "-", len({r["seed"] for r in mine}),
+                         STATED[stated] if drift else "-", len({r["seed"] for r in mine}),
                          bound_of(allowed(danger), len(danger)), f"{allowed(safe)} of {len(safe)}",
                          f"{allowed(way)} of {len(way)}" if holes == "seen" else "-", f"{quantile(away, 0.5):.0f} / {quantile(away, 1.0):.0f}"])
-    return table(["script", "camera", "drift", "stated covariance", "seeds", "dangerous steps allowed", "safe steps allowed", "safe steps on the way allowed",
+    return table(["script", "camera pitch, down", "drift of the odometry", "stated covariance (`-`: no drift)", "number of seeds",
+                  "dangerous steps allowed (upper bound)", "safe steps allowed", "safe steps on the way allowed",
                   "pose error, median / largest [mm]"], body)
 
 
@@ -54,13 +56,15 @@ def memory_reasons(rows):
     body = [[script, f"{pitch} deg", step, reason, len(mine), memory_cell(mine[0])]
             for (script, pitch, step, reason), mine in sorted(cells.items(), key=lambda c: (c[0][:3], -len(c[1])))]
     missed = [r for r in rows if r["clear"] == "1" and r["safe"] == "0" and r["verdict"] == "OK"]
-    lines = ["Safe steps that were refused without drift:", ""]
-    lines += table(["script", "camera", "step", "first reason", "steps", "an example (from base_link)"], body)
+    lines = ["Safe steps that were refused without drift. *Asked* steps are those of the question; steps *on the way* lead there. "
+             "The example gives the first cell that inhibits, from base_link:", ""]
+    lines += table(["script", "camera pitch, down", "step asked or on the way", "first reason", "refused steps",
+                    "example: seed, step, movement; cell; measured value and limit; all reasons"], body)
     if missed:
-        lines += ["", "Dangerous steps that were allowed:", ""]
-        lines += table(["script", "camera", "seed", "step", "movement", "danger", "drift", "pose error [mm]", "stated drift [mm]"],
+        lines += ["", "The table lists the dangerous steps that the gate allowed:", ""]
+        lines += table(["script", "camera pitch, down [deg]", "seed", "step", "movement", "danger", "drift, stated covariance", "pose error [mm]", "stated drift [mm]"],
                        [[r["script"] if r["holes"] == "seen" else r["script"] + ", filled", r["pitch_deg"], r["seed"], r["step"], r["command"], r["danger"],
-                         f"{float(r['drift_percent']):g} %, {r['stated']}", r["off_mm"], r["stated_drift_mm"]] for r in missed])
+                         f"{float(r['drift_percent']):g} %, {STATED[r['stated']]}", r["off_mm"], r["stated_drift_mm"]] for r in missed])
     return lines
 
 

@@ -42,8 +42,9 @@ def mount(lab):
         after = [f for f in frames if knock and second(f) > KNOCK_S + KNOCK_LASTS_S and f["camera"] == "OK"]
         body.append([scene, seed, knock or "-", f"{second(frames[-1]):.0f} s", answer, len(after) if knock else "-",
                      f"{100 * len(leaning) / len(frames):.0f} %", lost])
-    fill("mount", table(["walk", "seed", "knock", "run until", "reported", "frames after the knock in which a movement could have begun",
-                         "frames LEANING", "frames lost"], body) + [""])
+    fill("mount", table(["simulated walk", "seed", "knock (`-`: none)", "end of the run", "knock reported",
+                         "frames after the knock in which a movement could have begun",
+                         "share of frames with the camera state LEANING", "frames with lost odometry"], body) + [""])
 
 
 EXPERIMENTS = {"mount": mount}

@@ -24,7 +24,7 @@ def slope_starts(lab):
         shares = [statistics.mean(w) for w in zip(*within)]
         body.append([name, len(medians_mm), f"{statistics.median(medians_mm):.1f}", f"{max(medians_mm):.1f}",
                      *(f"{100 * s:.0f} %" for s in shares)])
-    fill("ground", table(["start on a", "runs", "median height error, median run [mm]", "median height error, worst run [mm]",
+    fill("ground", table(["slope at the start", "runs", "median height error of a run, median of the runs [mm]", "median height error of a run, worst run [mm]",
                           *(f"cells within {k} sigma" for k in (1, 2, 3))], body), "slopes")
 
 
