@@ -75,8 +75,11 @@ def faults_table(runs):
                          f"**{beyond}**" if most("beyond_mm") > 10 else beyond, total("outside"), f"{total('mapped')} of {total('faulty')}"])
             assert all(run["finite"] for run in mine), (fault, severity)
     return table(["fault", "severity", "IMU", "runs", "largest error of one frame [mm / deg]", "largest error of an OK frame [mm / deg]",
-                  "frames from the onset to the first not OK, largest", "health and reason, number of frames", "frames from the end to OK again, largest",
-                  "seconds, all frames OK, with an error beyond 4 sigma", "frames with an error beyond 3 sigma since the onset", "faulty frames that are mapped"], body) + [""]
+                  "frames from the fault to the first frame that is not OK, largest",
+                  "most frequent health states and reasons, number of frames",
+                  "frames from the end of the fault to the next OK frame, largest",
+                  "seconds with only OK frames and an error beyond 4 sigma, of all seconds with only OK frames; largest error",
+                  "frames whose motion since the fault errs by more than 3 sigma", "faulty frames that are mapped, of all faulty frames"], body) + [""]
 
 
 def onset_table(rows):
@@ -93,7 +96,7 @@ def onset_table(rows):
         body.append([profile, f"{float(shift):g}", spread if float(shift) else "-", len(mine), answer,
                      "-" if float(shift) == 0 else f"{max(abs(float(r['end_mm'])) for r in mine):.2f}",
                      sum(int(r["moved_before"]) for r in mine), f"{max(float(r['crept_mm']) for r in mine):.2f}"])
-    return table(["camera", "motion [mm]", "within frames", "runs", "frames until it is detected, largest", "largest error at the end [mm]",
+    return table(["camera", "motion [mm]", "frames that the motion takes", "runs", "frames until the motion is detected, largest", "largest error at the end [mm]",
                   "frames with a false motion while standing", "largest drift while standing [mm]"], body) + [""]
 
 

@@ -30,8 +30,8 @@ def own_poses(lab):
                 body.append([scene, motion_model, len(mine), most(mine, "ate_mm"), f"{drift:.2f} %",
                              sum(int(r["lost"]) for r in mine), *pair(mine, "exact"), *pair(mine, "matched")])
     lines = table(["scene", "motion model", "runs", "ATE, largest [mm]", "drift, largest", "frames lost",
-                   "exact depth: jumps 99 %, true / own poses [mm]", "exact depth: spread, true / own poses [mm]",
-                   "our depth: jumps 99 %, true / own poses [mm]", "our depth: spread, true / own poses [mm]"], body)
+                   "exact depth: 99th percentile of jumps, true / own poses [mm]", "exact depth: spread, true / own poses [mm]",
+                   "our depth: 99th percentile of jumps, true / own poses [mm]", "our depth: spread, true / own poses [mm]"], body)
     lines += ["", floor_ratio(rows), "", "### A rolling shutter", ""]
     body = []
     for name, imu in (("with IMU", "true"), ("without IMU", "false")):

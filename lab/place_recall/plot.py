@@ -50,8 +50,9 @@ def places_table(kind, rows):
     body = [row(pathlib.Path(name).stem, [r for r in rows if r["scene"] == name]) for name in names]
     if len(names) > 1:
         body.append(row("**all**", rows))
-    return [f"### {kind}", ""] + table(["scene", "recognised", "keyframes recognised without confirmation", "false acceptances",
-                                        "largest error [mm]", "largest error [deg]", "agreeing share: smallest / median / largest", "refusals by reason"], body)
+    return [f"### {kind}", ""] + table(["scene", "places recognised", "keyframes recognised without confirmation", "keyframes accepted by mistake",
+                                        "largest error [mm]", "largest error [deg]", "agreeing share of the features: smallest / median / largest",
+                                        "refused keyframes by reason"], body)
 
 
 EXPERIMENTS = {"places": places}

@@ -38,13 +38,13 @@ def specular(lab):
                 sum(int(r["panes"]) > 0 for r in rows)]
 
     lines = ["### Mirrors and glass", ""]
-    lines += table(["scene", "cases", "dangerous, last pose", "last pose: inhibited before", "last pose: inhibited after",
-                    "dangerous, within 0.6 m", "within 0.6 m: inhibited before", "within 0.6 m: inhibited after", "pane suspected"],
+    lines += table(["scene", "cases", "dangerous movements, last pose", "last pose: inhibited without the search", "last pose: inhibited with the search",
+                    "dangerous movements, within 0.6 m", "within 0.6 m: inhibited without the search", "within 0.6 m: inhibited with the search", "cases with a pane suspected"],
                    [pane_row(rows[0]["scene"], rows) for rows in by_scene(panes)] + [pane_row("**all**", panes)])
     whole = lambda when: sum(int(r[f"here_missed_{when}"]) == 0 for r in panes)  # noqa: E731
-    lines += ["", f"Cases in which every dangerous movement at the last pose is inhibited: {whole('before')} of {len(panes)} before, "
-              f"{whole('after')} of {len(panes)} after.", "", "### Scenes without panes", ""]
-    lines += table(["scene", "cases", "safe, within 0.6 m", "allowed before", "allowed after", "added false stops", "cases with a pane suspected"],
+    lines += ["", f"Cases in which every dangerous movement at the last pose is inhibited: {whole('before')} of {len(panes)} without the search, "
+              f"{whole('after')} of {len(panes)} with the search.", "", "### Scenes without panes", ""]
+    lines += table(["scene", "cases", "safe movements, within 0.6 m", "allowed without the search", "allowed with the search", "added false stops", "cases with a pane suspected"],
                    [other_row(rows[0]["scene"], rows) for rows in by_scene(others)] + [other_row("**all**", others)])
     fill("specular", lines)
 

@@ -32,8 +32,10 @@ def stairs_follow(lab):
                             f"{statistics.median(calls):.0f}" if calls else "-"])
             if any(numbers(mine, "across_mean")):
                 errors.append([scene, WAYS[way], *(follow_errors(mine, name) for name in ("riser", "going", "across"))])
-    fill("stairs", table(["scene", "runs", "features", "edges that appear or vanish per second", "drops", "kerbs", "flights", "doors",
-                          "changes of the number of steps", "drops found, but not reported", "call [us]"], changes)
+    fill("stairs", table(["scene", "runs", "features", "edges that appear or vanish per second",
+                          "drops that appear or vanish per second", "kerbs that appear or vanish per second",
+                          "flights that appear or vanish per second", "doors that appear or vanish per second",
+                          "changes of the number of steps, of all frames that found the flight", "drops found, but not reported", "one call of the tracker [us]"], changes)
          + [""] + table(["scene", "features", *(f"{size}: mean error / change between observations, rms / error of the last observation [mm]"
                                                  for size in ("riser", "going", "first edge"))], errors), "followed")
 

@@ -84,8 +84,8 @@ def flights_table(rows):
         body.append([mode, scene, wilson(len(found), len(mine)), scatter(errors_of(found, "found_riser", "riser")),
                      scatter(errors_of(found, "found_going", "going")), wilson(exact, len(mine)), scatter(numbers(found, "across")),
                      within_sigmas(found)])
-    return table(["input", "scene", "found", "riser: mean error / sd [mm]", "going: mean error / sd [mm]", "number of steps exact",
-                  "first edge: mean / sd [mm]", "risers within 2 stated sigma"], body)
+    return table(["input", "scene", "flights found", "riser: mean error / sd [mm]", "going: mean error / sd [mm]", "flights with the exact number of steps",
+                  "first edge: mean error / sd [mm]", "risers within 2 stated sigma of the true riser"], body)
 
 
 def drops_table(rows):
@@ -95,8 +95,8 @@ def drops_table(rows):
         near = sum(map(is_drop_near, mine))
         body.append([mode, wilson(len(found), len(mine)), wilson(near, len(mine)), scatter(numbers(found, "drop_across")),
                      f"{sum(r['bottom_seen'] == '1' for r in found)}", f"{sum(int(r['drops']) for r in mine)}"])
-    return table(["input", "drop found", "edge within 30 mm, of all", "edge: mean / sd [mm]", "ground behind it observed",
-                  "other drops"], body)
+    return table(["input", "drop found", "edge within 30 mm, of all cases", "edge: mean error / sd [mm]", "cases with observed ground behind the drop",
+                  "other drops reported in all cases"], body)
 
 
 def downs_table(rows):
@@ -107,8 +107,8 @@ def downs_table(rows):
         body.append([mode, wilson(len(found), len(mine)), wilson(good, len(mine)), scatter(errors_of(found, "found_riser", "riser")),
                      scatter(errors_of(found, "found_going", "going")), scatter(numbers(found, "across")),
                      wilson(sum(r["drop"] == "1" for r in mine), len(mine))])
-    return table(["input", "flight found", "riser within 10 mm and going within 30 mm, of all", "riser: mean error / sd [mm]",
-                  "going: mean error / sd [mm]", "first edge: mean / sd [mm]", "drop found"], body)
+    return table(["input", "flight found", "riser within 10 mm and going within 30 mm, of all cases", "riser: mean error / sd [mm]",
+                  "going: mean error / sd [mm]", "first edge: mean error / sd [mm]", "drop found"], body)
 
 
 def kerbs_table(rows):
@@ -122,8 +122,8 @@ def kerbs_table(rows):
             near = sum(map(is_drop_near, some))
             body.append([mode, name, wilson(len(found), len(some)), wilson(near, len(some)), scatter(numbers(found, "drop_across")),
                          scatter(errors_of([r for r in found if r["bottom_seen"] == "1"], "drop_height", "riser"))])
-    return table(["input", "height or distance of the kerb", "flagged as a drop", "edge within 30 mm, of all", "edge: mean / sd [mm]",
-                  "height, bottom observed: mean error / sd [mm]"], body)
+    return table(["input", "height or distance of the kerb", "kerbs flagged as a drop", "edge within 30 mm, of all cases", "edge: mean error / sd [mm]",
+                  "height if the ground below is observed: mean error / sd [mm]"], body)
 
 
 def no_stairs_table(rows):
@@ -147,8 +147,8 @@ def doors_table(rows):
         body.append([mode, scene, wilson(len(found), len(mine)), scatter(errors_of(found, "door_width", "width")),
                      wilson(len(with_height), len(sills)), scatter(errors_of(with_height, "sill_height", "sill")),
                      wilson(sum(r["sill_height"] != "nan" for r in none), len(none))])
-    return table(["input", "scene", "door found", "width: mean error / sd [mm]", "sill of 20 mm or more found",
-                  "sill height: mean error / sd [mm]", "sill reported where there is none"], body)
+    return table(["input", "scene", "doors found", "width: mean error / sd [mm]", "sills of 20 mm or more found",
+                  "sill height: mean error / sd [mm]", "sills reported in doors without a sill"], body)
 
 
 def stairs_noise(rows):
@@ -161,7 +161,7 @@ def stairs_noise(rows):
         body.append([mode, len(mine), " / ".join(f"{quantile(noise, share):.2f}" for share in (0.05, 0.5, 0.95)),
                      f"{statistics.median(numbers(mine, 'bias_px')):+.2f}", f"{statistics.median(numbers(mine, 'said_px')):.2f}",
                      " / ".join(f"{1e-3 * quantile(took_us, share):.1f}" for share in (0.5, 0.95))])
-    return table(["input", "observations", "measured disparity noise on level floor [px]: 5 % / median / 95 %", "bias of these disparities, median",
+    return table(["input", "observations", "measured disparity noise on level floor [px]: 5 % / median / 95 %", "bias of these disparities, median [px]",
                   "stated sigma, median [px]", "one call of the finder [ms]: median / 95 %"], body)
 
 

@@ -51,8 +51,8 @@ def terrain_table(rows):
     body = [figures(scene, mine) for scene, mine in by_scene.items() if mine]
     body.append(figures("**all**", rows))
     return table(["scene", "height error, median [mm]", "height error, 90 % [mm]", "cells known", "within 1 / 2 / 3 sigma [%]", "truly unsafe cells",
-                  "truly unsafe called safe", "largest cluster called safe [cells]", "hazard cells called safe", "largest cluster of hazard cells called safe",
-                  "truly safe called unsafe", "truly safe unsure", "truly safe unknown"], body)
+                  "truly unsafe cells called safe", "largest cluster called safe [cells]", "hazard cells called safe", "largest cluster of hazard cells called safe [cells]",
+                  "truly safe cells called unsafe", "truly safe cells unsure", "truly safe cells unknown"], body)
 
 
 def near_feet(rows):
@@ -66,8 +66,8 @@ def near_feet(rows):
         safe = count("truly_safe")
         body.append([scene, safe, *(f"{100 * count(key) / max(safe, 1):.1f} %" for key in ("called_unsafe", "unsure", "unknown")),
                      count("truly_unsafe"), count("called_safe"), count("hazards_called_safe")])
-    return table(["within 0.7 m of the body at the end", "truly safe cells", "truly safe called unsafe", "truly safe unsure", "truly safe unknown",
-                  "truly unsafe cells", "truly unsafe called safe", "hazard cells called safe"], body) if body else []
+    return table(["within 0.7 m of the body at the end", "truly safe cells", "truly safe cells called unsafe", "truly safe cells unsure", "truly safe cells unknown",
+                  "truly unsafe cells", "truly unsafe cells called safe", "hazard cells called safe"], body) if body else []
 
 
 EXPERIMENTS = {"terrain": terrain}
