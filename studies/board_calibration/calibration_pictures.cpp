@@ -81,7 +81,8 @@ eval::Picture coverage_picture(const CalibrationRun& run, int camera) {
         run.size,
         {fmt::format("Positions of the board, {}", camera_name(run, camera)),
          fmt::format(
-             "{:.0f} % of the image covered; blue: used, orange: left out, stripes: no board",
+             "{:.0f} % of the image covered; blue: view used, orange: view left out, stripes: no "
+             "board",
              100.0 * coverage.seen_share)});
     stripe(coverage, plane.figure);
     const std::vector<bool> used = used_views(run);
@@ -107,7 +108,8 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
         false,
         {},
         {fmt::format("Tilt of the board, {}", camera_name(run, camera)),
-         "degrees; each dot is a view, drawn towards its nearer side; stripes: missing tilts"});
+         "[deg]; each dot is a view, drawn towards the nearer side of the board; stripes: "
+         "missing tilts"});
     const PointPx center{figure.plot.left + 0.5 * kSide_px, figure.plot.top + 0.5 * kSide_px};
     bool seen[std::size(calibration::kNearSideNames)] = {};
     for (const calibration::ViewShape& view : coverage.views)
@@ -169,9 +171,10 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera
     const bool right = std::string(this_camera.name) == "right";
     Plane plane = plane_of(
         run.size,
-        {fmt::format("Measured minus predicted, {}", this_camera.name),
+        {fmt::format("Measured minus predicted position, {}", this_camera.name),
          fmt::format(
-             "{} points; 95 % within {:.2f} px; arrows enlarged {:.0f} times; orange: left out",
+             "{} points; 95 % of the residuals are within {:.2f} px; arrows enlarged {:.0f} "
+             "times; orange: view left out",
              lengths_px.size(),
              usual_px,
              enlarged / plane_of(run.size, {}).scale)});

@@ -36,9 +36,9 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
     if (!address) return address.error();
     if (!address->width || *address->width % 2 != 0) {
         return usage_error(
-            fmt::format("{}: give the size of the live camera, both images side by side: "
-                        "v4l2:DEVICE@WIDTHxHEIGHT with an even width; 'surefoot info v4l2:DEVICE' "
-                        "lists the sizes",
+            fmt::format("{}: the size of the camera image is missing or its width is odd; give "
+                        "v4l2:DEVICE@WIDTHxHEIGHT with the size of both images side by side and "
+                        "an even width; 'surefoot info v4l2:DEVICE' lists the sizes",
                         session.address));
     }
     if (!session.stereo && session.camera.empty()) {

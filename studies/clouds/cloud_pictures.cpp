@@ -79,8 +79,8 @@ Status write_from_above(const std::string& path,
     style.value_scale = kMillimetres;
     if (placed.is_signed) {
         style.centre = 0.0;
-        style.low_word = "compared is lower";
-        style.high_word = "compared is higher";
+        style.low_word = "compared cloud is lower";
+        style.high_word = "compared cloud is higher";
     }
     const auto png =
         eval::encode_png(eval::render_layer(grid->geometry, builder.heights_m(), style, {}));
@@ -103,7 +103,7 @@ Status write_histogram(const std::string& path,
     eval::LinePlot plot;
     plot.title = placed.title;
     plot.x_label =
-        placed.is_signed ? "distance minus the smallest shown one [mm]" : "distance [mm]";
+        placed.is_signed ? "distance minus the smallest shown distance [mm]" : "distance [mm]";
     plot.y_label = "share of the points in each bin [%]";
     eval::LinePlot::Line line;
     const double bin_mm = kMillimetres * (range.high - range.low) / kBins;
@@ -166,7 +166,8 @@ std::string heights_svg(const eval::HeightHistogram& heights,
     plot.title = fmt::format("{}: {} levels", title, heights.levels.size());
     plot.x_label = fmt::format("height above {:.3f} m [m]",
                                heights.low_m);  // the axis of a plot begins at zero
-    plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
+    plot.y_label =
+        fmt::format("share of the level points in each bin of {:g} mm [%]", 1e3 * heights.bin_m);
     eval::LinePlot::Line line;
     for (std::size_t i = 0; i < heights.counts.size(); ++i) {
         line.points.push_back(

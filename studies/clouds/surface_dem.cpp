@@ -302,7 +302,7 @@ std::string left_out_text(const SurfaceDem& dem) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, what);
     };
     add(dem.cut_points, "points outside --min-height and --max-height are left out");
-    add(dem.unsupported_cells, "cells contain points but no supported surface, and are unknown");
+    add(dem.unsupported_cells, "cells are unknown: they contain points but no supported surface");
     add(dem.overhung_cells, "cells have an object that hangs over their ground");
     return text;
 }

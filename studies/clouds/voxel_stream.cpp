@@ -67,7 +67,7 @@ class Source {
         };
         for (const io::CloudScalar& scalar : block.scalars) add(scalar.name);
         if (block.T_cloud_sensor) add("viewpoint");
-        if (!lost.empty()) notes_.push_back("only positions are kept, not: " + lost);
+        if (!lost.empty()) notes_.push_back("only positions are kept; the output lacks: " + lost);
     }
     Source(std::string path, io::CloudStream stream)
         : path_(std::move(path)), stream_(std::move(stream)) {}

@@ -200,9 +200,9 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
         "walking REX, or in a hand.",
         "Live maps are aligned to the surfaces of the scan and compared by C2C and M3C2. The scan "
         "passes through the same filters as the map.",
-        "'Thesis settings' is this program with the error model, fusion and filters of the thesis. "
-        "The camera driver, the tracker and the code of the thesis are not rebuilt: both columns "
-        "use the same depth and the same motion."};
+        "The column 'thesis settings' shows this program with the error model, fusion and filters "
+        "of the thesis. We did not rebuild the camera driver, the tracker and the code of the "
+        "thesis. Both columns use the same depth and the same motion."};
     for (const ThesisRun& run : thesis_runs()) {
         if (!results.runs.contains(run.name)) continue;
         eval::ReportSection section;

@@ -262,7 +262,8 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
         });
     if (worst.first == 0) {
         return fmt::format(
-            "none of the {} depth points was rejected, but no cell got enough of them", f.points);
+            "none of the {} depth points was rejected, but no cell received enough points",
+            f.points);
     }
     return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
 }
@@ -340,8 +341,9 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (const auto& self_calibration = pipeline.self_calibration()) {
         text += fmt::format(
             "self-calibration corrects the right camera by {:+.3f} deg about the line of sight, "
-            "{:+.3f} deg up and down and {:+.3f} % of the focal length: corresponding rows "
-            "differed by {:.2f} px, now by {:.2f} px (median); trim.enabled=false turns it off\n",
+            "{:+.3f} deg up and down and {:+.3f} % of the focal length. Median difference of "
+            "corresponding rows: {:.2f} px without the correction, {:.2f} px with it. To switch "
+            "self-calibration off, set trim.enabled=false\n",
             self_calibration->camera.roll_rad * 180.0 / std::numbers::pi,
             self_calibration->camera.pitch_rad * 180.0 / std::numbers::pi,
             100.0 * self_calibration->camera.focal_share,
@@ -361,9 +363,10 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (record.truth) {
         const TruthFigures& t = *record.truth;
         text += fmt::format(
-            "compared with the truth, without alignment: elevation median |error| {:.1f} mm, 90 % "
-            "within {:.1f} mm; away from edges {:.2f} % above 50 mm; {:.1f} % of the cells visible "
-            "within 2.5 m known; trajectory {:.1f} mm rmse; {:.1f} % of depths within 3 sigma\n",
+            "compared with the truth, without alignment: median |height error| {:.1f} mm, 90th "
+            "percentile {:.1f} mm; {:.2f} % of the height errors away from edges are above 50 mm; "
+            "{:.1f} % of the cells visible within 2.5 m are known; trajectory error {:.1f} mm "
+            "rmse; {:.1f} % of the depths are within 3 sigma\n",
             1e3 * t.maps.elevation.median_abs_m,
             1e3 * t.maps.elevation.p90_abs_m,
             100.0 * t.maps.elevation_away_from_edges.share_over_50mm,

@@ -95,7 +95,7 @@ void add_truth(const RunRecord& record,
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
                                "mm",
                                "compared with the highest true surface of the cell"});
-    content.figures.push_back({"Elevation, 90 % within",
+    content.figures.push_back({"Elevation, 90th percentile of |error|",
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.p90_abs_m),
                                "mm",
                                ""});

@@ -79,9 +79,10 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
         {"Hazards missed by the gate",
          fmt::format("{:.0f}", missed),
          "",
-         fmt::format("of {:.0f} clear-cut questions; {:.0f} more within the margin of the oracle",
-                     sum_of(results, "questions"),
-                     sum_of(results, "borderline_missed"))});
+         fmt::format(
+             "of {:.0f} clear-cut questions; {:.0f} more hazards within the margin of the oracle",
+             sum_of(results, "questions"),
+             sum_of(results, "borderline_missed"))});
     const double allowed = allowed_share(results);
     for (const NoiseBins& level : pooled_by_noise(results)) {
         std::vector<SuiteResult> of_level;
@@ -93,7 +94,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
             {fmt::format("Clearly safe movements allowed, noise {}", times(level.noise)),
              shown(FigureKind::share, allowed_share(of_level)),
              "",
-             fmt::format("of {:.0f}; the reasons of the refusals are listed below",
+             fmt::format("of {:.0f} movements; the reasons of the refusals are listed below",
                          sum_of(of_level, "safe_questions"))});
     }
     if (allowed == 0.0) {
@@ -117,7 +118,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
         content.figures.push_back({fmt::format("Height errors, noise {}", times(level.noise)),
                                    fmt::format("{:.1f}", kMillimetres * all.percentile(0.5)),
                                    "mm",
-                                   fmt::format("median; 90 % within {:.0f} mm; {} cases",
+                                   fmt::format("median; 90 % are smaller than {:.0f} mm; {} cases",
                                                kMillimetres * all.percentile(0.9),
                                                level.cases)});
     }
@@ -317,8 +318,8 @@ void add_thumbnails(std::span<const SuiteResult> results,
         if (!png) continue;
         content.thumbnails.push_back(
             {fmt::format(
-                 "{}, seed {}, noise {}: {} of the unsafe cells called safe, {} of the safe "
-                 "cells called unsafe; {:.0f} hazards missed",
+                 "{}, seed {}, noise {}: {} of the truly unsafe cells called safe, {} of the truly "
+                 "safe cells called unsafe; {:.0f} hazards missed",
                  result->which.scene,
                  result->which.seed,
                  times(result->which.noise),

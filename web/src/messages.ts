@@ -184,7 +184,9 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
   at += sizeOf(kMapFields);
   const cell_count = head.nx * head.ny;
   if (cell_count === 0 || cell_count > kMostCells || head.resolution_tenth_mm === 0)
-    return unreadable(`map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} tenths of a mm`);
+    return unreadable(
+      `map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} x 0.1 mm; expected 1 to ${kMostCells} cells`,
+    );
   if (view.byteLength < at + head.edge_count * sizeOf(kEdgeFields))
     return unreadable("map: the message ends inside its edges");
   const edges: Edge[] = [];
@@ -200,7 +202,7 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
     runs.push({ first, count, at });
     at += count * sizeOf(kCellFields);
   }
-  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes too many`);
+  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes follow the last run`);
   return { kind: "map", ...head, edges, runs, cells: view };
 }
 
@@ -209,7 +211,7 @@ function decodePose(view: DataView, at: number): BinaryMessage {
   const head = read(view, at, kPoseFields);
   at += sizeOf(kPoseFields);
   if (view.byteLength !== at + head.joint_count * sizeOf(kJointFields))
-    return unreadable(`pose: ${view.byteLength} bytes for ${head.joint_count} joints`);
+    return unreadable(`pose: a message of ${view.byteLength} bytes does not fit ${head.joint_count} joints`);
   const joints_rad: number[] = [];
   for (let i = 0; i < head.joint_count; ++i) joints_rad.push(view.getFloat32(at + 4 * i, true));
   const numbers = [head.x_m, head.y_m, head.z_m, head.qx, head.qy, head.qz, head.qw];
@@ -231,7 +233,7 @@ function decodeLayer(view: DataView, at: number): BinaryMessage {
   at += sizeOf(kLayerFields);
   const count = head.nx * head.ny;
   if (count === 0 || count > kMostCells || view.byteLength !== at + 4 * count)
-    return unreadable(`layer: ${view.byteLength - at} bytes for ${head.nx} x ${head.ny} values`);
+    return unreadable(`layer: ${view.byteLength - at} bytes do not fit ${head.nx} x ${head.ny} values`);
   const values = new Float32Array(count);
   for (let i = 0; i < count; ++i) values[i] = view.getFloat32(at + 4 * i, true);
   return { kind: "layer", ...head, values };
