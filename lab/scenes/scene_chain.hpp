@@ -14,7 +14,7 @@ namespace surefoot::experiments {
 
 /// Input of the pipeline in a simulated run.
 enum class Look : std::uint8_t {
-    analytic,  ///< true disparities with a matcher's errors, true motion
+    analytic,  ///< true disparities with the errors of a matcher, and true motion
     images,    ///< rendered images of the fitted ZED profile; matcher and odometry run
 };
 

@@ -11,7 +11,7 @@
 /// Association of detected features with the true feature of the scene.
 namespace surefoot::experiments {
 
-inline constexpr double kNear_m = 0.1;    ///< largest distance across the edge
+inline constexpr double kNear_m = 0.1;    ///< largest distance across the true edge
 inline constexpr double kBeside_m = 1.0;  ///< largest distance between the middles
 inline constexpr double kTurn_rad = 10.0 / 180.0 * std::numbers::pi;  ///< largest yaw error
 
@@ -27,14 +27,14 @@ inline double across_m(const stairs::FeaturePose& found, const TrueFeature& trut
     return way.dot(found.p_m.head<2>() - truth.middle_m);
 }
 
-/// Whether the found edge is within all three limits of the true one.
+/// Whether the found edge is within all three limits of the true edge.
 inline bool is_line_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
     return (found.p_m.head<2>() - truth.middle_m).norm() < kBeside_m &&
            std::abs(across_m(found, truth)) < kNear_m &&
            std::abs(turned_rad(found, truth)) < kTurn_rad;
 }
 
-/// The feature with the smallest |across_m| among those that `matches` accepts; nullptr = none.
+/// Returns the feature with the smallest |across_m| among those that `matches` accepts, or nullptr.
 template <typename Feature, typename Matches>
 const Feature* nearest(const std::vector<Feature>& features,
                        const TrueFeature& truth,

@@ -12,7 +12,7 @@
 
 namespace surefoot::app {
 
-/// Named figures in the order in which they were set. SI units, shares of 1; NaN = not measured.
+/// Named figures in the order in which they were set. SI units, shares from 0 to 1; NaN = unknown.
 class ThesisFigures {
   public:
     void set(const std::string& name, double value) { all_.emplace_back(name, value); }
@@ -28,8 +28,8 @@ class ThesisFigures {
 };
 
 /// Writes the figures of a finished part of the report to "figures.csv" in its folder. This file is
-/// written last, so a part with this file is complete. `conditions`: hash of everything that the
-/// figures depend on.
+/// written last, so a part with this file is complete. `conditions`: hash of all inputs that affect
+/// the figures.
 [[nodiscard]] Status write_figures(const std::string& folder,
                                    std::uint64_t conditions,
                                    const ThesisFigures& figures);

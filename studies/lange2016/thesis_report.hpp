@@ -26,7 +26,7 @@ struct DatasetFigures {
 struct ThesisResults {
     std::vector<DatasetFigures> datasets;
     std::map<std::string, ThesisFigures> scans;  ///< figures by scene
-    /// By run name; array index as ThesisColumn.
+    /// Figures by run name; the array index is a ThesisColumn.
     std::map<std::string, std::array<ThesisFigures, 2>> runs;
     ThesisFigures courtyard;
     std::vector<std::string> failures;  ///< one sentence for each failed part
@@ -42,7 +42,7 @@ struct FilledRow {
 };
 [[nodiscard]] std::vector<FilledRow> filled_rows(const ThesisResults& results, std::uint64_t seed);
 
-/// One self-contained HTML page, pictures first. Reads the pictures from the folders of the parts.
+/// Returns one self-contained HTML page, pictures first. Reads the pictures from the part folders.
 [[nodiscard]] std::string thesis_html(const ThesisResults& results,
                                       const ThesisConditions& conditions);
 [[nodiscard]] std::string thesis_json(const ThesisResults& results,
