@@ -14,7 +14,7 @@
 
 namespace surefoot::app {
 
-/// Scene and settings of a scan, for the index file.
+/// Scene, seed and stations of a scan, for the index file.
 struct ScanOrigin {
     std::string scene;
     std::uint64_t seed = 0;
