@@ -96,7 +96,7 @@ void compare_lens(const std::string& board_text,
         seen == 0 ? 0.0 : sum / seen);
 }
 
-/// One line of rigs.csv.
+/// Writes one line of rigs.csv.
 void compare_rig(LensKind kind, std::uint64_t seed, fmt::ostream& out) {
     const calibration::Board board = calibration::parse_board(kBoards[0]).value();
     const camera::StereoRig truth = app::testing::rig_of(kind, kScale);

@@ -52,7 +52,7 @@ Result<Pairs> pairs_in(const std::string& folder, const calibration::Board& boar
     return pairs;
 }
 
-/// Every second element of `kept`, starting at `first`.
+/// Returns every second element of `kept`, starting at `first`.
 std::vector<std::size_t> half_of(const std::vector<std::size_t>& kept, std::size_t first) {
     std::vector<std::size_t> half;
     for (std::size_t i = first; i < kept.size(); i += 2) half.push_back(kept[i]);

@@ -48,7 +48,7 @@ MotionEstimate VelocityFusion::update(const MotionEstimate& vision,
         if (!bias_) start(vision, step);
     }
     time_ns_ = vision.time_ns;
-    // Keeps the last sample before the frame: the next interval starts with it.
+    // Keeps the last sample before the frame, because the next interval starts with it.
     while (samples_.size() > 1 && samples_[1].time_ns <= vision.time_ns)
         samples_.erase(samples_.begin());
     return estimate;
@@ -101,7 +101,8 @@ MotionEstimate VelocityFusion::fused(const MotionEstimate& vision, const odometr
              R_before_now * covariance.topLeftCorner<3, 3>() * R_before_now.transpose() / dt2_s2});
     }
 
-    // Speed at the end: the prediction of the IMU plus the correction of the mean speed.
+    // Speed at the end of the interval: the prediction of the IMU plus the correction of the mean
+    // speed.
     velocity_odom_m_s_ +=
         dt_s * gravity_odom_m_s2_ + R * imu.velocity_m_s + R * (speed.value - speed_imu.value);
     velocity_covariance_ = R *

@@ -84,7 +84,8 @@ void add_noise(Rng& rng, GreyImage& image) {
     }
 }
 
-/// Index on the path, back and forth: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1, ...
+/// Returns the index on the path that goes back and forth: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1,
+/// ...
 std::size_t place_on_way(std::int64_t index, std::size_t frames) {
     const auto period = 2 * (static_cast<std::int64_t>(frames) - 1);
     const std::int64_t phase = index % period;

@@ -55,7 +55,7 @@ struct Case {
     std::string rig;
 };
 
-/// The additional maps beside the pipeline's own.
+/// The additional maps of a run, besides the map of the pipeline.
 class Maps {
   public:
     explicit Maps(const elevation::ElevationConfig& config)
@@ -83,7 +83,7 @@ class Maps {
     elevation::ElevationMap matched_true;
 };
 
-/// Columns ",jump_mm,spread_mm" of the level floor of a map in the world frame.
+/// Returns the columns ",jump_mm,spread_mm" of the level floor of a map in the world frame.
 std::string floor_figures(const sim::Scene& scene, const elevation::ElevationMap& map) {
     eval::MapPair maps;
     maps.geometry = map.geometry();

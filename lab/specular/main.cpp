@@ -41,7 +41,7 @@ namespace {
 
 constexpr double kAround_m = 0.6;
 
-/// Pipeline of a case, with its map and its time.
+/// The pipeline of a case and its time.
 struct Chain {
     std::optional<pipeline::Pipeline> pipeline;
     double ground_ms = 0.0;  ///< time of the ground plane and of the search for mirrors
@@ -55,14 +55,14 @@ struct Chain {
                                          const Pose& T_world_body,
                                          double reach_m) const {
         const auto map = std::make_unique<grid::MapSnapshot>();
-        // A failed snapshot is not intact, and the gate refuses it.
+        // If the snapshot fails, it is not intact and the gate refuses it.
         [[maybe_unused]] const Status taken = pipeline->snapshot(0, *map);
         return app::compare_verdicts(source.truth(), T_world_body, machine, *map, reach_m).counts;
     }
 };
 
 struct CaseResult {
-    app::VerdictCounts before[2];  ///< at the last pose, and around it
+    app::VerdictCounts before[2];  ///< counts at the last pose, and around it
     app::VerdictCounts after[2];
     std::vector<specular::SuspectedPane> panes;
     Eigen::Vector2d body_m = Eigen::Vector2d::Zero();
@@ -99,7 +99,7 @@ Result<CaseResult> run_case(const std::string& scene,
     if (!with) return with.error();
 
     std::optional<Error> failed;
-    std::vector<StereoFrame> first;  // the second chain starts with the same frames
+    std::vector<StereoFrame> first;  // The second chain starts with the same frames.
     const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         auto frame = (*source)->next();
         if (!frame) failed = frame.error();

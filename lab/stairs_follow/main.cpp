@@ -53,7 +53,7 @@ using experiments::TrueKind;
 using stairs::FeaturePose;
 using stairs::TerrainFeatures;
 
-constexpr std::int64_t kFrame_ns = 100'000'000;  ///< trolleys are simulated at 10 Hz
+constexpr std::int64_t kFrame_ns = 100'000'000;  ///< period of the simulated trolley, 10 Hz
 constexpr double kSameTurn_rad = 20.0 / 180.0 * std::numbers::pi;
 
 FeaturePose pose_of(const stairs::Edge& edge) {
@@ -71,9 +71,9 @@ bool is_same_place(const FeaturePose& a, const FeaturePose& b) {
            std::abs(experiments::turned_rad(a, at)) < kSameTurn_rad;
 }
 
-/// Whether a machine that knows the tracked drop `told` stops in time before the detected drop
-/// `found`. The tracked one must not begin farther away by more than a sigma, not be much nearer,
-/// and be as wide.
+/// Returns true if a machine that knows the tracked drop `told` stops in time before the detected
+/// drop `found`. The tracked drop must be as wide. Its edge may be at most a sigma farther away
+/// than the detected edge, and at most 0.25 m nearer.
 bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found) {
     constexpr double kRounding_m = 1e-6;
     constexpr double kNearer_m = 0.25;
@@ -273,7 +273,7 @@ Result<std::string> judge_run(const std::vector<std::string>& folders, const Set
            fmt::format(",{:.1f},{:.1f}\n", call_us[call_us.size() / 2], call_us.back());
 }
 
-/// Folders of each run, in the order of the frames.
+/// Folders of each run, in the order of its frames.
 std::map<std::string, std::vector<std::string>> runs_in(const std::string& maps) {
     std::map<std::string, std::vector<std::string>> runs;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(maps)) {

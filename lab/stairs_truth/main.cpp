@@ -113,7 +113,7 @@ std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const Tr
                        others);
 }
 
-/// A door may be detected from either side.
+/// A door may be detected from both sides.
 bool is_opening_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
     const double turn_rad = std::abs(turned_rad(found, truth));
     return truth.kind == TrueKind::door &&
@@ -150,11 +150,12 @@ class Judge {
 
     void observation(const Observation& observation) { (void)observe_once(observation); }
 
-    /// The two CSV lines of a frame.
+    /// Returns the two CSV lines of a frame.
     std::string rows(const Observation& observation) {
         const std::int64_t first_ns = observe_once(observation);
         std::int64_t took_ns = first_ns;
-        for (int call = 1; call < kCalls; ++call) {  // the first call with a new size allocates
+        for (int call = 1; call < kCalls; ++call) {  // The first call with a new size also
+                                                     // allocates.
             const std::int64_t start_ns = steady_now_ns();
             finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);
@@ -213,7 +214,7 @@ struct Done {
     std::optional<Error> error;
 };
 
-/// Folder with saved frames. A list file names one of them per line and is written last.
+/// Folder with saved frames. Its list file names one frame per line and is written last.
 class Keep {
   public:
     Keep(std::string maps, const StairsCase& now)

@@ -43,7 +43,7 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
 }
 
 // The ranges of our matcher and of SGBM were shifted once, because the best setting on the tuning
-// images was at the border of the range. Our jump penalty cannot exceed 54.
+// images was at the border of the range. The jump penalty of our matcher cannot exceed 54.
 std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
     std::vector<Setting> all;
     for (const int slope : {8, 11, 15})
@@ -183,7 +183,8 @@ Match opencv_bm(const BmSettings& settings) {
         matcher->setDisp12MaxDiff(kLeftRight_px);
         matcher->setSpeckleWindowSize(stereo::kSpeckleSize_px);
         matcher->setSpeckleRange(stereo::kSpeckleRange_px);
-        // Half a window on every side plus one pixel: OpenCV needs images larger than its window.
+        // The border is half a window plus one pixel on every side, because OpenCV needs images
+        // larger than its window.
         return opencv_disparities(*matcher, pair, settings.block / 2 + 1);
     };
 }

@@ -21,7 +21,7 @@ struct PairFiles {
     const char* folder = nullptr;
     const char* right = nullptr;
     const char* truth = nullptr;
-    const char* right_truth = nullptr;  ///< nullptr: use `mask`
+    const char* right_truth = nullptr;  ///< nullptr = use `mask` instead
     const char* mask = nullptr;
     double scale = 1.0;
     int disparities = 64;
