@@ -73,8 +73,7 @@ namespace {
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
 constexpr int kSafeEvery = 10;       ///< a safe scene for every n-th index in the tier maps
-constexpr int kSafeEveryOfRuns = 5;  ///< a safe scene for every n-th index of runs, which take
-                                     ///< seconds
+constexpr int kSafeEveryOfRuns = 5;  ///< the same stride for depth and images: runs take seconds
 
 /// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {

@@ -35,8 +35,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // names in the order of
-                                                                 // GravitySource
+constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // order of GravitySource
 
 using experiments::SceneCase;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How accurate are the depth and the lengths that a real calibrated rig measures? The chessboards
-// for the measurement are not used for the calibration: of the pairs that the calibration with all
-// images accepts, every second one calibrates a rig, which then measures the boards of the other
-// half; and the reverse.
+// for the measurement are not used for the calibration. The calibration with all images selects the
+// usable pairs. Every second pair calibrates a rig, and this rig measures the boards of the other
+// half. Then the two halves swap their roles.
 // Usage: held_out_boards OUT.csv FOLDER BOARD LENS
 //   FOLDER  stereo images of the board; BOARD: board description with the size of a square
 //   LENS    lens model to calibrate (pinhole4, pinhole5, rational or fisheye)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How accurate is our matcher compared with OpenCV's matchers on Middlebury pairs? For the
-// calibration of its uncertainty see matcher_sigma.
+// How accurate is our matcher compared with OpenCV's matchers on Middlebury pairs? matcher_sigma
+// measures the calibration of its uncertainty.
 // Usage: matcher_accuracy STEREO_DATA_DIR OUT_DIR
 //
 // Writes into OUT_DIR:

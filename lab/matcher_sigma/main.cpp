@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the stated uncertainty of the matcher agree with its real errors? On Middlebury pairs and on
-// the simulated ZED. The coefficients come from sigma_fit.
+// Does the stated uncertainty of the matcher agree with its real errors? Input: Middlebury pairs
+// and images of the simulated ZED. The coefficients of the uncertainty come from sigma_fit.
 // Usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]     default seed: 1
 //
 // Writes OUT_DIR/sigma.csv: kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak
@@ -45,8 +45,7 @@ Image<float> peak_doubt(const TruePair& pair) {
 
 /// Stated sigmas and real errors of matches, from one image or several.
 struct Confidences {
-    std::vector<float> errors_px;  ///< errors of all matches; sigmas_px and peak_doubts have the
-                                   ///< same order
+    std::vector<float> errors_px;  ///< one per match, in the order of sigmas_px and peak_doubts
     std::vector<float> sigmas_px;
     std::vector<float> peak_doubts;
     std::array<double, 3> within{};  ///< number of trusted matches within 1, 2 and 3 sigma

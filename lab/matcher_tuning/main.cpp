@@ -4,14 +4,14 @@
 // scores come from the other half, from new simulated images, and from images that are difficult
 // for cameras.
 // Usage: matcher_tuning STEREO_DATA_DIR OUT_DIR FIRST_SEED [FIRST_TUNING_SEED]
-//   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: of the images for the
-//   choice, default 21.
+//   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: first
+//   seed of the images for the choice, default 21.
 //
 // Writes into OUT_DIR:
 //   chosen.csv    matcher,set,words,loss,loss_as_it_comes: the setting with the smallest loss.
-//                 Loss: mean of bad_1 + 2 bad_2 over the pairs, plus the same over the simulated
-//                 images. Sets: "chosen"; "for pairs" and "for simulated" are chosen by one of the
-//                 two alone.
+//                 Loss: mean of bad_1 + 2 bad_2 over the pairs, plus this mean over the simulated
+//                 images. Sets: "chosen" uses both means; "for pairs" and "for simulated" use one
+//                 mean alone.
 //   held_out.csv  kind,truth,image,matcher,set,bad_1,bad_2,matched_bad_1,matched_bad_2,density [%]
 //                 kinds: "tuned on", "pair", "simulated", and one per difficult condition. Sets:
 //                 those above, and "as it comes" for the default settings of our whole matcher.

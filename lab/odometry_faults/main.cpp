@@ -14,9 +14,11 @@
 //   health, reason, camera, lit   as reported; the map takes a frame with `lit` that is not LOST
 //   path_mm             true motion since the last frame
 //   err_mm, err_deg     error of the motion since the last frame
-//   sig_mm, sig_deg     its stated sigma in the direction of the largest one
-//   s_*                 the same over the last second; s_health: the worst health in it
-//   since_*             the same since the last frame before the fault; empty before the fault
+//   sig_mm, sig_deg     stated sigma of this motion in the direction of the largest sigma
+//   s_*                 error and sigma of the motion over the last second; s_health: the worst
+//                       health in this second
+//   since_*             error and sigma of the motion since the last frame before the fault; empty
+//                       before the fault
 #include <fmt/format.h>
 #include <fmt/os.h>
 

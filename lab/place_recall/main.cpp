@@ -19,7 +19,7 @@
 //
 // Writes OUT.csv, one line per keyframe that could be recognised (`revisit`: it shows a scene part
 // seen before):
-//   refusal, inliers, agreeing...  see places/view_comparison.hpp
+//   refusal, inliers, agreeing...  see surefoot/place_recognition/view_comparison.hpp
 //   accepted                       the tracker accepted T_map_odom
 //   error_m, error_deg             error of base_link in the map, if accepted
 //   single_m                       error of the best keyframe's answer, accepted or not
@@ -58,8 +58,7 @@ constexpr double kStep_m = 0.26;   ///< distance between two stops; each stop gi
 constexpr double kTurn_deg = 13.0;
 constexpr double kBay_m = 1.5;
 constexpr std::uint64_t kWayStream = 0x706c616365;
-constexpr int kSecondRun = 10'000;  ///< first frame number of the second run, so that its noise
-                                    ///< differs
+constexpr int kSecondRun = 10'000;  ///< first frame number of the second run, for different noise
 
 /// Returns the CPU time of this thread. Other threads do not affect it.
 double cpu_ms() {

@@ -170,8 +170,7 @@ class Repetition {
 
   private:
     static bool is_even(const Window& window) {
-        constexpr double kEven_px = 0.4;  // largest scatter of an even surface; clutter scatters
-                                          // more
+        constexpr double kEven_px = 0.4;  // largest scatter that is not clutter
         return window.density > 0.8 && window.residual_px < kEven_px;
     }
     int windows_ = 0;

@@ -35,8 +35,8 @@ constexpr int kTakenEvery = 13;
 constexpr double kWeightOfRealPair = 8.0;
 /// Degrees of freedom of Student's t. Its likelihood tolerates the few large outliers.
 constexpr double kFreedom = 8.0;
-/// Wanted shares within 1 and 2 sigma of every image [%], and the deviations [%] that each cost one
-/// unit of loss.
+/// Wanted shares within 1 and 2 sigma of every image [%]. Deviations of kMiss [%] from the two
+/// shares cost the same loss.
 constexpr double kWanted[] = {68.3, 95.0};
 constexpr double kMiss[] = {5.0, 3.0};
 constexpr double kMissWeight = 0.03;

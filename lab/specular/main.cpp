@@ -10,12 +10,12 @@
 // Writes OUT.csv, one line per case: scene, seed; then for the last pose (here_) and the positions
 // around it (around_):
 //   unsafe                          clearly dangerous movements
-//   missed_before, missed_after     of these allowed without and with the search
+//   missed_before, missed_after     unsafe movements allowed without and with the search
 //   safe                            clearly safe movements
-//   allowed_before, allowed_after   of these allowed without and with the search
+//   allowed_before, allowed_after   safe movements allowed without and with the search
 // and for the case:
 //   panes                           number of suspected panes
-//   score, correlation, ahead_m     of the nearest pane; 0 = none
+//   score, correlation, ahead_m     values of the nearest pane; 0 = no pane
 //   search_ms                       mean additional time per frame with the search
 #include <fmt/format.h>
 #include <fmt/os.h>

@@ -15,14 +15,15 @@
 //   new_ids                features whose id changed at the same place; followed only
 //   drops_lost             drops that a frame detected, but that are missing in the result, or
 //                          farther away in it by more than their sigma
-//   found_looks            frames that found the true flight
-//   steps_changes          changes of its number of steps between consecutive frames of these
-//   steps_exact            frames of these with the true number of steps
-//   riser_mean, _sd, _step, _last   error: mean and sd over the frames, rms change between frames,
-//                          and value at the last frame; the same for going_ and width_, and for
-//                          across_: position of the first edge of the flight, or of the drop
-//   riser_sure, across_sure   frames with an error within 2 stated sigmas
-//   call_us, most_us       time of a call: median, longest
+//   found_looks            number of frames that found the true flight
+//   steps_changes          changes of its number of steps between consecutive such frames
+//   steps_exact            number of such frames with the true number of steps
+//   riser_mean, _sd, _step, _last   error of the riser: mean and sd over the frames, rms change
+//                          between frames, and value at the last frame
+//   going_..., width_...   the same four errors of going and width
+//   across_...             the same four errors of the position of the first edge (flight or drop)
+//   riser_sure, across_sure   number of frames with an error within 2 stated sigmas
+//   call_us, most_us       median and longest time of a call
 #include <fmt/format.h>
 #include <fmt/os.h>
 

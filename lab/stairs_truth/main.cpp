@@ -19,9 +19,11 @@
 //   found              flight whose first edge lies within 0.1 m and 10 deg of the true one
 //   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut   its parameters
 //   across, turn       error of its first edge at the true middle, + = farther; error of its yaw
-//   flights, of_2      other flights; those of them with two steps or more
-//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same for drops; height downward
-//   drops              other drops
+//   flights, of_2      number of other flights; number of these with two steps or more
+//   drop               drop whose edge lies within 0.1 m and 10 deg of the true edge
+//   drop_across, drop_height, drop_sigma, bottom_seen   error of its edge at the true middle, its
+//                      height downward, sigma of this height, and whether its bottom was seen
+//   drops              number of other drops
 //   door, door_width, door_width_sigma, door_sill   the opening within 0.3 m and 15 deg of the true
 //                                                   one
 //   sill_height        height of the sill within 0.3 m
@@ -154,8 +156,7 @@ class Judge {
     std::string rows(const Observation& observation) {
         const std::int64_t first_ns = observe_once(observation);
         std::int64_t took_ns = first_ns;
-        for (int call = 1; call < kCalls; ++call) {  // The first call with a new size also
-                                                     // allocates.
+        for (int call = 1; call < kCalls; ++call) {  // the first call also allocates
             const std::int64_t start_ns = steady_now_ns();
             finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);

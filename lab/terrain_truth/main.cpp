@@ -12,16 +12,20 @@
 // it rejects one of them. The machine is the REX; reachability starts at the first base_link.
 //
 // Writes OUT.csv, one line per scene, seed and profile:
-//   median_mm, p90_mm, coverage        of all heights
+//   median_mm, p90_mm, coverage        median and 90th percentile of |height error|, known share
 //   sigma_1, sigma_2, sigma_3          share of the errors within 1, 2 and 3 sigma, in cells more
 //                                      than 2 cells from any surface edge, in view at any range
-//   truly_unsafe, called_safe, cluster   cells; those of them that the map rates safe; the largest
-//                                      connected group of these
-//   hazards, hazards_called_safe, hazard_cluster   the same for cells on which the foot itself
-//                                      clearly cannot stand (the distance to drops is not
-//                                      considered)
-//   truly_safe, called_unsafe, unsure, unknown   cells; the last three are subsets of truly_safe
-//   near_...                           the same within 0.7 m of the body, in view or not
+//   truly_unsafe                       number of truly unsafe cells
+//   called_safe, cluster               truly unsafe cells that the map rates safe, and the largest
+//                                      connected group of these cells
+//   hazards, hazards_called_safe, hazard_cluster   the same three numbers for cells on which the
+//                                      foot itself clearly cannot stand. The distance to drops is
+//                                      not considered.
+//   truly_safe                         number of truly safe cells
+//   called_unsafe, unsure, unknown     truly safe cells that the map rates as unsafe, unsure or
+//                                      unknown
+//   near_...                           all counts above for cells within 0.7 m of the body, in view
+//                                      or not
 // OUT.csv.wrong.csv contains each wrongly rated cell, one per line, in odom: truly unsafe cells
 // rated safe and truly safe cells rated unsafe, with the true and the given rating.
 #include <fmt/format.h>

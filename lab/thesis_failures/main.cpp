@@ -6,20 +6,23 @@
 //   fixed: constant delays, on the floor and on the stairs. drawn: occasional delays, compared with
 //   none, only on the floor.
 //
-// Settings of the thesis: the ZED's images at 15 Hz, one cloud a second into the map, points
-// reduced to 1 cm cubes, the simplified stereo error model, the fusion of the reference
-// implementation with a minimum variance of (45 mm)^2, the ground plane taken once at the start
-// (RANSAC, 75 mm). Faults of the thesis: a cloud is placed at the true pose of `late` images ago (a
-// correct but delayed tracker), either always, or for a drawn share of the clouds with a drawn
-// delay of 50-500 ms; and all disparities have a constant offset, because the camera was never
-// recalibrated. Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same
-// delays.
+// Settings of the thesis:
+// * The ZED has 15 images per second. One cloud per second goes into the map.
+// * Points are reduced to cubes of 1 cm. The error model is simplified stereo.
+// * The fusion is that of the reference implementation, with a minimum variance of (45 mm)^2.
+// * The ground plane is taken once at the start (RANSAC, 75 mm).
+// Faults of the thesis:
+// * A cloud is placed at the true pose of `late` images ago, as with a correct but delayed tracker.
+//   Either all clouds are late, or a drawn share of the clouds has a drawn delay of 50-500 ms.
+// * All disparities have a constant offset, because the camera was never recalibrated.
+// Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same delays.
 //
 // Writes into OUT_DIR:
-//   runs.csv     one line per map: spread of the level floor; jumps between its neighbouring cells
-//                (all; seen in the middle of the image; at its sides); median height of the floor
-//                before the demonstration stairs and of their treads. Spread and jumps also for
-//                medians of 4 x 4 cells (coarse), which removes the pixel noise.
+//   runs.csv     one line per map: spread of the level floor; height steps between neighbouring
+//                floor cells (all cells; cells seen in the middle of the image; cells seen at its
+//                sides); median height of the floor before the demonstration stairs and of the
+//                treads. The columns "coarse" give spread and steps for medians of 4 x 4 cells,
+//                which have less pixel noise.
 //   heights.csv  one line per cell of level floor (floor) or of a tread; tread0 is the floor before
 //                it
 //   map_*.csv    heights of the maps of the first seed, row by row along x

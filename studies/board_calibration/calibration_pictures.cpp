@@ -21,7 +21,8 @@ namespace palette = eval::palette;
 /// Approximate width of a drawn image plane.
 constexpr double kWidth_px = 900.0;
 
-/// Empty drawing of a camera's image plane. `scale`: pixels of the drawing per pixel of the image.
+/// An empty drawing of the image plane of a camera. `scale`: pixels of the drawing per pixel of the
+/// image.
 struct Plane {
     eval::Figure figure;
     double scale = 1.0;
@@ -55,7 +56,7 @@ void stripe(const calibration::Coverage& coverage, eval::Figure& figure) {
     }
 }
 
-/// One flag per view: true if the result uses the view.
+/// Returns one flag per view: true if the result uses the view.
 std::vector<bool> used_views(const CalibrationRun& run) {
     std::vector<bool> used(run.views.size(), true);
     for (const calibration::RejectedView& rejected : rejected_views(run))
@@ -63,7 +64,7 @@ std::vector<bool> used_views(const CalibrationRun& run) {
     return used;
 }
 
-/// Two images of equal height beside each other.
+/// Returns two images of equal height side by side.
 GreyImage side_by_side(const GreyImage& left, const GreyImage& right) {
     GreyImage both(left.width() + right.width(), left.height());
     for (int v = 0; v < left.height(); ++v) {

@@ -15,11 +15,12 @@ namespace {
 constexpr double kOff_m = 0.015;
 constexpr double kOffShare = 0.5;
 constexpr double kGrazing_deg = 3.0;
-/// Largest beam width that is considered, in angular steps. Only at close range a beam is wider.
+/// Largest beam width that the filter considers, in angular steps. A beam is wider only at close
+/// range.
 constexpr std::ptrdiff_t kMostApart = 4;
 constexpr std::ptrdiff_t kReach = 2 * kMostApart;
 
-/// True if two beams on one side, `spacing_m` apart, predict the range of a point.
+/// Returns true if two beams on one side, `spacing_m` apart, predict the range of a point.
 bool foretell(double range_m, double beside_m, double beyond_m, double spacing_m) {
     static const double steepest = 1.0 / std::tan(kGrazing_deg * kRadPerDeg);
     const double change_m = std::abs(beside_m - beyond_m);  // NaN if a beam has no range

@@ -61,7 +61,7 @@ std::span<const ThesisDataset> thesis_datasets() {
 }
 
 std::span<const ThesisRun> thesis_runs() {
-    // From before the first riser to behind the last one, between the sides.
+    // Boxes that reach from before the first riser to behind the last riser, between the sides.
     static constexpr BoxText kDemo = {"stair_x_m - 1", "-0.5", "stair_x_m + 3 * 0.31 + 0.5", "0.5"};
     static constexpr BoxText kFlight = {
         "stair_x_m - 1", "-0.5", "stair_x_m + 19 * going_m + landing_m + 0.4", "0.5"};
@@ -186,7 +186,7 @@ Status use_thesis_settings(const char* preset, Settings& settings) {
         "elevation.multi_height_var_m2=0.002",
         "elevation.contradiction_growth=1.001",
         "elevation.pixels.surface_check=false",
-        "elevation.prefilter.min_range_m=0.7",  // the ZED's nearest
+        "elevation.prefilter.min_range_m=0.7",  // smallest range of the ZED
         "elevation.prefilter.down_sampling=true",
         "elevation.prefilter.sampling_m=0.01",
         "elevation.reduction.min_points=1",
@@ -195,7 +195,7 @@ Status use_thesis_settings(const char* preset, Settings& settings) {
         "elevation.viewpoint.min_rotation_deg=0",
         "elevation.visibility.cleanup=false",
         "elevation.visibility.drops=false",
-        "level.enabled=false",  // the ground was aligned once
+        "level.enabled=false",  // the thesis aligned the ground only once
     };
     for (const char* setting : kSettings) {
         if (auto status = io::override_config(setting, io::describe_config(settings)); !status)

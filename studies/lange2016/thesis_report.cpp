@@ -36,7 +36,8 @@ double figure_of(const ThesisResults& results,
     return at->second[static_cast<std::size_t>(column)].get(figure);
 }
 
-/// A figure of a column, divided by the figure of another run if the row says so.
+/// Returns a figure of a column. If the row has `divided_by`, divides the figure by that of the
+/// other run.
 double value_of(const ThesisResults& results, const ThesisRow& row, ThesisColumn column) {
     double value = std::nan("");
     if (column == ThesisColumn::ours && row.ours_figure != nullptr)
@@ -145,7 +146,7 @@ eval::ReportTable dataset_table(const std::vector<DatasetFigures>& datasets) {
     return table;
 }
 
-/// Groups in the order of the rows.
+/// Returns the groups in the order of the rows.
 std::vector<std::string> groups_of(const std::vector<FilledRow>& rows) {
     std::vector<std::string> groups;
     for (const FilledRow& filled : rows) {

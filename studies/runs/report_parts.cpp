@@ -12,7 +12,7 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+// Keys keep the order in which they are written, so that the same run gives the same bytes.
 using gate_process::Json;
 using gate_process::number;
 
@@ -69,7 +69,7 @@ Json figures_json(const eval::ErrorFigures& e, const std::string& unit) {
             {"count", e.count}};
 }
 
-/// Errors [m] per bin; the limits of the bins are in `key_unit`.
+/// Returns the errors [m] per bin. The limits of the bins have the unit of `key_unit`.
 Json bins_json(const std::vector<eval::ErrorBin>& bins, const std::string& key_unit) {
     Json list = Json::array();
     for (const eval::ErrorBin& bin : bins) {
@@ -87,7 +87,7 @@ Json sigma_json(const eval::SigmaCoverage& s) {
             {"count", s.count}};
 }
 
-/// x y z qx qy qz qw
+/// Returns the list x y z qx qy qz qw.
 Json pose_json(const Pose& T) {
     const Eigen::Vector3d& t = T.translation_m;
     const Eigen::Quaterniond& q = T.rotation;

@@ -16,13 +16,14 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+// Keys keep the order in which they are written, so that the same run gives the same bytes.
 using gate_process::Json;
 using gate_process::number;
 
 constexpr int kIndent = 2;
 
-/// The `count` numbers of a list; nullopt if the list is missing or has another size or content.
+/// Returns the `count` numbers of a list; nullopt if the list is missing or has another size or
+/// content.
 std::optional<std::vector<double>> numbers_of(const Json& object,
                                               const char* name,
                                               std::size_t count) {
@@ -115,7 +116,8 @@ Json place_json(const PlaceRecord& place) {
             {"left_as_it_was", reason.empty() ? Json(nullptr) : Json(reason)}};
 }
 
-/// Why a run is incomplete: it ended early, or its results could not be written; else null.
+/// Returns why a run is incomplete: it ended early, or its results could not be written. Null = it
+/// is complete.
 Json error_json(const RunRecord& record, const Status& written) {
     if (record.error) return record.error->message;
     return written ? Json(nullptr) : Json(written.error().message);

@@ -34,7 +34,7 @@
 namespace surefoot::app {
 namespace {
 
-/// One point per known cell with its variance and rating.
+/// Returns one point for each known cell with its variance and rating.
 io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
@@ -58,7 +58,7 @@ io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     return cloud;
 }
 
-/// Values that are not settings but determine the result, as a comment above the settings.
+/// Returns values that are not settings but affect the result, as a comment above the settings.
 std::string command_line(const RunOptions& options) {
     std::string line = fmt::format("# surefoot {}: run {}", SUREFOOT_VERSION, options.source);
     const auto add = [&](const char* option, const std::string& value) {
@@ -76,7 +76,7 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
-/// All layers except the three that every run writes.
+/// Writes all layers except the three that every run writes.
 void write_all_layers(const std::string& out,
                       const grid::GridGeometry& geometry,
                       std::span<const NamedLayer> layers,
@@ -88,9 +88,9 @@ void write_all_layers(const std::string& out,
     }
 }
 
-/// Horizontal distance from base_link to the nearest trusted pixel of the last frame with depth
-/// [m]. The nearest percent of the pixels is ignored as possible outliers. Empty if there is no
-/// such frame.
+/// Returns the horizontal distance from base_link to the nearest trusted pixel of the last frame
+/// with depth [m]. Ignores the nearest percent of the pixels as possible outliers. Empty if there
+/// is no such frame.
 std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     constexpr double kChance = 0.01;
     const DepthImage& depth = pipeline.depth();
@@ -119,8 +119,8 @@ std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pi
     return *nearest;
 }
 
-/// If all visible points lie outside the map: a sentence with their distance and the map length
-/// that would reach them.
+/// If all visible points lie outside the map, returns a sentence with their distance and the map
+/// length that would reach them.
 std::optional<std::string> beyond_the_map(const RunRecord& record,
                                           const pipeline::Pipeline& pipeline) {
     const double length_m = pipeline.config().elevation.length_m;
@@ -158,8 +158,8 @@ grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geome
     return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
 }
 
-/// Compares the tracked features with those of the written map files, which `surefoot stairs` on
-/// the folder reads too.
+/// Compares the tracked features with those in the written map files. `surefoot stairs` on the
+/// folder reads the same files.
 RunFeatures run_features(const RunOptions& options,
                          const Settings& settings,
                          const pipeline::Pipeline& pipeline) {

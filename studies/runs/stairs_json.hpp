@@ -31,7 +31,7 @@ struct StairsContext {
 /// x, y, z [m] and yaw [rad] in the frame of the map. `std` is the standard error; `spread` is the
 /// scatter of the single values. Drops and kerbs have positive heights. `log10_step_ratio` is the
 /// decimal logarithm of the likelihood ratio of a step over smooth ground. Tracked features have
-/// `id`, `looks` (number of observations) and `last_seen_s`. NaN is written as null. If gravity was
+/// `id`, `observations` (their number) and `last_seen_s`. NaN is written as null. If gravity was
 /// assumed, each feature says so.
 [[nodiscard]] std::string stairs_json(const stairs::TerrainFeatures& features,
                                       const stairs::GroundClasses& classes,

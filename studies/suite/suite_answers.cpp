@@ -12,11 +12,11 @@
 namespace surefoot::app {
 namespace {
 
-/// Wrong verdicts of a group of cases.
+/// Sums over a group of cases, with their wrong verdicts.
 struct Pool {
     int cases = 0;
-    double safe = 0.0;     ///< clear-cut safe movements
-    double allowed = 0.0;  ///< ... of these allowed
+    double safe = 0.0;     ///< number of clear-cut safe movements
+    double allowed = 0.0;  ///< number of these movements that the gate allowed
     VerdictTallies tallies;
 
     void add(const SuiteResult& result) {

@@ -23,7 +23,7 @@ double share(int part, int whole) {
     return whole > 0 ? static_cast<double>(part) / whole : std::nan("");
 }
 
-/// A count that is NaN if no question was asked.
+/// Returns a count, or NaN if no question was asked.
 double among(int part, std::size_t whole) {
     return whole > 0 ? static_cast<double>(part) : std::nan("");
 }
@@ -79,7 +79,7 @@ std::vector<std::uint8_t> thumbnail_of(const RunRecord& record,
         pipeline.map().geometry(), record.truth->maps.calls, overlays));
 }
 
-/// A simulated run of the pipeline, with the questions to the gate on the way.
+/// A simulated run of the pipeline that asks the gate along the path.
 class CaseRun {
   public:
     CaseRun(const SuiteConditions& conditions,

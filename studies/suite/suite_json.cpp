@@ -13,7 +13,7 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written, so the same run gives the same bytes.
+// Keys keep the order in which they are written, so that the same run gives the same bytes.
 using gate_process::Json;
 using gate_process::number;
 constexpr int kIndent = 2;

@@ -53,7 +53,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// Median over the cases of a row, and their worst case if there are several.
+/// Returns the median over the cases of a row, and the worst case if there are several cases.
 std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
     const FigureKind kind = suite_figures()[figure].kind;
     const std::string median = shown(kind, row.median[figure]);
@@ -63,7 +63,7 @@ std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
 
 // ---- the sums -----------------------------------------------------------------------------------
 
-/// Sum of a counting figure over all cases.
+/// Returns the sum of a counted figure over all cases.
 double sum_of(std::span<const SuiteResult> results, std::string_view name) {
     double sum = 0.0;
     for (const SuiteResult& result : results) {
@@ -192,11 +192,11 @@ std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fe
     }
     return bins;
 }
-/// Fewest errors of a bin in a plot, because percentiles of fewer errors mean little. The tables
-/// show all bins.
+/// Smallest number of errors in a bin of a plot, because percentiles of fewer errors mean little.
+/// The tables show all bins.
 constexpr std::int64_t kFewestCells = 100;
 
-/// Largest value over all noise levels, so that their plots share one scale.
+/// Returns the largest value over all noise levels, so that their plots share one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {
@@ -222,7 +222,8 @@ eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double hi
     };
     for (const SuiteBin& bin : bins) {
         const double none = std::nan("");
-        if (bin.from > plot.edges.back()) append(bin.from, none, none);  // bins without any error
+        if (bin.from > plot.edges.back())
+            append(bin.from, none, none);  // gap in the plot: bins without any error
         append(bin.to,
                kMillimetres * bin.errors.percentile(0.5),
                kMillimetres * bin.errors.percentile(view.tail));
@@ -296,7 +297,7 @@ eval::ReportTable case_table(std::span<const SuiteResult> results) {
     return table;
 }
 
-/// The worst case of each scene, the worst scene first.
+/// Adds the worst case of each scene, the worst scene first.
 void add_thumbnails(std::span<const SuiteResult> results,
                     const std::string& folder,
                     eval::ReportContent& content) {

@@ -156,7 +156,7 @@ AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
             const sim::SafetyAnswer answer =
                 sim::judge(truth.scene, machine, stance.T_world_body, command);
-            // Skip poses at which the machine cannot stand.
+            // Skips poses at which the machine cannot stand.
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
             const gate::Verdict verdict = ask(machine, map, stance, command);
