@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file.
-/// Uses no socket, no clock and no picture.
+/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file. Uses
+/// no socket, no clock and no picture.
 
 export const kProtocol = 1;
 
 type FieldType = "u8" | "u16" | "u32" | "u64" | "i16" | "i32" | "i64" | "f32" | "f64";
 type Fields = readonly (readonly [string, FieldType])[];
-/// 64-bit integers are bigint: a number cannot hold a time in nanoseconds exactly.
+/// 64-bit integers are bigint, because a number cannot hold a time in nanoseconds exactly.
 type RecordOf<F extends Fields> = {
   [E in F[number] as E[0]]: E[1] extends "u64" | "i64" ? bigint : number;
 };
@@ -84,7 +84,7 @@ export const kLayerFields = [
 
 export const kKind = { map: 1, pose: 2, image: 3, layer: 4 } as const;
 
-/// Bits 0-1 of a cell's state, and the flags above them.
+/// The values of bits 0-1 in a cell's state. The flags below are the bits above them.
 export const kGround = { unknown: 0, free: 1, unsafe: 2, unsure: 3 } as const;
 export const kGroundMask = 3;
 export const kVouched = 4;
@@ -92,11 +92,11 @@ export const kDropEvidence = 8;
 export const kLowOverhead = 16;
 export const kUnknownHeight = -32768;
 
-/// No map of the service has more cells (40 x 40 m of 25 mm has 2.6 million).
+/// Largest number of cells that the page accepts. Maps of the service have fewer: 40 x 40 m of 25 mm has 2.6 million.
 const kMostCells = 4_000_000;
 
 export type Edge = RecordOf<typeof kEdgeFields>;
-/// The cells of a run follow each other in `cells`, 4 bytes each, from byte `at`.
+/// A run of cells. They follow each other in `cells`, 4 bytes each, from byte `at`.
 export interface Run {
   first: number;
   count: number;
@@ -291,7 +291,7 @@ export interface Machine {
 }
 export interface Joint {
   name: string;
-  stand_rad: number; ///< shown if a pose has no angles
+  stand_rad: number; ///< angle that is shown if a pose has no angles
 }
 export interface Hello {
   kind: "hello";
@@ -325,14 +325,14 @@ export interface Status {
   viewers: number;
   playback: Playback | null;
 }
-/// How a recording is played; frames 0 = number not known.
+/// How a recording is played. frames = 0: the number of frames is not known.
 export interface Playback {
   frame: number;
   frames: number;
   paused: boolean;
   speed: number;
 }
-/// The holder of the joystick, and the result of the last requested movement (asked 0: none yet).
+/// The holder of the joystick, and the result of the last requested movement. asked = 0: there was no request yet.
 export interface Steer {
   kind: "steer";
   yours: boolean;
@@ -342,10 +342,10 @@ export interface Steer {
   moved: boolean;
   text: string;
 }
-/// x [m], y [m], z [m], yaw [rad] in odom; null = no number.
+/// x [m], y [m], z [m] and yaw [rad] in odom. null = unknown.
 type PoseNumbers = [number | null, number | null, number | null, number | null];
 type Point = [number | null, number | null];
-/// A feature of the ground, followed over several observations.
+/// A feature of the ground that is tracked over several observations.
 export interface Feature {
   pose: PoseNumbers;
   id?: number;
@@ -389,7 +389,7 @@ export interface Door extends Feature {
   sill_m: number | null;
   clearance_m: number | null;
 }
-/// Lower ground on the right hand from the first end to the second.
+/// A line feature. The lower ground is on the right hand from the first end to the second.
 export interface StairsEdge {
   from: Point;
   to: Point;
@@ -455,7 +455,7 @@ const kStairsKeys = ["time_ns", "flights", "drops", "kerbs", "sills", "doors", "
 const kSettingKeys = ["key", "accepted", "value", "text"];
 const kRecordingKeys = ["state", "folder", "frames", "left_out", "bytes", "duration_s", "text"];
 
-/// Decodes a text message; undefined if its kind is unknown or keys are missing.
+/// Decodes a text message. Returns undefined if its kind is unknown or keys are missing.
 export function decodeJson(text: string): JsonMessage | undefined {
   let message: unknown;
   try {
