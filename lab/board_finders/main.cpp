@@ -235,7 +235,7 @@ void images(const std::string& set, const std::string& folder, const Board& boar
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
-    cv::setNumThreads(1);  // same setting as in the surefoot program
+    cv::setNumThreads(1);  // The surefoot program uses the same setting.
     const std::string how = argc > 2 ? argv[2] : "";
     const bool only_ours = argc > 3 && std::string(argv[argc - 1]) == "ours";
     if (how == "rendered" && argc >= 5) {

@@ -118,9 +118,9 @@ struct FloorSums {
     std::vector<Lag> along_rows = std::vector<Lag>(kLags);
     std::vector<Lag> along_columns = std::vector<Lag>(kLags);
     std::vector<RangeBin> bins = std::vector<RangeBin>(kRangeBins);
-    double cross = 0.0;   ///< product of the errors of two frames from the same pose
-    double square = 0.0;  ///< mean of the squared errors of both frames
-    int pixels = 0;       ///< floor pixels that both cameras see
+    double cross = 0.0;   ///< products of the errors of two frames from the same pose
+    double square = 0.0;  ///< means of the squared errors of both frames
+    int pixels = 0;       ///< number of floor pixels that both cameras see
     int matched = 0;
     std::vector<float> trusted_sigma_px;
 };

@@ -18,7 +18,7 @@ struct Drop {
     int steps;      ///< 1 = kerb; more than 1 = flight of stairs down, each going 0.31 m
 };
 
-/// Horizontal distances from the camera to the edge.
+/// Horizontal distances from the camera to the edge [m].
 inline constexpr double kEdgeDistances_m[] = {0.67, 1.0, 1.5, 2.0};
 
 /// Builds an upper level z = 0 that ends at x = `edge_x_m`, and the drop behind this edge. The

@@ -73,13 +73,14 @@ namespace {
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
 constexpr int kSafeEvery = 10;       ///< a safe scene for every n-th index in the tier maps
-constexpr int kSafeEveryOfRuns = 5;  ///< the same stride for depth and images: runs take seconds
+constexpr int kSafeEveryOfRuns = 5;  ///< stride for depth and images, whose runs take seconds
 
 /// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {
     std::string name;
     Machine machine;
-    int map = 0;                                   ///< variants with the same number share one map
+    int map = 0;                                   ///< number of the map; variants with the same
+                                                   ///< number share one map
     std::optional<MapNoise> noise = std::nullopt;  ///< nullopt = a map without errors
     double shift_m = 0.0;  ///< sigma per axis of the true position about the believed one
 };

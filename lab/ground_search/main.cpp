@@ -71,7 +71,7 @@ Errors any_errors(Rng& rng) {
     return errors;
 }
 
-/// Adds furniture to the floor of a room; it may hide nearly all of the floor.
+/// Adds furniture to the floor of a room. The furniture may hide nearly all of the floor.
 void furnish(Rng& rng, std::vector<Block>& blocks) {
     ground::test::add_room(between(rng, 1.0, 6.0), between(rng, 0.6, 4.0), blocks);
     const auto count = rng.below(5);
@@ -88,11 +88,11 @@ void furnish(Rng& rng, std::vector<Block>& blocks) {
 
 Trial floor_trial(Rng& rng) {
     Trial trial{"floor", {}, true, any_camera(rng), any_errors(rng)};
-    // Relief of gravel or mulch, up to 2.5 % of the camera's height.
+    // Adds the relief of gravel or mulch, up to 2.5 % of the height of the camera.
     if (rng.below(3) == 0)
         trial.errors.relief_m = between(rng, 0.005, 0.025) * std::min(1.0, trial.camera.height_m);
     furnish(rng, trial.blocks);
-    // In every second view a wall leaves only a strip of floor.
+    // In every second view, a wall leaves only a strip of floor.
     if (rng.below(2) == 0) {
         const double share = between(rng, 0.04, 0.3);
         const Camera& camera = trial.camera;

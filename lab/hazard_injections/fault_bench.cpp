@@ -67,7 +67,7 @@ GateBench::GateBench(const Machine& machine,
       next_tick_ns_(kStart_ns + kTick_ns),
       end_ns_(kStart_ns + kPatience_ns) {
     auto writer = gate_process::SnapshotWriter::create({path_, {}});
-    if (!writer) {  // the system has no shared memory: report the error
+    if (!writer) {  // without shared memory the program ends with an error
         fmt::print(stderr, "{}\n", writer.error().message);
         std::exit(1);
     }

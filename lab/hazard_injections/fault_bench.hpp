@@ -25,14 +25,14 @@ inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 
 /// Result of one run. All times are simulated.
 struct Outcome {
-    std::string variant;     ///< the drawn fault, as text
-    int asked_before = 0;    ///< queries before the fault
-    int allowed_before = 0;  ///< OK answers before the fault; a run is valid only if all were OK
-    int asked_after = 0;     ///< queries after the fault began
-    int allowed_late = 0;    ///< OK answers after the deadline or after the first inhibit
+    std::string variant;     ///< description of the drawn fault
+    int asked_before = 0;    ///< number of queries before the fault
+    int allowed_before = 0;  ///< number of OKs before the fault; valid only if all were OK
+    int asked_after = 0;     ///< number of queries after the fault began
+    int allowed_late = 0;    ///< number of OKs after the deadline or the first inhibit
     std::int64_t last_allowed_ns = -1;         ///< time from the fault to the last OK; -1 = no OK
     std::optional<std::int64_t> latency_ns;    ///< time from the fault to the first inhibit
-    gate::Reason reason = gate::Reason::none;  ///< first inhibit, if possible not NOT_READY
+    gate::Reason reason = gate::Reason::none;  ///< most specific reason of the first inhibit
 };
 
 /// The gate process in simulated time: a gatekeeper that is polled every 10 ms, and a client that
@@ -50,11 +50,11 @@ class GateBench {
         std::int64_t lasts_ns = 500 * kMs;  ///< time from the fault to the end of the run
         std::int64_t watched_on_ns = 0;     ///< run time after the first inhibit; 0 = no early end
         bool faulty = true;                 ///< false: a control run without a fault
-        bool from_the_start = false;        ///< the fault exists before the gate starts
+        bool from_the_start = false;        ///< true: the fault exists before the gate starts
         double attestation_radius_m = 0.0;  ///< radius of the attested area; 0 = no attestation
         /// false: choose only among movements of at most 0.2 m, which stay on attested ground.
         bool any_movement = true;
-        bool forward_only = false;  ///< choose only among movements of more than 0.19 m ahead
+        bool forward_only = false;              ///< true: use only movements of over 0.19 m ahead
         std::int64_t fault_ns_since_start = 0;  ///< 0 = draw the time when the gate is ready
     };
     /// The gate's answer as the client receives it.

@@ -397,7 +397,7 @@ void repeat_sequences(GateBench& bench, Rng& rng) {
     });
 }
 
-/// Damages the text of a query; `variant` describes how.
+/// Damages the text of a query. `variant` describes the damage.
 std::string broken_text(const std::string& whole, Rng& rng, std::string& variant) {
     switch (rng.below(5)) {
         case 0: {
@@ -454,7 +454,7 @@ void restart(GateBench& bench, Rng& rng) {
     bench.set_begin([&bench] { bench.restart_gate(); });
 }
 
-/// The log of an assured gate fails: its disk is full or broken.
+/// The log of an assured gate fails, because its disk is full or broken.
 void fill_disk(GateBench& bench, Rng& rng) {
     struct Log {
         std::shared_ptr<gate_process::testing::Platter> platter =
@@ -505,7 +505,7 @@ void unknown_command(const Machine& machine, GateBench& bench, Rng& rng) {
 
 // --- H26, H27: configurations ---
 
-/// Makes one error in the text of a machine file; `variant` describes it.
+/// Makes one error in the text of a machine file. `variant` describes the error.
 std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) {
     std::vector<std::string> lines;
     for (std::size_t at = 0; at < whole.size();) {
@@ -564,7 +564,7 @@ Result<Outcome> start_with(const Result<io::MachineFile>& file,
     refused.variant = variant;
     refused.latency_ns = 0;
     refused.reason = gate::Reason::config;
-    if (!file) return refused;  // the gate did not start: no query gets an answer
+    if (!file) return refused;  // The gate does not start, so no query gets an answer.
     GateBench::Plan plan;
     plan.faulty = faulty;
     plan.deadline_ns = 0;

@@ -93,7 +93,7 @@ Nees nees_of(const std::vector<Step>& steps, const Pose& T_camera_body) {
 double noise_m(const Trajectory& truth) {
     constexpr std::array kWeights = {-3.0 / 35, 12.0 / 35, 17.0 / 35, 12.0 / 35, -3.0 / 35};
     constexpr double kLeft = 18.0 / 35;
-    constexpr double kSpan_s = 0.25;  // five frames without a gap
+    constexpr double kSpan_s = 0.25;  // longest time between the first and the last of five frames
     double sum_m2 = 0.0;
     int count = 0;
     for (std::size_t i = 0; i + kWeights.size() <= truth.size(); ++i) {

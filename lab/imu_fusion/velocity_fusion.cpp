@@ -11,7 +11,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first speed, as in the library
+constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first speed [m/s], equal to the value of
+                                          ///< the library
 
 struct Velocity {
     Vector3d value;
@@ -77,7 +78,7 @@ MotionEstimate VelocityFusion::fused(const MotionEstimate& vision, const odometr
     const double gyro_var = config_.gyro_bias_sigma_rad_s * config_.gyro_bias_sigma_rad_s;
     const double accel_var = config_.accel_bias_sigma_m_s2 * config_.accel_bias_sigma_m_s2;
 
-    // Mean velocities over the interval, in the axes of base_link at its beginning.
+    // Mean velocities over the interval, in the axes of base_link at the begin of the interval.
     const Velocity turn_imu{
         log_so3(imu.rotation) / dt_s,
         imu.covariance.topLeftCorner<3, 3>() / dt2_s2 + gyro_var * Matrix3d::Identity()};

@@ -45,7 +45,7 @@ struct Rule {
     ElevationConfig config;
 };
 
-/// The default rule, and variants with one changed setting each.
+/// Returns the default rule, and variants with one changed setting each.
 std::vector<Rule> rules() {
     std::vector<Rule> all;
     const auto add = [&](const std::string& name, const auto& change) {

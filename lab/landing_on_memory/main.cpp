@@ -45,7 +45,7 @@ namespace surefoot {
 namespace {
 
 constexpr double kRate_hz = 8.0;
-constexpr int kDepthEvery = 2;  ///< every n-th frame has depth
+constexpr int kDepthEvery = 2;  ///< every second frame has depth
 constexpr double kSecondPitch_deg = 65.0;
 constexpr double kLongExposure_s = 0.016;  ///< longest exposure of the simulated control
 
@@ -53,7 +53,7 @@ constexpr double kLongExposure_s = 0.016;  ///< longest exposure of the simulate
 /// the carpet.
 struct Condition {
     std::string name = "plain";
-    double contrast = 1.0;  ///< factor on all textures
+    double contrast = 1.0;  ///< factor on the contrast of all textures
     int blur_samples = 0;   ///< number of instants within an exposure of 16 ms; 0 = sharp
     bool rolling = false;
 };
@@ -268,8 +268,8 @@ std::vector<Setup> mounts(std::uint64_t seed, double noise) {
 }
 
 std::vector<Setup> conditions(std::uint64_t seed, double noise) {
-    constexpr double kPoor = 0.3;  // factor on the contrast
-    constexpr int kInstants = 3;   // the machine vibrates by about a pixel per exposure
+    constexpr double kPoor = 0.3;  // factor on the contrast of a poor texture
+    constexpr int kInstants = 3;   // enough: the machine vibrates by about a pixel per exposure
     std::vector<Setup> all;
     const auto add = [&](const Condition& condition) {
         all.push_back(
@@ -284,7 +284,7 @@ std::vector<Setup> conditions(std::uint64_t seed, double noise) {
 
 using Set = std::vector<Setup> (*)(std::uint64_t seed, double noise);
 
-/// Returns nullptr for an unknown name.
+/// Returns the function that makes the setups of this name; nullptr for an unknown name.
 Set set_of(const std::string& name) {
     if (name == "grid") return grid;
     if (name == "mounts") return mounts;

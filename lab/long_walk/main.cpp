@@ -36,7 +36,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kMostFrames = 250;  ///< frames of the path kept in memory
+constexpr int kMostFrames = 250;  ///< largest number of path frames in memory
 constexpr int kDepthEvery = 5;
 constexpr double kNewNoise_grey = 1.5;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;

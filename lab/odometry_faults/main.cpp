@@ -371,7 +371,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
             ++dropped;
             continue;
         }
-        if (dropped > 0) shown.faulty = true;  // the next frame shows the gap
+        if (dropped > 0) shown.faulty = true;  // the next frame shows the gap in the images
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
         shown.frame.frame_status.dropped = std::exchange(dropped, 0);

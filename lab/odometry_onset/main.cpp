@@ -35,8 +35,8 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kStands = 30;  ///< standing frames before the motion
-constexpr int kAfter = 15;   ///< frames after the begin of the motion
+constexpr int kStands = 30;  ///< number of standing frames before the motion
+constexpr int kAfter = 15;   ///< number of frames after the begin of the motion
 constexpr int kLongStand = 100;
 constexpr int kSettled = 3;  ///< number of first frames that are not judged
 constexpr double kPeriod_s = 0.1;
@@ -65,7 +65,7 @@ struct Held final : sim::Motion {
 
 /// Camera, pose and images of one scene.
 struct Stage {
-    camera::StereoRig rig;  ///< rig with its calibration
+    camera::StereoRig rig;  ///< rig that the odometry uses, with its calibration
     Pose T_world_body;
     sim::Renderer renderer;
     pipeline::PipelineConfig config;

@@ -67,7 +67,7 @@ double cpu_ms() {
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// A pose of base_link.
+/// A pose of base_link on the path.
 struct Stop {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -287,7 +287,7 @@ class Run {
     }
 
     Case now_;
-    Pose T_world_map_;  ///< odom of the first run
+    Pose T_world_map_;  ///< pose of the odom frame of the first run
     place_recognition::PlaceTracker tracker_;
     place_recognition::Place saved_;
     fmt::ostream& out_;

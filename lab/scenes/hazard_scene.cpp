@@ -154,7 +154,7 @@ class Builder {
 /// Random values of one hazard. Every hazard draws all of them, so that a hazard and its harmless
 /// relief share the other draws.
 struct Draw {
-    double share = 0.0;                ///< position within the allowed range
+    double share = 0.0;                ///< position within the allowed range, 0 to 1
     double across = 0.0;               ///< sideways position, -1 to 1
     double a = 0.0, b = 0.0, c = 0.0;  ///< sizes, 0 to 1
     double spare = 0.0;                ///< draw for a later size; using it changes no other draw

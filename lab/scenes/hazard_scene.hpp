@@ -49,7 +49,7 @@ struct Solid {
     double top_m = 0.0;
 
     [[nodiscard]] bool covers(const Eigen::Vector2d& p_m) const noexcept;
-    /// Whether the solid intersects the line segment between two points.
+    /// Returns true if the solid intersects the line segment between two points.
     [[nodiscard]] bool blocks(const Eigen::Vector3d& from_m,
                               const Eigen::Vector3d& to_m) const noexcept;
 };
@@ -58,25 +58,25 @@ struct Solid {
 /// now asks for one movement. World frame: z = 0 is the ground under the machine.
 struct HazardScene {
     std::uint64_t seed = 0;
-    Hazard asked = Hazard::kerb;  ///< the kind of scene
+    Hazard asked = Hazard::kerb;  ///< kind of the scene
     Hazard thing =
         Hazard::kerb;           ///< the hazard in the scene; differs from `asked` only for `unseen`
     bool relief_only = false;   ///< true: safe scene whose relief is at most 10 mm
     int command = 0;            ///< joystick code
     double relief_m = 0.0;      ///< signed height of the hazard [m]; negative = down
     double way_m = 0.0;         ///< distance walked forward [m]
-    bool turned = false;        ///< turned by 180 deg on the spot at the end
+    bool turned = false;        ///< true: turned by 180 deg on the spot at the end
     std::vector<Solid> solids;  ///< objects of the scene, in the world frame
     Eigen::Vector2d edge_m = Eigen::Vector2d::Zero();  ///< a point on the near border of the hazard
     Eigen::Vector2d normal =
         Eigen::Vector2d::UnitX();  ///< direction from the near border into the hazard
-    Pose T_world_body;             ///< base_link at the query
+    Pose T_world_body;             ///< pose of base_link at the query
     double yaw_rad = 0.0;          ///< yaw of T_world_body
 
-    /// The scene for the oracle and the simulated sensors. Each solid has its own material.
+    /// Returns the scene for the oracle and the simulated sensors. Each solid has its own material.
     [[nodiscard]] sim::Scene scene() const;
-    /// Text of a scene file for the simulator: this scene with a room around it, and the machine's
-    /// path with the trolley motion model. Only for scenes placed `on_way`.
+    /// Returns the text of a scene file for the simulator: this scene with a room around it, and
+    /// the path of the machine with the trolley motion model. Only for scenes placed `on_way`.
     [[nodiscard]] std::string yaml() const;
 };
 

@@ -48,9 +48,9 @@ struct MapNoise {
     double outlier_share = 9.4e-5;          ///< share of outlier cells: 18 of 192 348 measured
     double outlier_least_m = 0.020;         ///< smallest |error| of an outlier
     double outlier_most_m = 0.042;          ///< largest |error|; small errors are more frequent
-    double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier
+    double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier [m]
     double outlier_most_sigma_m = 17e-3;    ///< largest
-    double drift_m = 2.2e-3;                ///< 90th percentile of the stated horizontal drift
+    double drift_m = 2.2e-3;                ///< 90th percentile of the stated drift [m]
     /// Factor on the stated sigma if the machine did not walk: sigma of cells seen from one pose,
     /// divided by the sigma of cells seen from six poses.
     double once_factor = 1.25;
@@ -82,9 +82,9 @@ class SceneCells {
         float under_m = 0.0F;        ///< underside of an overhang above the middle; NaN = none
         float top_m = 0.0F;          ///< top of this overhang [m]
         float share_high = 0.0F;     ///< share of samples nearer to high_m than to low_m
-        bool ground = false;         ///< at least one sample is not a void
-        bool seen = false;           ///< both cameras see the middle of the cell
-        bool beside_seen = false;    ///< at least one of its 8 neighbours is seen
+        bool ground = false;         ///< true: at least one sample is not a void
+        bool seen = false;           ///< true: both cameras see the middle of the cell
+        bool beside_seen = false;    ///< true: at least one of its 8 neighbours is seen
         float beside_high_m = 0.0F;  ///< highest sample of these neighbours [m]
     };
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
@@ -107,9 +107,9 @@ struct MadeMap {
     Image<float> clearance_m;
 };
 
-/// A map without errors: the highest point of each seen cell, with sigma 1 mm.
+/// Returns a map without errors: the highest point of each seen cell, with sigma 1 mm.
 [[nodiscard]] MadeMap clean_map(const SceneCells& scene);
-/// Draws a map with errors. `once`: the machine did not walk, all observations come from one pose.
+/// Draws a map with errors. `once`: the machine did not walk, so all observations have one pose.
 [[nodiscard]] MadeMap noisy_map(const SceneCells& scene,
                                 const MapNoise& noise,
                                 bool once,

@@ -61,8 +61,8 @@ struct SceneCase {
     return cases;
 }
 
-/// The rig that renders the images: the nominal rig with the calibration errors of the profile and
-/// of the settings.
+/// Returns the rig that renders the images: the nominal rig with the calibration errors of the
+/// profile and of the settings.
 [[nodiscard]] inline camera::StereoRig true_rig(const camera::StereoRig& nominal,
                                                 const sim::SceneOptions& sim) {
     return sim::with_error(sim::with_error(nominal, sim::figures_of(sim.profile).calibration),

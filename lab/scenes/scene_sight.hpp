@@ -11,7 +11,7 @@ namespace surefoot::experiments {
 
 /// Surfaces of a scene on one vertical line, as heights in the world frame.
 struct Heights {
-    double top_m = 0.0;    ///< highest surface; NaN = void
+    double top_m = 0.0;    ///< highest surface [m]; NaN = void
     double floor_m = 0.0;  ///< surface below a hanging solid; otherwise equals `top_m`
     double under_m = 0.0;  ///< underside of a hanging solid; infinity = none
 };

@@ -44,7 +44,7 @@ constexpr double kAround_m = 0.6;
 /// The pipeline of a case and its time.
 struct Chain {
     std::optional<pipeline::Pipeline> pipeline;
-    double ground_ms = 0.0;  ///< time of the ground plane and of the search for mirrors
+    double ground_ms = 0.0;  ///< sum of the times of ground plane and search for mirrors
 
     void process(const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::full);

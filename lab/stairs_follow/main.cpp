@@ -96,7 +96,7 @@ bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found)
     return way.dot(found_way) > 0.0;
 }
 
-/// Features that appeared, disappeared, or changed their class between two frames.
+/// Counts features that appeared, disappeared, or changed their class between two frames.
 struct Changes {
     int came_or_went = 0;
     int new_ids = 0;

@@ -54,12 +54,12 @@ struct Observation {
     Image<float> disparity_px;
     Image<float> disparity_sigma_px;
 
-    /// Views of the layers; valid while this object lives.
+    /// Returns views of the layers; they are valid while this object lives.
     [[nodiscard]] stairs::Terrain terrain() const;
     [[nodiscard]] std::string folder_name() const;  ///< "up_common_21_f32"
 };
 
-/// Short name of a scene: the part behind the last '#' or '/', up to the first '.'.
+/// Returns the short name of a scene: the part behind the last '#' or '/', up to the first '.'.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
 /// Writes a folder. Its layers are height.asc, variance.asc, free_above.asc, clearance.asc,

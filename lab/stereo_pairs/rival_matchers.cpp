@@ -14,9 +14,9 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr int kLeftRight_px = 1;  ///< limit of OpenCV's left-right check, as in our matcher
+constexpr int kLeftRight_px = 1;  ///< limit of OpenCV's left-right check, equal to our limit [px]
 
-/// Adds borders: OpenCV leaves the pixels there without a match.
+/// Adds borders to an image, because OpenCV finds no match for pixels near the border.
 cv::Mat padded(const GreyImage& image, int left_px, int margin_px) {
     const cv::Mat in(
         image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()));

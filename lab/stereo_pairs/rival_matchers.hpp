@@ -16,13 +16,13 @@ namespace surefoot::experiments {
 /// A matcher with fixed settings. Returns disparities of the left image [px]; NaN = unknown.
 using Match = std::function<Image<float>(const TruePair&)>;
 
-/// The matcher of the pipeline with its default settings.
+/// Returns the matcher of the pipeline with its default settings.
 [[nodiscard]] Match chain();
-/// The same matcher, without the disparities whose outlier probability is above kTrusted.
+/// Returns this matcher without the disparities whose outlier probability is above kTrusted.
 [[nodiscard]] Match trusted_chain();
 /// Largest outlier probability of a trusted match.
 inline constexpr float kTrusted = 0.5F;
-/// Output of the pipeline's matcher: disparities with sigma and outlier probability.
+/// Runs the matcher of the pipeline: disparities with sigma and outlier probability.
 [[nodiscard]] DepthImage chain_depth(const TruePair& pair);
 
 /// Settings of our matcher.
@@ -30,8 +30,8 @@ struct OurSettings {
     stereo::SemiGlobalConfig search;
     stereo::SelectionConfig selection;
 };
-/// Disparities of our search after stereo::select_disparities and the speckle filter. They are the
-/// input of the refinement in the pipeline.
+/// Returns the disparities of our search after stereo::select_disparities and the speckle filter.
+/// They are the input of the refinement in the pipeline.
 [[nodiscard]] Image<float> selected_px(const OurSettings& settings, const TruePair& pair);
 /// Returns `selected_px` after a 3 x 3 median, without the refinement of the pipeline.
 [[nodiscard]] Match our_search(const OurSettings& settings);

@@ -43,7 +43,7 @@ constexpr PairFiles kPairs[] = {
      0.5},
 };
 
-/// Returns an empty image if the file is not an image.
+/// Reads a grey image. Returns an empty image if the file is not an image.
 GreyImage load(const std::string& path) {
     const cv::Mat read = cv::imread(path, cv::IMREAD_GRAYSCALE);
     GreyImage image(read.cols, read.rows);

@@ -194,7 +194,7 @@ Machine foot_alone(Machine machine) {
     return machine;
 }
 
-/// Size of the largest 4-connected group of cells in the mask.
+/// Returns the size of the largest 4-connected group of cells in the mask.
 int largest_cluster(eval::CellMask mask) {
     int largest = 0;
     std::vector<std::pair<int, int>> open;

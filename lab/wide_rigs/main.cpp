@@ -219,7 +219,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         fmt::print(stderr, "usage: wide_rigs OUT_FOLDER FIRST_SEED SEEDS\n");
         return 2;
     }
-    cv::setNumThreads(1);  // same setting as in the surefoot program
+    cv::setNumThreads(1);  // The surefoot program uses the same setting.
     return surefoot::measure(
         argv[1], std::strtoull(argv[2], nullptr, 10), std::strtoull(argv[3], nullptr, 10));
 }

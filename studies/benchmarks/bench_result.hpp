@@ -28,11 +28,11 @@ struct Timing {
 struct BenchResult {
     std::string name;
     Timing ours;
-    /// The same work in the same run, done by OpenCV or (terrain) by a plain implementation.
+    /// The same work by OpenCV, or for terrain by a plain implementation, in the same run.
     std::optional<Timing> peer = {};
 };
 
-/// Processor time that all threads of this process have used [ns].
+/// Returns the processor time that all threads of this process have used [ns].
 [[nodiscard]] std::int64_t cpu_now_ns();
 
 /// Calls `work` once to warm up, then times `repeats` calls. `before` runs before each timed call

@@ -22,7 +22,7 @@ struct Workload {
     Prepare prepare;
     /// The same job by the reference implementation (Way::plain). Empty = there is none.
     Prepare prepare_plain = {};
-    int queries = 1;  ///< queries per call; a single query is shorter than the clock resolution
+    int queries = 1;  ///< queries per call, because one query is shorter than the clock step
 };
 
 /// Returns the jobs of the elevation map: fusing depth images, moves, ray endpoints, bounds. The

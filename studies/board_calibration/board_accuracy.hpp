@@ -16,9 +16,9 @@ namespace surefoot::app {
 struct DepthAccuracyOptions {
     CommonOptions common;
     std::string rig = "zed_vga";      ///< rig file or name of a built-in rig
-    std::vector<double> distances_m;  ///< empty = the default distances
-    int repeats = 3;  ///< rendered images per distance, each with its own texture and noise
-    /// Real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M".
+    std::vector<double> distances_m;  ///< distances of the board [m]; empty = defaults
+    int repeats = 3;  ///< number of rendered images per distance; texture and noise differ
+    /// File with real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M".
     std::string pairs_file;
     double board_m = 0.6;  ///< side of the square textured board [m]
     std::string out_dir;
@@ -40,14 +40,14 @@ struct ThesisAccuracy {
     double std_m;
 };
 [[nodiscard]] const std::vector<ThesisAccuracy>& thesis_accuracy();
-/// "ZED" or "DUO"; nullopt if the reference thesis did not measure the camera of this rig.
+/// Returns "ZED" or "DUO"; nullopt if the reference thesis did not measure this camera.
 [[nodiscard]] std::optional<std::string> thesis_camera(const std::string& rig_name);
 
 /// Depth accuracy of a rig at one distance of the board.
 struct DistanceAccuracy {
     double distance_m = 0.0;
     int observations = 0;                     ///< number of image pairs
-    std::optional<eval::BoardErrors> errors;  ///< nullopt if the depth image shows no board
+    std::optional<eval::BoardErrors> errors;  ///< nullopt = the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
     std::optional<ThesisAccuracy> thesis;     ///< thesis value for the same camera and distance
 };

@@ -144,7 +144,7 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
         const calibration::ViewShape& view = coverage.views[i];
         if (view.spacing_px <= 0.0) continue;
         constexpr double kDirection_deg[] = {180.0, 0.0, 270.0, 90.0};  // by NearSide, clockwise
-        // Spread the dots of one side, so that they do not hide each other.
+        // Spreads the dots of one side, so that they do not hide each other.
         const double fan_deg = 9.0 * (static_cast<double>(i % 7) - 3.0);
         const double angle_rad =
             (kDirection_deg[static_cast<std::size_t>(view.near_side)] + fan_deg) *
@@ -167,7 +167,7 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera
     }
     std::sort(lengths_px.begin(), lengths_px.end());
     const double usual_px = lengths_px.empty() ? 1.0 : eval::percentile_of_sorted(lengths_px, 0.95);
-    constexpr double kShown_px = 20.0;  // drawn length of the 95th percentile
+    constexpr double kShown_px = 20.0;  // length of the arrow of the 95th percentile
     const double enlarged = kShown_px / std::max(usual_px, 1e-6);
     const bool right = std::string(this_camera.name) == "right";
     Plane plane = plane_of(

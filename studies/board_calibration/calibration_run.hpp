@@ -42,7 +42,7 @@ struct CalibrationRun {
 struct CalibratedCamera {
     const char* name = "";
     camera::Camera camera;
-    Eigen::VectorXd parameters;          ///< in the order of calibration::parameter_names
+    Eigen::VectorXd parameters;          ///< ordered as calibration::parameter_names
     Eigen::VectorXd sigmas;              ///< standard deviation of each parameter
     calibration::MappingSigmas mapping;  ///< effect of all parameter errors on the pixels
     struct View {

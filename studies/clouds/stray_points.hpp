@@ -32,7 +32,7 @@ class StrayFilter {
     /// Adds a column. Columns come in order of azimuth. Passes on each column as soon as its
     /// neighbours are complete. Returns false if `take` stopped.
     bool add(const sim::ScanColumn& column, const Take& take);
-    /// Passes on the remaining columns.
+    /// Passes on the columns that `add` still holds.
     bool finish(const Take& take);
 
   private:

@@ -32,8 +32,8 @@ struct SurfaceRules {
 struct SurfaceDem {
     grid::Layer height_m;
     grid::Layer clearance_m;             ///< height from ground to lowest overhanging points [m]
-    std::int64_t cut_points = 0;         ///< points outside the height limits
-    std::int64_t unsupported_cells = 0;  ///< cells with points but without a supported surface
+    std::int64_t cut_points = 0;         ///< number of points outside the height limits
+    std::int64_t unsupported_cells = 0;  ///< number of cells with points but no supported surface
     std::int64_t overhung_cells = 0;
 };
 
@@ -65,7 +65,7 @@ using EachBlock =
 [[nodiscard]] Result<SurfaceRules> surface_rules(std::optional<double> lowest_z_m,
                                                  std::optional<double> highest_z_m);
 
-/// Describes the points and cells that were left out; empty if there are none.
+/// Returns a text about the points and cells that were left out; empty if there are none.
 [[nodiscard]] std::string left_out_text(const SurfaceDem& dem);
 
 }  // namespace surefoot::app

@@ -28,7 +28,7 @@ std::int64_t slab_of(const Vector3f& p_m, double size_m) {
     return number >= 0 ? number / kSlabVoxels : -((kSlabVoxels - 1 - number) / kSlabVoxels);
 }
 
-/// Reads a cloud as float points relative to one shift.
+/// Reads a cloud as float points relative to a shift that is the same for all points.
 class Source {
   public:
     static Result<Source> open(const std::string& path) {

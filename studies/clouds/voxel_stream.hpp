@@ -14,11 +14,11 @@ namespace surefoot::app {
 
 /// Result of thin_cloud().
 struct ThinnedCloud {
-    std::int64_t points = 0;   ///< finite input points
-    std::int64_t skipped = 0;  ///< input points that were not finite
+    std::int64_t points = 0;   ///< number of finite input points
+    std::int64_t skipped = 0;  ///< number of input points that were not finite
     std::int64_t voxels = 0;   ///< output points
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< properties of the cloud that the output lacks
+    std::vector<std::string> notes;  ///< sentences about properties that the output lacks
 };
 
 /// Returns a usage error if the box has more voxels than can be numbered. The error names `cloud`.

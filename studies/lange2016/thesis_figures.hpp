@@ -16,7 +16,7 @@ namespace surefoot::app {
 class ThesisFigures {
   public:
     void set(const std::string& name, double value) { all_.emplace_back(name, value); }
-    /// The figure with that name; NaN if there is none.
+    /// Returns the figure with that name; NaN if there is none.
     [[nodiscard]] double get(std::string_view name) const;
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const noexcept {
         return all_;
@@ -33,8 +33,8 @@ class ThesisFigures {
 [[nodiscard]] Status write_figures(const std::string& folder,
                                    std::uint64_t conditions,
                                    const ThesisFigures& figures);
-/// Reads figures.csv. Empty if the part is not finished or was made under other conditions. Error
-/// if the file is not a figures file.
+/// Reads figures.csv. Returns no value if the part is not finished or was made under other
+/// conditions. Returns an error if the file is not a figures file.
 [[nodiscard]] Result<std::optional<ThesisFigures>> read_figures(const std::string& folder,
                                                                 std::uint64_t conditions);
 

@@ -34,9 +34,9 @@ class PolicySteps {
     void ask_all(std::size_t frame,
                  const pipeline::Pipeline& pipeline,
                  const grid::MapSnapshot& map);
-    /// Sets steps, steps_allowed (share of the truly safe steps), dangers, dangers_allowed. `gate`
-    /// selects the verdicts of the gate, otherwise those of the thesis query. Borderline questions
-    /// count only in `steps`.
+    /// Sets steps, steps_allowed (share of the truly safe steps), dangers and dangers_allowed.
+    /// `gate`: true = verdicts of the gate, false = verdicts of the thesis query. Borderline
+    /// questions count only in `steps`.
     void add_to(bool gate, ThesisFigures& figures) const;
 
   private:

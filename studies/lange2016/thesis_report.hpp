@@ -15,7 +15,7 @@ namespace surefoot::app {
 /// A rebuilt data set, for comparison with Table 8.2 of the reference thesis (Lange 2016).
 struct DatasetFigures {
     ThesisDataset of;
-    double length_m = 0.0;  ///< extent of the ground and all objects along x
+    double length_m = 0.0;  ///< extent along x of ground and objects [m]
     double width_m = 0.0;
     int objects = 0;
     int stations = 0;
@@ -32,7 +32,7 @@ struct ThesisResults {
     std::vector<std::string> failures;  ///< one sentence for each failed part
 };
 
-/// A row of the table with its numbers; NaN = no value.
+/// A row of the result table with its numbers; NaN = no value.
 struct FilledRow {
     ThesisRow row;
     double thesis_settings = 0.0;

@@ -33,8 +33,8 @@ struct ScannedPlace {
     int stations = 0;
     std::int64_t scanned = 0;  ///< points in the area before thinning, stray points excluded
 };
-/// Scans the area. Errors: an invalid scanner configuration; no point in the area; interrupted by
-/// the user.
+/// Scans the area. Returns an error if the scanner configuration is not valid, if the area contains
+/// no point, or if the user interrupts.
 [[nodiscard]] Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
                                               const sim::LaserScannerConfig& config,
                                               std::uint64_t seed,

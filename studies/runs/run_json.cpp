@@ -101,7 +101,7 @@ Json self_calibration_json(const std::optional<stereo::RigSelfCalibration>& self
 
 Json place_json(const PlaceRecord& place) {
     Json refusals = Json::object();
-    for (int i = 1; i < place_recognition::kRefusals; ++i)  // index 0 is Refusal::none
+    for (int i = 1; i < place_recognition::kRefusals; ++i)  // skips index 0, which is Refusal::none
         refusals[to_string(static_cast<place_recognition::Refusal>(i))] =
             place.refusals[static_cast<std::size_t>(i)];
     const std::string& reason = place.left_as_it_was;

@@ -166,7 +166,9 @@ RunFeatures run_features(const RunOptions& options,
     TerrainRequest map_of_run;
     map_of_run.map = options.out_dir;
     const auto map = load_terrain(map_of_run);
-    if (!map) return split_by_confirmation(pipeline.features());  // empty map or full disk
+    if (!map)
+        return split_by_confirmation(pipeline.features());  // the map is empty or the disk is
+                                                            // full
     stairs::TerrainFeatures final_map;
     stairs::FeatureFinder(settings.pipeline.stairs).find(map->terrain(), final_map);
     return compare_with_final_map(pipeline.features(), final_map);
@@ -302,7 +304,7 @@ Percentiles frame_percentiles(const RunRecord& record) {
 double peak_memory_mb() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports this value in kB
 }
 
 std::string modelled_note(const camera::SourceInfo& source) {

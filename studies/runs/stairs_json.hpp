@@ -14,10 +14,10 @@
 
 namespace surefoot::app {
 
-/// Name of the gravity source in JSON: "imu", "plane" or "assumed".
+/// Returns the name of the gravity source in JSON: "imu", "plane" or "assumed".
 [[nodiscard]] const char* gravity_name(grid::GravitySource source);
 
-/// Further content of stairs.json.
+/// Other content of stairs.json, besides the features.
 struct StairsContext {
     double resolution_m = 0.0;  ///< cell size
     grid::GravitySource gravity_source = grid::GravitySource::assumed;

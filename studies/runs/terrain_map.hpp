@@ -16,7 +16,7 @@ namespace surefoot::app {
 
 /// The height map to load and the options of its file type.
 struct TerrainRequest {
-    std::string map;  ///< .asc, .png, a cloud, or the folder of a run
+    std::string map;  ///< file .asc, .png or a cloud, or the folder of a run
     /// Standing position "x,y" [m]; empty = load_terrain() chooses it from the map.
     std::string from;
     double scale_m_per_px = 0.0;       ///< PNG: size of a pixel [m]

@@ -48,7 +48,7 @@ struct Scanned {
 /// Returns the result as JSON, see docs/reference/json.md.
 [[nodiscard]] std::string scan_json(const Scanned& scanned);
 
-/// `surefoot sim --scan`: writes terrestrial laser scans of a scene. Returns the exit code.
+/// Runs `surefoot sim --scan`: writes laser scans of a scene. Returns the exit code.
 int scan(const SimOptions& options);
 
 }  // namespace surefoot::app

@@ -34,7 +34,7 @@ struct SuiteBin {
     friend bool operator==(const SuiteBin&, const SuiteBin&) = default;
 };
 
-/// All bins of a comparison that contain an error.
+/// All bins of a comparison that contain at least one error.
 [[nodiscard]] std::vector<SuiteBin> bins_of(const eval::MapComparison& maps);
 
 /// Sums the errors of bins with the same key and limits. The result is sorted by key and limits.

@@ -24,7 +24,7 @@ struct SuiteCase {
     double rate_hz = 10.0;                 ///< frame rate of the camera [Hz]
     std::string motion_model = "trolley";  ///< motion model, one of sim::kMotionModelNames
 
-    /// Unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
+    /// Returns the unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
     [[nodiscard]] std::string name() const;
     friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
 };

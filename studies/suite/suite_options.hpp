@@ -20,7 +20,7 @@ struct EvalSuiteOptions {
     int seeds = 1;                           ///< number of seeds for each scene
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera
     bool quick = false;
-    int frames = 0;        ///< frames of each case; 0 = the whole path
+    int frames = 0;        ///< largest number of frames of each case; 0 = the whole path
     double reach_m = 0.8;  ///< largest distance from the last pose in a question [m]
     bool thesis = false;   ///< true: run the experiments of the reference thesis (Lange 2016)
     std::vector<std::string> runs;  ///< names of thesis experiments; empty = all

@@ -164,7 +164,7 @@ struct BinView {
     BinKey key;
     const char* title;
     const char* x_label;
-    double tail;  ///< upper percentile shown beside the median, as a fraction
+    double tail;  ///< percentile (0 to 1) that the plot shows besides the median
     const char* tail_label;
 };
 constexpr BinView kBinViews[] = {

@@ -25,7 +25,7 @@ struct SuiteStep {
     bool clear_cut = false;  ///< the truth holds by more than sim::SafetyMargin
     std::string dangers;     ///< names joined by '|'; empty = safe
     std::string decision;    ///< "OK", "NOT_TRAVERSABLE" or "ERROR"
-    std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
+    std::string reasons;     ///< names joined by '|'; empty for OK
 
     [[nodiscard]] bool allowed() const { return decision == "OK"; }
     friend bool operator==(const SuiteStep&, const SuiteStep&) = default;

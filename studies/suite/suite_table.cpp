@@ -270,7 +270,7 @@ SuiteResult* SuiteTable::find(const SuiteCase& which) {
     return place == places_.end() ? nullptr : &results_[place->second];
 }
 
-/// Returns false if the case is already known.
+/// Adds a case. Returns false if the case is already known.
 bool SuiteTable::remember(SuiteResult result) {
     if (!places_.emplace(key_of(result.which), results_.size()).second) return false;
     results_.push_back(std::move(result));

@@ -64,7 +64,7 @@ class VerdictTallies {
     std::vector<VerdictTally> all_;
 };
 
-/// Result of compare_verdicts().
+/// Result of asking about all movements around one pose.
 struct AroundAnswers {
     VerdictCounts counts;
     VerdictTallies tallies;
