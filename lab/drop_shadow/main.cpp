@@ -32,7 +32,7 @@ using Eigen::Vector3d;
 
 constexpr Drop kKerb = {"kerb 75 mm", 0.075, 1};
 constexpr int kFifths = 5;
-constexpr double kHalfWidth_m = 0.3;  ///< width of the strip on each side of the camera
+constexpr double kHalfWidth_m = 0.3;  ///< width of the strip on each side of the camera [m]
 constexpr int kPieces = 24;           ///< pieces of 25 mm across the strip
 
 struct Rule {
@@ -87,7 +87,7 @@ double length_in_image(const ZedBench& bench, const Pose& T_world_body, const Ve
     return nearest_m - edge_m.x();
 }
 
-/// Points in one fifth of the strip behind the edge.
+/// The points in one fifth of the strip behind the edge.
 struct Fill {
     std::vector<bool> pieces = std::vector<bool>(kPieces, false);
     std::vector<double> heights_m;

@@ -79,8 +79,7 @@ constexpr int kSafeEveryOfRuns = 5;  ///< stride for depth and images, whose run
 struct Variant {
     std::string name;
     Machine machine;
-    int map = 0;                                   ///< number of the map; variants with the same
-                                                   ///< number share one map
+    int map = 0;  ///< variants with the same map number share one map
     std::optional<MapNoise> noise = std::nullopt;  ///< nullopt = a map without errors
     double shift_m = 0.0;  ///< sigma per axis of the true position about the believed one
 };

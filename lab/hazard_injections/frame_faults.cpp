@@ -333,8 +333,7 @@ void blur(GreyImage& image, int radius_px) {
 
 Fault blind(Rng& rng, const Recording&) {
     const std::uint64_t seed = rng.next_u64();
-    const int cameras = 1 + static_cast<int>(rng.below(3));  // cameras: 1 = left, 2 = right, 3 =
-                                                             // both
+    const int cameras = 1 + static_cast<int>(rng.below(3));  // 1 = left, 2 = right, 3 = both
     const char* which = cameras == 1 ? "left" : cameras == 2 ? "right" : "both";
     if (rng.below(4) == 0) {
         const int radius_px = 8 + static_cast<int>(rng.below(12));

@@ -11,8 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first speed [m/s], equal to the value of
-                                          ///< the library
+constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first speed, as in the library
 
 struct Velocity {
     Vector3d value;

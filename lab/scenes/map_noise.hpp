@@ -69,7 +69,7 @@ struct MapNoise {
 [[nodiscard]] MapNoise doubled_image_noise();
 
 /// True heights and visibility of the map cells within 1.1 m of the machine. Noise does not change
-/// this part of a map. It is computed once per scene.
+/// them, so they are computed once per scene.
 class SceneCells {
   public:
     SceneCells(const HazardScene& scene, const Sight& sight);

@@ -22,8 +22,7 @@ bool sees(const BoardCamera& camera,
           const PrintedSheet::Rectangle& paper,
           const Pose& T_left_board) {
     const Pose T_camera_board = camera.T_left_camera.inverse() * T_left_board;
-    constexpr int kSteps = 8;  // number of samples along each side; straight edges bend in a
-                               // fisheye
+    constexpr int kSteps = 8;  // samples along each side: straight edges bend in a fisheye
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps;
         const double x_m = paper.left_m + s * (paper.right_m - paper.left_m);

@@ -54,7 +54,7 @@ inline constexpr const char* kThesisCourtyard = "thesis_d_courtyard";
 /// Settings with which a recording is mapped and rated.
 enum class ThesisColumn : std::uint8_t {
     ours,
-    thesis,  ///< the same program with the settings of the thesis
+    thesis,  ///< this program with the settings of the thesis
 };
 inline constexpr const char* kThesisColumnNames[] = {"ours", "thesis_settings"};
 

@@ -166,9 +166,7 @@ RunFeatures run_features(const RunOptions& options,
     TerrainRequest map_of_run;
     map_of_run.map = options.out_dir;
     const auto map = load_terrain(map_of_run);
-    if (!map)
-        return split_by_confirmation(pipeline.features());  // the map is empty or the disk is
-                                                            // full
+    if (!map) return split_by_confirmation(pipeline.features());  // empty map or full disk
     stairs::TerrainFeatures final_map;
     stairs::FeatureFinder(settings.pipeline.stairs).find(map->terrain(), final_map);
     return compare_with_final_map(pipeline.features(), final_map);

@@ -23,9 +23,9 @@ struct SuiteStep {
     int command = 0;
     bool safe = false;       ///< true answer
     bool clear_cut = false;  ///< the truth holds by more than sim::SafetyMargin
-    std::string dangers;     ///< names joined by '|'; empty = safe
+    std::string dangers;     ///< dangers of the step, joined by '|'; empty if safe
     std::string decision;    ///< "OK", "NOT_TRAVERSABLE" or "ERROR"
-    std::string reasons;     ///< names joined by '|'; empty for OK
+    std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
 
     [[nodiscard]] bool allowed() const { return decision == "OK"; }
     friend bool operator==(const SuiteStep&, const SuiteStep&) = default;

@@ -39,7 +39,7 @@ class SuiteTable {
     std::optional<io::AppendFile> steps_file_;
     std::optional<io::AppendFile> verdicts_file_;
     std::vector<SuiteResult> results_;
-    std::map<std::string, std::size_t> places_;  ///< key of a case, index into `results_`
+    std::map<std::string, std::size_t> places_;  ///< index into `results_` for each key of a case
 };
 
 /// Returns the file name of the picture with the worst case of a scene.
