@@ -72,7 +72,7 @@ cv::Mat mat_of(const GreyImage& image) {
             const_cast<std::uint8_t*>(image.data())};  // only read
 }
 
-/// Whether each found corner matches a different true corner, and at least three quarters of
+/// Returns true if each found corner matches a different true corner and at least three quarters of
 /// the true corners are found. The order of the corners does not matter.
 bool are_right(const Corners& found, const Corners& truth, double& median_px) {
     std::vector<bool> taken(truth.size(), false);
@@ -91,8 +91,8 @@ bool are_right(const Corners& found, const Corners& truth, double& median_px) {
     return true;
 }
 
-/// The same for our finder, which numbers its corners: each corner must match the true one with
-/// its number. A board that looks the same after a rotation may be rotated.
+/// Checks the corners of our finder, which numbers them. Each corner must also match the true
+/// corner with its number. A board that looks the same after a rotation may be rotated.
 bool are_ours_right(const Board& board,
                     const calibration::BoardView& view,
                     const Corners& truth,
@@ -216,7 +216,7 @@ void images(const std::string& set, const std::string& folder, const Board& boar
     for (const auto& path : paths) {
         const cv::Mat read = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
         if (read.empty()) continue;
-        // A wide image holds the pictures of both cameras side by side.
+        // A side-by-side image holds the pictures of both cameras.
         const int parts = read.cols > 2 * read.rows ? 2 : 1;
         const int width = read.cols / parts;
         for (int part = 0; part < parts; ++part) {
@@ -235,7 +235,7 @@ void images(const std::string& set, const std::string& folder, const Board& boar
 
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
-    cv::setNumThreads(1);  // same setting as in the surefoot program
+    cv::setNumThreads(1);  // The surefoot program uses the same setting.
     const std::string how = argc > 2 ? argv[2] : "";
     const bool only_ours = argc > 3 && std::string(argv[argc - 1]) == "ours";
     if (how == "rendered" && argc >= 5) {

@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "body_parts: {}\n", parts.error().message);
         return 1;
     }
-    // Rounds outward to whole centimetres. The simulated gait is an assumption; millimetres
-    // would only pretend accuracy.
+    // Rounds outward to whole centimetres. The simulated gait is an assumption, so millimetres
+    // would claim an accuracy that does not exist.
     const auto down = [](double x_m) { return 0.01 * std::floor(100.0 * x_m); };
     const auto up = [](double x_m) { return 0.01 * std::ceil(100.0 * x_m); };
     for (const TracedPart& part : *parts) {

@@ -32,7 +32,7 @@ using app::testing::RigErrors;
 using calibration::LensKind;
 
 constexpr int kViews = 10;
-constexpr int kScale = 2;  ///< 640 x 480 px, so that the markers of ChArUco boards can be read
+constexpr int kScale = 2;  ///< 640 x 480 px, large enough to read the markers of ChArUco boards
 constexpr const char* kBoards[] = {"chessboard:8x5:0.03",
                                    "circles:8x5:0.03",
                                    "asymmetric_circles:4x9:0.05",
@@ -96,7 +96,7 @@ void compare_lens(const std::string& board_text,
         seen == 0 ? 0.0 : sum / seen);
 }
 
-/// One line of rigs.csv.
+/// Writes one line of rigs.csv.
 void compare_rig(LensKind kind, std::uint64_t seed, fmt::ostream& out) {
     const calibration::Board board = calibration::parse_board(kBoards[0]).value();
     const camera::StereoRig truth = app::testing::rig_of(kind, kScale);

@@ -40,8 +40,8 @@ constexpr float kWrongMatch_px = 1.5F;
 constexpr auto kTrusted =
     static_cast<float>(elevation::PixelFilterConfig{}.max_outlier_probability);
 
-/// Disparity errors on flat floor, pixel by pixel. NaN: no trusted match, or an error of
-/// kWrongMatch_px or more.
+/// Disparity errors on flat floor, pixel by pixel. NaN = no trusted match, or an error of at least
+/// kWrongMatch_px.
 Image<float> disparity_errors(const ZedBench& bench) {
     const auto& depth = bench.depth();
     Image<float> errors(depth.disparity_px.width(), depth.disparity_px.height());
@@ -50,13 +50,13 @@ Image<float> disparity_errors(const ZedBench& bench) {
         const double truth_px = fb / static_cast<double>(bench.true_depth_m().data()[i]);
         const bool good = depth.outlier_probability.data()[i] <= kTrusted;
         const float error_px = depth.disparity_px.data()[i] - static_cast<float>(truth_px);
-        // Wrong matches are excluded: a few of them would dominate every sum of squares.
+        // Wrong matches are excluded, because a few of them would dominate every sum of squares.
         errors.data()[i] = good && std::abs(error_px) < kWrongMatch_px ? error_px : NAN;
     }
     return errors;
 }
 
-/// Errors grouped by map cell at one range. Shows how much less a cell mean scatters than a
+/// Errors grouped by map cell at one range. Shows how much less the mean of a cell scatters than a
 /// single pixel.
 struct RangeBin {
     double pixel_sq = 0.0;
@@ -113,14 +113,14 @@ void add_cells(const ZedBench& bench,
 
 constexpr int kLags = 81;
 
-/// Sums over the frames of one pattern.
+/// Sums over all frames of one pattern.
 struct FloorSums {
     std::vector<Lag> along_rows = std::vector<Lag>(kLags);
     std::vector<Lag> along_columns = std::vector<Lag>(kLags);
     std::vector<RangeBin> bins = std::vector<RangeBin>(kRangeBins);
-    double cross = 0.0;   ///< product of the errors of two frames from the same pose
-    double square = 0.0;  ///< mean of the squared errors of both frames
-    int pixels = 0;       ///< floor pixels that both cameras see
+    double cross = 0.0;   ///< products of the errors of two frames from the same pose
+    double square = 0.0;  ///< means of the squared errors of both frames
+    int pixels = 0;       ///< number of floor pixels that both cameras see
     int matched = 0;
     std::vector<float> trusted_sigma_px;
 };
@@ -252,7 +252,7 @@ void measure_floors(ZedBench& bench, const std::string& out, int first_seed, int
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     const auto arguments = surefoot::bench_arguments(argc, argv);
     if (!arguments) {

@@ -14,7 +14,7 @@ sim::Scene drop_scene(const Drop& drop, double edge_x_m, double yaw_rad, Rng& rn
     constexpr double kGoing_m = 0.31;
     constexpr double kReach_m = 4.0;
     sim::Scene scene;
-    // A white wall has no texture to match, so this experiment cannot use it as floor.
+    // A white wall has no texture to match, so this experiment cannot use white_wall for the floor.
     const auto pattern = [&] {
         sim::Pattern drawn = sim::Pattern::white_wall;
         while (drawn == sim::Pattern::white_wall)

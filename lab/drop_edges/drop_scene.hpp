@@ -11,19 +11,19 @@
 /// behind the edge.
 namespace surefoot {
 
-/// The drop behind the edge.
+/// A drop behind the edge: a kerb, or a flight of stairs that leads down.
 struct Drop {
     const char* name;
-    double rise_m;  ///< height of each step, positive
-    int steps;      ///< 1 = kerb; more = flight of stairs down with a going of 0.31 m
+    double rise_m;  ///< height of each step [m], positive
+    int steps;      ///< 1 = kerb; more than 1 = flight of stairs down, each going 0.31 m
 };
 
-/// Horizontal distances from the camera to the edge.
+/// Horizontal distances from the camera to the edge [m].
 inline constexpr double kEdgeDistances_m[] = {0.67, 1.0, 1.5, 2.0};
 
-/// Builds an upper level z = 0 that ends at x = `edge_x_m`, and the drop behind it. The scene is
-/// rotated by `yaw_rad` about (edge_x_m, 0). `rng` draws the patterns of both levels; it never
-/// draws the white wall.
+/// Builds an upper level z = 0 that ends at x = `edge_x_m`, and the drop behind this edge. The
+/// scene is rotated by `yaw_rad` about (edge_x_m, 0). `rng` draws the patterns of both levels, but
+/// never the white wall.
 [[nodiscard]] sim::Scene drop_scene(const Drop& drop, double edge_x_m, double yaw_rad, Rng& rng);
 
 /// True visibility of a point or cell for the stereo pair.
@@ -32,7 +32,7 @@ inline constexpr double kEdgeDistances_m[] = {0.67, 1.0, 1.5, 2.0};
 enum class Sight { outside, hidden, partly, seen };
 
 /// Visibility of a point of the world from one body pose. `seen`: both cameras see it. `outside`:
-/// it is within 8 px of an image border or outside an image, or farther than 2.8 m from a camera.
+/// the point is within 8 px of an image border, outside an image, or more than 2.8 m from a camera.
 [[nodiscard]] Sight sight_of(const sim::Scene& scene,
                              const camera::StereoRig& rig,
                              const Pose& T_world_body,

@@ -16,13 +16,13 @@
 
 namespace surefoot {
 
-inline constexpr double kCellSize_m = 0.025;  ///< side of a map cell in these experiments
+inline constexpr double kCellSize_m = 0.025;  ///< side of a map cell in these experiments [m]
 
-/// A material with this pattern, and with the contrast of the fitted ZED profile.
+/// Returns a material with this pattern and with the contrast of the fitted ZED profile.
 [[nodiscard]] sim::Material zed_look(sim::Pattern pattern, std::uint64_t seed);
 
-/// Renders stereo pairs with the fitted ZED profile and matches them. The camera is 0.95 m above
-/// z = 0 and looks 32 deg down. The true depth is kept beside the matched one.
+/// Renders stereo pairs with the fitted ZED profile and matches them. The camera is 0.95 m above z
+/// = 0 and looks 32 deg down. Keeps the true depth together with the matched depth.
 class ZedBench {
   public:
     /// `noise`: factor on the image noise of the profile. `executor` must outlive the bench.
@@ -35,8 +35,8 @@ class ZedBench {
     [[nodiscard]] const camera::StereoRig& rig() const { return rig_; }
     [[nodiscard]] const DepthImage& depth() const { return depth_; }
     [[nodiscard]] const Image<float>& true_depth_m() const { return pair_.depth_m; }
-    /// T_world_body with the body at `x_m` on the x axis and the camera 0.95 m above z = 0. The
-    /// camera is `camera_x_m` ahead of the body.
+    /// Returns T_world_body with the body at `x_m` on the x axis and the camera 0.95 m above z = 0.
+    /// The camera is `camera_x_m` ahead of the body.
     [[nodiscard]] Pose pose_over(double x_m) const;
     [[nodiscard]] double camera_x_m() const { return rig_.body_from_left().translation_m.x(); }
 
@@ -50,8 +50,8 @@ class ZedBench {
     DepthImage depth_;
 };
 
-/// Arguments of the programs on this bench: OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]].
-/// KEY=VALUE sets a key of stereo::MatcherConfig, for example algorithm=sgbm.
+/// Arguments of the programs that use this bench: OUT_DIR [FIRST_SEED [SEEDS [NOISE
+/// [KEY=VALUE...]]]]. KEY=VALUE sets a key of stereo::MatcherConfig, for example algorithm=sgbm.
 struct BenchArguments {
     std::string out_dir;
     int first_seed = 1;

@@ -32,8 +32,8 @@ using Eigen::Vector3d;
 
 constexpr Drop kKerb = {"kerb 75 mm", 0.075, 1};
 constexpr int kFifths = 5;
-constexpr double kHalfWidth_m = 0.3;  ///< to either side of the camera
-constexpr int kPieces = 24;           ///< across both sides: 25 mm each
+constexpr double kHalfWidth_m = 0.3;  ///< width of the strip on each side of the camera [m]
+constexpr int kPieces = 24;           ///< pieces of 25 mm across the strip
 
 struct Rule {
     const char* name;
@@ -53,7 +53,8 @@ struct Lengths {
     double rendered_m = 0.0;
 };
 
-/// Distance behind the edge at which both cameras see the lower ground again, by rays.
+/// Returns the distance behind the edge [m] from which both cameras see the lower ground again.
+/// Follows rays through the scene.
 double length_by_rays(const sim::Scene& scene,
                       const camera::StereoRig& rig,
                       const Pose& T_world_body,
@@ -65,8 +66,8 @@ double length_by_rays(const sim::Scene& scene,
     return ground_m.x() - edge_m.x();
 }
 
-/// The same distance in the rendered depth image: its nearest pixel of lower ground behind the
-/// edge.
+/// Returns the distance behind the edge [m] of the nearest pixel that shows lower ground in the
+/// rendered depth image.
 double length_in_image(const ZedBench& bench, const Pose& T_world_body, const Vector3d& edge_m) {
     const camera::RectifiedRig& rig = bench.rectified();
     const Pose T_world_camera = T_world_body * rig.T_body_camera;
@@ -86,7 +87,7 @@ double length_in_image(const ZedBench& bench, const Pose& T_world_body, const Ve
     return nearest_m - edge_m.x();
 }
 
-/// Points in one fifth of the strip behind the edge.
+/// The points in one fifth of the strip behind the edge.
 struct Fill {
     std::vector<bool> pieces = std::vector<bool>(kPieces, false);
     std::vector<double> heights_m;
@@ -178,7 +179,7 @@ void measure(ZedBench& bench, double distance_m, int seed, bool draws_cut, Table
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     const auto arguments = bench_arguments(argc, argv);

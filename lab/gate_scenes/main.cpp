@@ -72,16 +72,16 @@ namespace {
 
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
-constexpr int kSafeEvery = 10;       ///< stride for maps
-constexpr int kSafeEveryOfRuns = 5;  ///< stride for runs: each run takes seconds
+constexpr int kSafeEvery = 10;       ///< a safe scene for every n-th index in the tier maps
+constexpr int kSafeEveryOfRuns = 5;  ///< stride for depth and images, whose runs take seconds
 
 /// A machine whose gate is queried, and the errors of the map that this gate reads.
 struct Variant {
     std::string name;
     Machine machine;
-    int map = 0;                                   ///< variants with the same number share one map
-    std::optional<MapNoise> noise = std::nullopt;  ///< nullopt: a map without errors
-    double shift_m = 0.0;  ///< sigma of the offset from the believed position, per axis
+    int map = 0;  ///< variants with the same map number share one map
+    std::optional<MapNoise> noise = std::nullopt;  ///< nullopt = a map without errors
+    double shift_m = 0.0;  ///< sigma per axis of the true position about the believed one
 };
 
 /// A scene with a movement that is clearly dangerous or clearly safe.
@@ -96,8 +96,8 @@ bool can_stand(const sim::SafetyAnswer& truth) {
     return !truth.has(sim::Danger::no_stance) && !truth.has(sim::Danger::not_level_here);
 }
 
-/// Draws scene number `index` of a campaign. Draws is 0 if no draw was clear; the caller must
-/// not use that scene.
+/// Draws scene number `index` of a campaign. `draws` is 0 if no drawn scene was clear; the caller
+/// must not use that scene.
 Question draw(Hazard kind,
               bool relief_only,
               std::uint64_t seed,
@@ -147,7 +147,7 @@ class Tally {
     std::map<std::pair<std::string, std::string>, int> counts_;
 };
 
-/// Query for `command` from the pose that the machine believes.
+/// Makes the query for `command` from the pose that the machine believes.
 gate::Query query_of(int command, const Pose& T_odom_body) {
     const double yaw = yaw_rad(T_odom_body);
     return gate::make_query(static_cast<std::uint8_t>(command),
@@ -232,8 +232,8 @@ void count_beside(const gate::Verdict& verdict, const std::string& variant, Tall
     tally.add(variant, fmt::format("beside:{}", gate::to_string(verdict.primary)));
 }
 
-/// Counts one verdict against the truth. `prefix`: "" for the scene's own movement, "all_" for
-/// all movements.
+/// Counts one verdict against the truth. `prefix` is "" for the movement of the scene and "all_"
+/// for all movements.
 void count_verdict(const gate::Verdict& verdict,
                    bool truly_safe,
                    const std::string& variant,
@@ -248,7 +248,7 @@ void count_verdict(const gate::Verdict& verdict,
     if (truly_safe && !ok && prefix.empty()) count_refusal(verdict, variant, tally);
 }
 
-/// A map and the data that queries on it need.
+/// A map and the data that the queries on this map need.
 struct AskedMap {
     const grid::MapSnapshot& snapshot;
     grid::GridGeometry geometry;
@@ -278,7 +278,7 @@ void ask_own(const Question& question, const AskedMap& map, const Variant& varia
         tally.add(variant.name, question.truth.safe ? "thesis_refused" : "thesis_missed");
 }
 
-/// True safety of every movement from the machine's pose; computed once per scene.
+/// True safety of every movement from the pose of the machine; computed once per scene.
 std::vector<sim::SafetyAnswer> all_truths(const sim::Scene& scene,
                                           const Machine& machine,
                                           const Pose& T_world_body) {
@@ -312,7 +312,7 @@ MapNoise overconfident(MapNoise noise) {
     return noise;
 }
 
-/// Variants of the tier `maps`.
+/// Returns the variants of the tier `maps`.
 std::vector<Variant> map_variants(const Machine& machine) {
     return {{"noise 0", machine, 0},
             {"noise 1", machine, 1, MapNoise()},
@@ -333,8 +333,8 @@ Pose believed_pose(const Question& question, double shift_m) {
     return pose;
 }
 
-/// Variants of the tier `drift`: drifts below the gate's limit for a cell (25 mm), stated
-/// correctly.
+/// Returns the variants of the tier `drift`. The drifts are below the gate's limit for a cell (25
+/// mm), and the map states them correctly.
 std::vector<Variant> drift_variants(const Machine& machine) {
     std::vector<Variant> all;
     int map = 0;
@@ -443,7 +443,7 @@ class Campaign {
         if (question.draws == 0) return {};
         const Look look = tier_ == "depth" ? Look::analytic : Look::images;
         const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
-        // A run that fails to make a map is counted as a result.
+        // A run without a map counts as a result, not as an error.
         if (!run) {
             fmt::print(stderr,
                        "{} {}: {}\n",
@@ -459,8 +459,7 @@ class Campaign {
         rater_.rate(heights.view(), geometry.resolution_m, serial_, rating_);
         const AskedMap asked{
             *snapshot_, geometry, rating_.traversability.view(), run->pipeline->T_odom_body()};
-        // The run ends within a millimetre or two of the planned pose; the truth uses the real
-        // end.
+        // The end of the run is up to 2 mm from the planned pose; the truth uses the real end.
         const auto truths = all_truths(run->source->truth().scene, machine_, run->T_world_body);
         question.truth = truths[static_cast<std::size_t>(question.scene.command - 1)];
         const bool still = question.truth.clear_cut && can_stand(question.truth) &&
@@ -502,9 +501,9 @@ void loosen(GateLimits& limits, double factor) {
         std::max(500, static_cast<std::int32_t>(limits.drop_band_tenth_mm / factor));
 }
 
-/// Variants of the tier `curve`: scaled noise, and single changed limits. Limits on uncertainty
-/// are tested at noise 1; limits of feet and body on the overconfident map, where no other rule
-/// refuses. Labels give the unscaled limits.
+/// Returns the variants of the tier `curve`: scaled noise, and single changed limits. Limits on
+/// uncertainty are tested at noise 1. Limits of feet and body are tested on the overconfident map,
+/// where no other rule refuses. Labels give the unscaled limits.
 std::vector<Variant> curve_variants(const Machine& machine) {
     std::vector<Variant> all;
     int map = 0;

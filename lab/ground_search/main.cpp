@@ -57,7 +57,7 @@ Camera any_camera(Rng& rng) {
     camera.baseline_m = between(rng, 0.05, 0.15);
     camera.pitch_deg = between(rng, 0.0, 60.0);
     camera.roll_deg = between(rng, -8.0, 8.0);
-    // Log-uniform: small heights are as frequent as large ones.
+    // Draws log-uniformly: each ratio of heights is equally frequent.
     camera.height_m = 0.3 * std::pow(2.0 / 0.3, rng.uniform());
     return camera;
 }
@@ -71,7 +71,7 @@ Errors any_errors(Rng& rng) {
     return errors;
 }
 
-/// Adds furniture to the floor of a room; it may hide nearly all of the floor.
+/// Adds furniture to the floor of a room. The furniture may hide nearly all of the floor.
 void furnish(Rng& rng, std::vector<Block>& blocks) {
     ground::test::add_room(between(rng, 1.0, 6.0), between(rng, 0.6, 4.0), blocks);
     const auto count = rng.below(5);
@@ -88,11 +88,11 @@ void furnish(Rng& rng, std::vector<Block>& blocks) {
 
 Trial floor_trial(Rng& rng) {
     Trial trial{"floor", {}, true, any_camera(rng), any_errors(rng)};
-    // Relief of gravel or mulch, up to 2.5 % of the camera's height.
+    // Adds the relief of gravel or mulch, up to 2.5 % of the height of the camera.
     if (rng.below(3) == 0)
         trial.errors.relief_m = between(rng, 0.005, 0.025) * std::min(1.0, trial.camera.height_m);
     furnish(rng, trial.blocks);
-    // In every second view a wall leaves only a strip of floor.
+    // In every second view, a wall leaves only a strip of floor.
     if (rng.below(2) == 0) {
         const double share = between(rng, 0.04, 0.3);
         const Camera& camera = trial.camera;
@@ -134,7 +134,7 @@ Trial wall_trial(Rng& rng) {
     trial.camera.height_m = between(rng, 0.8, 1.8);
     const double ahead_m = between(rng, 0.6, 3.0);
     trial.blocks.push_back({{ahead_m + 0.5, 0.0, 0.0}, {1.0, 20.0, 40.0}, between(rng, -0.7, 0.7)});
-    // A shelf on the wall.
+    // Adds a shelf on the wall.
     trial.blocks.push_back({{ahead_m - 0.1, between(rng, -0.5, 0.5), between(rng, 0.3, 1.6)},
                             {between(rng, 0.1, 0.5), between(rng, 0.3, 1.5), 0.03}});
     return trial;
@@ -151,7 +151,7 @@ Trial full_table_trial(Rng& rng) {
 Trial trial_of(std::uint64_t seed) {
     Rng rng(seed);
     constexpr Trial (*kDecoys[])(Rng&) = {table_trial, bed_trial, wall_trial, full_table_trial};
-    // Six of ten trials are floors; each of the four decoys gets one of ten.
+    // Six of ten trials show a floor. Each of the four decoys gets one of ten trials.
     const auto kind = rng.below(10);
     return kind < 6 ? floor_trial(rng) : kDecoys[kind - 6](rng);
 }

@@ -35,7 +35,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // in the order of GravitySource
+constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // order of GravitySource
 
 using experiments::SceneCase;
 
@@ -51,7 +51,8 @@ double quantile(std::vector<double> values, double share) {
     return values[at];
 }
 
-/// True up direction in base_link, and the height of base_link above the ground along gravity.
+/// True up direction in base_link, and the true height [m] of base_link above the ground along
+/// gravity.
 struct Truth {
     Eigen::Vector3d up_body;
     double height_m = 0.0;

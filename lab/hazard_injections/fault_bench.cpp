@@ -18,7 +18,7 @@ constexpr std::int64_t kTick_ns = 10 * kMs;
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 /// Time limit for the gate to become ready.
 constexpr std::int64_t kPatience_ns = 30'000'000'000;
-/// Shortest time without a fault before the injection, and its longest random addition.
+/// Shortest time without a fault before the injection, and the largest random time added to it.
 constexpr std::int64_t kWell_ns = 120 * kMs;
 constexpr std::int64_t kWellMore_ns = 250 * kMs;
 constexpr std::uint64_t kClient = 7;
@@ -31,12 +31,12 @@ std::string channel_path(std::uint64_t seed) {
     return (folder / fmt::format("surefoot_fault_bench_{}_{}", ::getpid(), seed)).string();
 }
 
-/// Whether the movement is a half step or a turn: its feet stay within 0.6 m of base_link.
+/// Returns true for a half step or a turn: the feet stay within 0.6 m of base_link.
 bool is_short(const Movement& movement) {
     return movement.forward_tenth_mm <= 2000 && movement.forward_tenth_mm >= -2000;
 }
 
-/// First reason that is more specific than "the gate is not ready".
+/// Returns the first reason that is more specific than "the gate is not ready".
 gate::Reason cause_of(const gate::Verdict& verdict) {
     for (int i = 0; i < gate::kReasonCount; ++i) {
         const auto reason = static_cast<gate::Reason>(i);
@@ -67,7 +67,7 @@ GateBench::GateBench(const Machine& machine,
       next_tick_ns_(kStart_ns + kTick_ns),
       end_ns_(kStart_ns + kPatience_ns) {
     auto writer = gate_process::SnapshotWriter::create({path_, {}});
-    if (!writer) {  // the system has no shared memory: report the error
+    if (!writer) {  // without shared memory the program ends with an error
         fmt::print(stderr, "{}\n", writer.error().message);
         std::exit(1);
     }
@@ -132,7 +132,7 @@ void GateBench::begin_watching() {
                                                : plan_.any_movement || is_short(movement);
         if (movement.configured && wanted) commands.push_back(code);
     }
-    // Takes the first allowed movement in a random order.
+    // The client uses the first allowed movement in a random order.
     std::uint64_t asked = 0;
     while (!commands.empty() && command_ == 0) {
         const std::size_t i = rng_.below(commands.size());

@@ -25,44 +25,44 @@ inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 
 /// Result of one run. All times are simulated.
 struct Outcome {
-    std::string variant;     ///< the drawn fault, as text
-    int asked_before = 0;    ///< queries before the fault
-    int allowed_before = 0;  ///< OK answers before the fault; the run counts only if all were OK
-    int asked_after = 0;     ///< queries since the fault began
-    int allowed_late = 0;    ///< OK answers after the deadline or after the first inhibit
-    std::int64_t last_allowed_ns = -1;         ///< fault to last OK; -1 = no OK
-    std::optional<std::int64_t> latency_ns;    ///< fault to first inhibit
-    gate::Reason reason = gate::Reason::none;  ///< first inhibit, if possible not NOT_READY
+    std::string variant;     ///< description of the drawn fault
+    int asked_before = 0;    ///< number of queries before the fault
+    int allowed_before = 0;  ///< number of OKs before the fault; valid only if all were OK
+    int asked_after = 0;     ///< number of queries after the fault began
+    int allowed_late = 0;    ///< number of OKs after the deadline or the first inhibit
+    std::int64_t last_allowed_ns = -1;         ///< time from the fault to the last OK; -1 = no OK
+    std::optional<std::int64_t> latency_ns;    ///< time from the fault to the first inhibit
+    gate::Reason reason = gate::Reason::none;  ///< most specific reason of the first inhibit
 };
 
 /// The gate process in simulated time: a gatekeeper that is polled every 10 ms, and a client that
-/// asks at the same rate. Snapshots pass through the same channel as perception's. When the gate is
-/// ready, the bench makes an operator attestation (if the plan wants one), chooses a movement that
-/// the gate allows, and draws the time of the fault. From then on it counts every answer.
+/// asks at the same rate. Snapshots pass through the channel of perception. When the gate is ready,
+/// the bench makes the operator attestation of the plan, if any. Then it chooses an allowed
+/// movement, draws the time of the fault, and counts every answer.
 ///
 /// Not thread-safe. The channel is a file in /dev/shm that the destructor removes; the program
 /// exits with a message if the file cannot be created.
 class GateBench {
   public:
     struct Plan {
-        /// Every answer from this long after the fault on must be an inhibit; 0 = at once.
+        /// Time from the fault after which every answer must be an inhibit; 0 = at once.
         std::int64_t deadline_ns = 250 * kMs;
         std::int64_t lasts_ns = 500 * kMs;  ///< time from the fault to the end of the run
-        std::int64_t watched_on_ns = 0;     ///< first inhibit to an earlier end; 0 = none
+        std::int64_t watched_on_ns = 0;     ///< run time after the first inhibit; 0 = no early end
         bool faulty = true;                 ///< false: a control run without a fault
-        bool from_the_start = false;        ///< the fault exists before the gate starts
-        double attestation_radius_m = 0.0;  ///< attested area; 0 = no operator attestation
+        bool from_the_start = false;        ///< true: the fault exists before the gate starts
+        double attestation_radius_m = 0.0;  ///< radius of the attested area; 0 = no attestation
         /// false: choose only among movements of at most 0.2 m, which stay on attested ground.
         bool any_movement = true;
-        bool forward_only = false;  ///< choose only among movements of more than 0.19 m ahead
-        std::int64_t fault_ns_since_start = 0;  ///< 0 = draw it when the gate is ready
+        bool forward_only = false;              ///< true: use only movements of over 0.19 m ahead
+        std::int64_t fault_ns_since_start = 0;  ///< 0 = draw the time when the gate is ready
     };
     /// The gate's answer as the client receives it.
     struct Heard {
         bool allowed = false;
         gate::Reason reason = gate::Reason::internal;
     };
-    /// Asks the gate at the gate's clock `now_ns`; `faulty`: the fault has begun.
+    /// Asks the gate at the time `now_ns` of its clock. `faulty`: the fault has begun.
     using Ask = std::function<Heard(std::int64_t now_ns, bool faulty)>;
 
     GateBench(const Machine& machine,
@@ -75,7 +75,7 @@ class GateBench {
 
     /// Replaces the client's question, which is `ask_step` by default.
     void set_ask(Ask ask) { ask_ = std::move(ask); }
-    /// Called once, at the first poll of the fault.
+    /// Sets the function that is called once, at the first poll after the fault began.
     void set_begin(std::function<void()> begin) { begin_ = std::move(begin); }
 
     /// Advances simulated time to `time_ns`, or to the end of the run if that is earlier. Does
@@ -90,8 +90,8 @@ class GateBench {
 
     /// Restarts the gate process; the client continues to ask.
     void restart_gate();
-    /// Shift the clocks that the gate reads: `step_clock` both the steady and the boot clock,
-    /// `sleep` only the boot clock, as when the computer was suspended.
+    /// Shift the clocks that the gate reads. `step_clock` shifts the steady and the boot clock.
+    /// `sleep` shifts only the boot clock, as when the computer was suspended.
     void step_clock(std::int64_t by_ns) noexcept { clock_step_ns_ += by_ns; }
     void sleep(std::int64_t by_ns) noexcept { slept_ns_ += by_ns; }
 
@@ -101,10 +101,10 @@ class GateBench {
     [[nodiscard]] gate_process::Gatekeeper& keeper() noexcept { return *keeper_; }
     [[nodiscard]] gate_process::SnapshotWriter& writer() noexcept { return *writer_; }
     [[nodiscard]] std::uint8_t command() const noexcept { return command_; }
-    /// `audit` receives every verdict.
+    /// Sets the function that receives every verdict.
     void set_audit(gate_process::Gatekeeper::Audit audit) { audit_ = std::move(audit); }
 
-    /// Sets the movement that the client asks for; needed when the fault exists from the start.
+    /// Sets the movement that the client asks for. Needed if the fault exists from the start.
     void set_command(std::uint8_t command) noexcept { command_ = command; }
     [[nodiscard]] Outcome& outcome() noexcept { return outcome_; }
 
@@ -139,10 +139,10 @@ class GateBench {
 
 /// One kind of fault and the function that runs it.
 struct Injection {
-    std::string hazard;    ///< id, "H1" (docs/reference/hazards.md)
-    std::string cause;     ///< one line of text
+    std::string hazard;    ///< hazard id such as "H1"; see docs/reference/hazards.md
+    std::string cause;     ///< cause of the fault in one line of text
     std::string level;     ///< interface where the fault is injected
-    bool is_error = true;  ///< expected decision: ERROR; false: NOT_TRAVERSABLE
+    bool is_error = true;  ///< expected decision: true = ERROR; false = NOT_TRAVERSABLE
     std::string drawn;     ///< quantities that the seed draws
     /// Makes one run; `faulty` = false makes its control run. Error: a scene or file cannot be
     /// read.
@@ -154,7 +154,7 @@ struct Injection {
 
 /// Faults at the channel, the clock, the configuration and the client of the gate.
 [[nodiscard]] std::vector<Injection> gate_injections(const io::MachineFile& file);
-/// Faults in camera frames. They pass through the whole perception pipeline, driven as by
+/// Faults in camera frames. They pass through the whole perception pipeline, which runs as in
 /// `surefoot serve`. `scenes`: number of different recordings to use.
 [[nodiscard]] std::vector<Injection> frame_injections(const io::MachineFile& file, int scenes);
 

@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 
-/// Scene text: a room with a floor and an optional solid.
+/// Returns the text of a scene file: a room with a floor and an optional solid.
 std::string room(const std::string& solid) {
     return "variants:\n  bench:\n    description: a room to stand in\n"
            "parameters:\n"
@@ -46,7 +46,7 @@ std::string room(const std::string& solid) {
            "    - {x_m: -0.25, y_m: 0, yaw_deg: 0, move: back}\n";
 }
 
-/// Fault-free output of a camera.
+/// Output of a camera without a fault.
 struct Recording {
     camera::StereoRig rig;
     camera::SourceInfo info;
@@ -61,11 +61,11 @@ struct Shot {
     int frames = 48;
     sim::KnockConfig knock = {};
     bool imu = true;
-    bool known_start = false;  ///< odom starts at the true pose instead of a measured one
-    double scale = 0.25;       ///< image scale of the ZED, for depth
+    bool known_start = false;  ///< true: odom starts at the true pose instead of a measured one
+    double scale = 0.25;       ///< depth only: image size as a share of the ZED image
 };
 
-/// Rig of the ZED with fewer pixels.
+/// Returns the rig of the ZED with fewer pixels.
 camera::StereoRig small_rig(double scale) {
     camera::StereoRig rig = *sim::rig_preset("zed_vga");
     auto& lens = std::get<camera::PinholeRadTan>(rig.left.model);
@@ -108,7 +108,7 @@ Result<Recording> record(const Shot& shot, std::uint64_t seed) {
     }
 }
 
-/// Caches recordings by name and seed.
+/// Keeps recordings in memory by name and seed.
 class Archive {
   public:
     Result<const Recording*> get(const std::string& name, const Shot& shot, std::uint64_t seed) {
@@ -128,14 +128,14 @@ class Archive {
 /// Effect of a fault on perception.
 struct Fault {
     std::string variant;
-    /// Changes the k-th frame since the fault began. false: the frame is lost.
+    /// Changes the k-th frame after the fault began. Returns false if the frame is lost.
     std::function<bool(StereoFrame& frame, int k)> damage = {};
     std::int64_t stall_ns = 0;          ///< duration of one stall of perception
-    std::int64_t until_ns = kNever_ns;  ///< end of the fault, relative to its begin
+    std::int64_t until_ns = kNever_ns;  ///< end of the fault, counted from its begin
 };
 
-/// Camera in simulated time. It waits for the next frame while the gate is queried. As a live
-/// camera does, it drops all frames that arrived during processing except the newest one.
+/// Camera in simulated time. The gate is queried while the camera waits for the next frame. Like a
+/// live camera, it drops all frames that arrived during processing except the newest one.
 class FaultySource final : public camera::FrameSource {
   public:
     FaultySource(const Recording& recording, GateBench& bench, const Fault& fault)
@@ -172,9 +172,9 @@ class FaultySource final : public camera::FrameSource {
     int faulty_ = 0;
 };
 
-/// Clock of the pipeline's stages. Each reading advances the time by 5 ms, so that a full frame
-/// takes 45 ms: the time of a ZED frame on one thread. Global, because the library takes a plain
-/// function.
+/// Clock of the pipeline stages. Each reading advances the time by 5 ms, so that a full frame takes
+/// 45 ms, as long as a ZED frame on one thread. The clock is global, because the library takes a
+/// plain function.
 GateBench* running = nullptr;
 std::int64_t* stall_ns = nullptr;
 
@@ -206,7 +206,7 @@ Result<Outcome> perceive(const io::MachineFile& file,
     FaultySource source(recording, bench, fault);
     app::LiveSession session(
         *pipeline, source, bench.writer(), 1, [&bench] { return bench.now_ns(); });
-    // A session that ends with an error ends perception: the gate receives no more snapshots.
+    // If a session ends with an error, perception ends: the gate receives no more snapshots.
     std::ignore = session.run(0.0, [] { return true; });
     bench.pass_until(kNever_ns - kSecond_ns);
     running = nullptr;
@@ -233,13 +233,13 @@ GateBench::Plan standing() {
 // --- H1 to H4: the images ---
 
 Fault stop(Rng& rng, const Recording&) {
-    // At least 4 frames: with fewer than three lost frames the last map is not too old yet.
+    // At least 4 frames arrive. With fewer than three lost frames the last map is not too old yet.
     const int frames = rng.below(2) == 0 ? 1'000'000 : 4 + static_cast<int>(rng.below(10));
     return {frames > 100 ? "stops for good" : fmt::format("{} frames lost", frames),
             [frames](StereoFrame&, int k) { return k >= frames; }};
 }
 
-/// The reader reads the ring of buffers again and again, but the camera writes nothing new.
+/// The reader reads the same ring of buffers repeatedly, because the camera writes nothing new.
 Fault freeze(Rng& rng, const Recording& recording) {
     const int ring = 1 + static_cast<int>(rng.below(4));
     return {fmt::format("the last {} images again and again", ring),
@@ -370,7 +370,7 @@ Fault overexpose(Rng& rng, const Recording&) {
             }};
 }
 
-/// Over-exposed images in the first seconds, as in sunlight; then no fault.
+/// Over-exposes the images in the first seconds, as in sunlight. After that there is no fault.
 Fault warm_up(Rng& rng, const Recording&) {
     const double lasts_s = rng.uniform(1.0, 2.0);
     Fault fault{fmt::format("over-exposed for the first {:.1f} s", lasts_s),
@@ -446,7 +446,7 @@ Fault bad_depth(Rng& rng, const Recording&) {
                             1e30F,
                             1e-38F};
     const float value = values[rng.below(std::size(values))];
-    // The smallest positive sigma is left out: it is a valid number, and the map limits the
+    // The smallest positive sigma is not drawn. It is a valid number, and the map limits the
     // variance from below.
     const bool sigma = rng.below(3) == 0 && value != 1e-38F;
     return {fmt::format("every {} is {}", sigma ? "sigma" : "disparity", value),
@@ -485,7 +485,7 @@ class Runs {
     Runs(const io::MachineFile& file, int scenes)
         : file_(file), scenes_(static_cast<std::uint64_t>(scenes)) {}
 
-    /// Runs one setup.
+    /// Makes one run of a setup.
     Result<Outcome> run(const Setup& setup, std::uint64_t seed, bool faulty) {
         auto recording = archive_.get(setup.name, setup.shot, scene_of(seed));
         if (!recording) return recording.error();
@@ -512,7 +512,8 @@ class Runs {
     Archive archive_;
 };
 
-/// The camera mount turns at a fixed time of the recording; the run's start is chosen to match.
+/// The camera mount turns at a fixed time of the recording. The start of the run is chosen so that
+/// this time matches.
 Result<Outcome> Runs::knocked(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     constexpr double kAt_s = 1.9;
@@ -533,7 +534,7 @@ Result<Outcome> Runs::knocked(std::uint64_t seed, bool faulty) {
     return perceive(file_, *recording, plan, std::move(fault), seed);
 }
 
-/// A person appears in the path of the body from one frame to the next.
+/// A person appears in the path of the body between two frames.
 Result<Outcome> Runs::person(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     Setup setup{{}, "depth", standing(), {}};
@@ -553,7 +554,7 @@ Result<Outcome> Runs::person(std::uint64_t seed, bool faulty) {
     return run(setup, seed, faulty);
 }
 
-/// At the start no plane is in view that could be the floor.
+/// At the start, the camera sees no plane that could be the floor.
 Result<Outcome> Runs::no_ground(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     Shot shot;

@@ -34,7 +34,7 @@ struct Place {
     Eigen::Vector2d center_m;
     double yaw_rad = 0.0;
 
-    /// A map point in the axes of the box: along and across.
+    /// Returns a map point in the axes of the box: x along, y across.
     [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p_m) const {
         const Eigen::Vector2d d = p_m - center_m;
         const double c = std::cos(yaw_rad);
@@ -49,7 +49,7 @@ struct Place {
     }
 };
 
-/// Level ground with the machine on it, as perception publishes it.
+/// Level ground under the machine, as perception publishes it.
 struct Perceived {
     const Machine& machine;
     GateBench& bench;
@@ -57,19 +57,19 @@ struct Perceived {
     gate::testing::Terrain terrain;
     Place body;
 
-    /// base_link after the queried movement.
+    /// Returns the place of base_link after the queried movement.
     [[nodiscard]] Place target() const {
         const Movement& m = machine.movements[bench.command()];
         Place place = body.at(m.forward_tenth_mm * 1e-4, m.left_tenth_mm * 1e-4);
         place.yaw_rad += std::atan2(m.sin_turn, m.cos_turn);
         return place;
     }
-    /// Chooses one landing foot at random.
+    /// Returns the place of a landing foot that is chosen at random.
     [[nodiscard]] Place landing() {
         const GroundBox& foot = rng.below(2) == 0 ? machine.left_foot : machine.right_foot;
         return target().at(foot.center_x_tenth_mm * 1e-4, foot.center_y_tenth_mm * 1e-4);
     }
-    /// Returns true if a point lies under a standing foot, with a margin.
+    /// Returns true if a point lies under a standing foot or within 30 mm of it.
     [[nodiscard]] bool is_stood_on(const Eigen::Vector2d& p_m) const {
         constexpr double kMargin_m = 0.03;
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
@@ -81,7 +81,7 @@ struct Perceived {
         }
         return false;
     }
-    /// Calls `change(u, v, along_m, across_m)` for every cell; the coordinates are relative to
+    /// Calls `change(u, v, along_m, across_m)` for every cell. along_m and across_m are relative to
     /// `place`.
     template <typename Change>
     void each_cell(const Place& place, Change change) {
@@ -100,11 +100,11 @@ struct Perceived {
     }
 };
 
-/// Fault of the snapshots.
+/// A fault of the snapshots.
 struct Fault {
     std::string variant;
-    std::function<void(MapSnapshot&)> change = {};  ///< applied before sealing
-    std::function<void(MapSnapshot&)> damage = {};  ///< applied after sealing
+    std::function<void(MapSnapshot&)> change = {};  ///< applied before the snapshot is sealed
+    std::function<void(MapSnapshot&)> damage = {};  ///< applied after the snapshot is sealed
     std::unique_ptr<MapSnapshot> other = {};        ///< replaces the clean snapshot
 };
 using Draw = std::function<Fault(Perceived&)>;
@@ -114,7 +114,8 @@ Place somewhere(Rng& rng) {
             rng.uniform(-std::numbers::pi, std::numbers::pi)};
 }
 
-/// Publishes snapshots until the bench ends. From the fault on they are those of `draw`.
+/// Publishes snapshots until the bench ends. After the fault began, publishes the snapshots of
+/// `draw`.
 void perceive(Perceived& perceived, const Draw& draw) {
     GateBench& bench = perceived.bench;
     Pose& T_odom_body = perceived.terrain.input.T_odom_body;
@@ -142,7 +143,7 @@ void perceive(Perceived& perceived, const Draw& draw) {
     }
 }
 
-/// A run with a fault in the snapshots.
+/// Returns a run with a fault in the snapshots.
 std::function<Result<Outcome>(std::uint64_t, bool)> with_snapshots(const Machine& machine,
                                                                    Draw draw) {
     return [machine, draw = std::move(draw)](std::uint64_t seed, bool faulty) -> Result<Outcome> {
@@ -156,7 +157,7 @@ std::function<Result<Outcome>(std::uint64_t, bool)> with_snapshots(const Machine
     };
 }
 
-/// A run with another fault: `prepare` sets the bench up.
+/// Function that prepares the bench for a fault outside the snapshots.
 using Prepare = std::function<void(GateBench&, Rng&)>;
 std::function<Result<Outcome>(std::uint64_t, bool)> with_bench(const Machine& machine,
                                                                GateBench::Plan plan,
@@ -185,8 +186,8 @@ GateBench::Plan at_once() {
 
 // --- H8, H16, H20: numbers of a snapshot ---
 
-/// base_link jumps farther than it can move between two snapshots (readiness.hpp), and stays
-/// there.
+/// base_link jumps farther than the machine can move between two snapshots (readiness.hpp). It
+/// stays at the new position.
 Fault jump(Perceived& p) {
     const auto shift = [](double x_m, double y_m, double z_m, std::string what) {
         return Fault{std::move(what), [=](MapSnapshot& map) {
@@ -254,7 +255,7 @@ Fault bad_number(Perceived& p) {
             return {fmt::format("pose at {} tenths of a mm", far),
                     [=](MapSnapshot& map) { map.body_x_tenth_mm = far; }};
         }
-        case 2: {  // flips one bit of any byte; the checksums stay as they were
+        case 2: {  // flips one bit of any byte; the checksums do not change
             const std::size_t byte =
                 offsetof(MapSnapshot, version) +
                 p.rng.below(offsetof(MapSnapshot, height_tenth_mm) +
@@ -332,8 +333,8 @@ Fault unsure(Perceived& p) {
     return rebuilt(p, fmt::format("sigma of {:.0f} mm under a landing foot", 1e3 * sigma_m));
 }
 
-/// A table: its top as ground, or hanging over ground that was seen under it. There is floor
-/// under the standing feet.
+/// A table: its top is mapped as ground, or it hangs over ground that was observed under it. There
+/// is always floor under the standing feet.
 Fault overhang(Perceived& p) {
     const double top_m = p.rng.uniform(0.4, 1.2);
     const Place table = p.target().at(p.rng.uniform(-0.2, 0.2), p.rng.uniform(-0.2, 0.2));
@@ -348,14 +349,14 @@ Fault overhang(Perceived& p) {
                    fmt::format("{:.0f} mm high, {}", 1e3 * top_m, hangs ? "hangs" : "as ground"));
 }
 
-/// All ground is higher or lower, also the ground under the feet.
+/// All ground is higher or lower than the true ground, also under the feet.
 Fault raised(Perceived& p) {
     const double by_m = p.rng.uniform(0.1, 1.0) * (p.rng.below(2) == 0 ? -1.0 : 1.0);
     p.terrain.height.fill(static_cast<float>(by_m));
     return rebuilt(p, fmt::format("{:.0f} mm", 1e3 * by_m));
 }
 
-/// A wall beside the feet, within the width of the body at the target.
+/// A wall beside the feet, within the width of the body at the target pose.
 Fault wall(Perceived& p) {
     const double beside_m = p.rng.uniform(0.30, 0.44) * (p.rng.below(2) == 0 ? -1.0 : 1.0);
     const double half_length_m = p.rng.uniform(0.2, 1.0);
@@ -396,7 +397,7 @@ void repeat_sequences(GateBench& bench, Rng& rng) {
     });
 }
 
-/// Damages the text of a query; `variant` describes how.
+/// Damages the text of a query. `variant` describes the damage.
 std::string broken_text(const std::string& whole, Rng& rng, std::string& variant) {
     switch (rng.below(5)) {
         case 0: {
@@ -453,7 +454,7 @@ void restart(GateBench& bench, Rng& rng) {
     bench.set_begin([&bench] { bench.restart_gate(); });
 }
 
-/// The log of an assured gate fails: its disk is full or broken.
+/// The log of an assured gate fails, because its disk is full or broken.
 void fill_disk(GateBench& bench, Rng& rng) {
     struct Log {
         std::shared_ptr<gate_process::testing::Platter> platter =
@@ -504,7 +505,7 @@ void unknown_command(const Machine& machine, GateBench& bench, Rng& rng) {
 
 // --- H26, H27: configurations ---
 
-/// Makes one error in the text of a machine file; `variant` describes it.
+/// Makes one error in the text of a machine file. `variant` describes the error.
 std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) {
     std::vector<std::string> lines;
     for (std::size_t at = 0; at < whole.size();) {
@@ -512,7 +513,7 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
         lines.emplace_back(whole.substr(at, end - at));
         at = end + 1;
     }
-    // Lines that set one key.
+    // The lines of the file that set one key.
     std::vector<std::size_t> keyed;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::size_t colon = lines[i].find(": ");
@@ -553,7 +554,7 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
     return text;
 }
 
-/// If the gate accepts the broken file, it is queried as in every other run.
+/// If the gate accepts the file, the bench queries it as in every other run.
 Result<Outcome> start_with(const Result<io::MachineFile>& file,
                            const gate::ReadinessLimits& limits,
                            const std::string& variant,
@@ -563,7 +564,7 @@ Result<Outcome> start_with(const Result<io::MachineFile>& file,
     refused.variant = variant;
     refused.latency_ns = 0;
     refused.reason = gate::Reason::config;
-    if (!file) return refused;  // the gate did not start: no query gets an answer
+    if (!file) return refused;  // The gate does not start, so no query gets an answer.
     GateBench::Plan plan;
     plan.faulty = faulty;
     plan.deadline_ns = 0;
@@ -588,7 +589,7 @@ Result<Outcome> wrong_file(std::uint64_t seed, bool faulty) {
     return start_with(io::parse_machine(given, "rex.yaml"), {}, variant, seed, faulty);
 }
 
-/// The configuration changes while the gate runs.
+/// The hash of the configuration changes while the gate runs.
 Fault other_configuration(Perceived& p) {
     const std::uint64_t hash = p.rng.next_u64();
     return {"another hash", [hash](MapSnapshot& map) { map.config_hash = hash; }};

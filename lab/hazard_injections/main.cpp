@@ -4,7 +4,8 @@
 // interface where it occurs in reality. Time is simulated: frames at 15 Hz, a query every 10 ms.
 // Usage: hazard_injections OUT.csv FIRST_SEED COUNT [HAZARDS]
 //   hazard_injections out/injections.csv 21 10 H1,H2
-//   COUNT    injections of each kind; a tenth as many control runs without a fault, at least two
+//   COUNT    injections of each kind. The number of control runs without a fault is a tenth of
+//            COUNT, at least two.
 //   HAZARDS  hazard ids with commas between them; default: all
 //
 // An injection counts if every answer before its fault is OK. Every answer of a control run must be
@@ -14,12 +15,13 @@
 //
 // Writes OUT.csv, one line per run; the columns that need an explanation:
 //   faulty                         0 = control run
-//   asked_before, allowed_before   queries before the fault, and those answered OK; all of a
-//                                  control
-//   asked_after, allowed_late      queries since the fault; OK after the deadline or the first
-//                                  inhibit
-//   latency_ms                     from the fault to the first answer that is not OK; empty = none
-//   last_allowed_ms                from the fault to the last OK; -1 = none
+//   asked_before, allowed_before   queries before the fault, and those answered OK; in a control
+//                                  run all queries
+//   asked_after                    queries after the fault began
+//   allowed_late                   number of OKs after the deadline or after the first inhibit
+//   latency_ms                     time from the fault to the first answer that is not OK; empty =
+//                                  there is no such answer
+//   last_allowed_ms                time from the fault to the last OK; -1 = no OK
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -43,9 +45,9 @@ struct Tally {
     int counted = 0;
     int controls = 0;
     int controls_ok = 0;
-    int late_runs = 0;  ///< number of runs with an OK that came too late
-    int late = 0;       ///< number of OKs that came too late
-    int slow = 0;       ///< number of first inhibits after the deadline, or missing
+    int late_runs = 0;  ///< number of runs with such an OK
+    int late = 0;       ///< number of OKs after the deadline or the first inhibit
+    int slow = 0;       ///< runs whose first inhibit is missing or later than kDemanded_ns
     std::int64_t slowest_ns = 0;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How accurate are the depth and the lengths that a real calibrated rig measures? The chessboards
-// for the measurement are not used for the calibration: of the pairs that the calibration with all
-// images accepts, every second one calibrates a rig, which then measures the boards of the other
-// half; and the reverse.
+// for the measurement are not used for the calibration. The calibration with all images selects the
+// usable pairs. Every second pair calibrates a rig, and this rig measures the boards of the other
+// half. Then the two halves swap their roles.
 // Usage: held_out_boards OUT.csv FOLDER BOARD LENS
 //   FOLDER  stereo images of the board; BOARD: board description with the size of a square
 //   LENS    lens model to calibrate (pinhole4, pinhole5, rational or fisheye)
@@ -52,7 +52,7 @@ Result<Pairs> pairs_in(const std::string& folder, const calibration::Board& boar
     return pairs;
 }
 
-/// Every second element of `kept`, starting at `first`.
+/// Returns every second element of `kept`, starting at `first`.
 std::vector<std::size_t> half_of(const std::vector<std::size_t>& kept, std::size_t first) {
     std::vector<std::size_t> half;
     for (std::size_t i = first; i < kept.size(); i += 2) half.push_back(kept[i]);

@@ -41,7 +41,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Standard deviation of a corner coordinate per axis, see corners_accuracy_test.cpp.
+/// Standard deviation of a corner coordinate per axis. Source: corners_accuracy_test.cpp.
 constexpr double kCornerNoise_px = 0.35;
 constexpr double kWindow_s = 1.0;
 constexpr std::array kMethods = {"vision alone", "loose fusion", "tight fusion"};
@@ -59,7 +59,7 @@ struct Nees {
     int windows = 0;
 };
 
-/// NEES of consecutive windows of one second between frames with a true pose.
+/// Returns the NEES of consecutive one-second windows between frames with a true pose.
 Nees nees_of(const std::vector<Step>& steps, const Pose& T_camera_body) {
     Nees nees;
     std::optional<Pose> T_world_begin;
@@ -87,13 +87,13 @@ Nees nees_of(const std::vector<Step>& steps, const Pose& T_camera_body) {
     return nees;
 }
 
-/// Noise of the true positions: rms over the frames, all axes together. White noise leaves
-/// 18/35 of its variance around the middle of a parabola through five values (Savitzky and Golay
-/// 1964).
+/// Returns the noise of the true positions: rms over the frames, all axes together. Fits a parabola
+/// through five values. White noise leaves 18/35 of its variance around the middle of this parabola
+/// (Savitzky and Golay 1964).
 double noise_m(const Trajectory& truth) {
     constexpr std::array kWeights = {-3.0 / 35, 12.0 / 35, 17.0 / 35, 12.0 / 35, -3.0 / 35};
     constexpr double kLeft = 18.0 / 35;
-    constexpr double kSpan_s = 0.25;  // five frames without a gap
+    constexpr double kSpan_s = 0.25;  // longest time between the first and the last of five frames
     double sum_m2 = 0.0;
     int count = 0;
     for (std::size_t i = 0; i + kWeights.size() <= truth.size(); ++i) {
@@ -154,7 +154,7 @@ class Contest {
           loose_(config.imu),
           tight_(config, rectifier, rig.imu) {}
 
-    /// `update` passes the frame to one odometry.
+    /// `update` passes the frame to the odometry of one method.
     template <typename Update>
     void follow(const Update& update,
                 std::span<const ImuSample> imu,
@@ -190,7 +190,7 @@ Status run_corners(fmt::ostream& out) {
     odometry::OdometryConfig config;
     config.sigma_px = kCornerNoise_px;
 
-    // Frames without truth (the grid is out of view) separate the parts.
+    // Frames without a true pose (the grid is out of view) separate the parts.
     const auto& truth = recording->T_world_camera;
     const auto gap = std::find(truth.begin(), truth.end(), std::nullopt);
     const auto after = std::find_if(gap, truth.end(), [](const auto& T) { return T.has_value(); });

@@ -48,7 +48,7 @@ MotionEstimate VelocityFusion::update(const MotionEstimate& vision,
         if (!bias_) start(vision, step);
     }
     time_ns_ = vision.time_ns;
-    // Keeps the last sample before the frame: the next interval starts with it.
+    // Keeps the last sample before the frame, because the next interval starts with it.
     while (samples_.size() > 1 && samples_[1].time_ns <= vision.time_ns)
         samples_.erase(samples_.begin());
     return estimate;
@@ -77,7 +77,7 @@ MotionEstimate VelocityFusion::fused(const MotionEstimate& vision, const odometr
     const double gyro_var = config_.gyro_bias_sigma_rad_s * config_.gyro_bias_sigma_rad_s;
     const double accel_var = config_.accel_bias_sigma_m_s2 * config_.accel_bias_sigma_m_s2;
 
-    // Mean velocities over the interval, in the axes of base_link at its beginning.
+    // Mean velocities over the interval, in the axes of base_link at the begin of the interval.
     const Velocity turn_imu{
         log_so3(imu.rotation) / dt_s,
         imu.covariance.topLeftCorner<3, 3>() / dt2_s2 + gyro_var * Matrix3d::Identity()};
@@ -101,7 +101,8 @@ MotionEstimate VelocityFusion::fused(const MotionEstimate& vision, const odometr
              R_before_now * covariance.topLeftCorner<3, 3>() * R_before_now.transpose() / dt2_s2});
     }
 
-    // Speed at the end: the prediction of the IMU plus the correction of the mean speed.
+    // Speed at the end of the interval: the prediction of the IMU plus the correction of the mean
+    // speed.
     velocity_odom_m_s_ +=
         dt_s * gravity_odom_m_s2_ + R * imu.velocity_m_s + R * (speed.value - speed_imu.value);
     velocity_covariance_ = R *

@@ -11,11 +11,11 @@
 namespace surefoot::experiments {
 
 /// Loosely coupled fusion of visual odometry and IMU, as a baseline. The reference thesis (Lange
-/// 2016, section 4.4) proposes it without an implementation: differentiate the poses of visual
-/// odometry, average its velocity and the IMU's by their covariances, integrate the average to a
+/// 2016, section 4.4) proposes three steps without an implementation: differentiate the visual
+/// poses; average the visual and the IMU velocity by their covariances; integrate the average to a
 /// pose. The visual motion is final before the IMU is used.
 ///
-/// The thesis leaves these points open; this class decides them as follows. The IMU's velocity is
+/// The thesis leaves some points open. This class decides them as follows. The IMU velocity is
 /// integrated from the last fused velocity. Gravity, gyroscope bias and first velocity are
 /// estimated once, from the first second of vision (`start_inertial`, as in the library), and then
 /// stay constant. The uncertainty of the biases counts as noise. While vision is LOST, its velocity
@@ -26,8 +26,8 @@ class VelocityFusion {
     /// EuRoC rigs.
     explicit VelocityFusion(const odometry::InertialConfig& imu);
 
-    /// Returns `vision` with the fused pose and motion. Before the start, and where IMU samples are
-    /// missing, returns `vision` unchanged. The health is always that of vision. `samples`: IMU
+    /// Returns `vision` with the fused pose and motion. Returns `vision` unchanged before the start
+    /// and where IMU samples are missing. The health is always that of vision. `samples`: IMU
     /// samples since the last call.
     [[nodiscard]] MotionEstimate update(const MotionEstimate& vision,
                                         std::span<const ImuSample> samples);
@@ -39,11 +39,11 @@ class VelocityFusion {
 
     odometry::InertialConfig config_;
     std::vector<ImuSample> samples_;
-    std::vector<odometry::SeenMotion> seen_;  ///< collected until the start
-    std::optional<odometry::ImuBias> bias_;   ///< set since the start
+    std::vector<odometry::SeenMotion> seen_;  ///< motions of vision before the start
+    std::optional<odometry::ImuBias> bias_;   ///< empty before the start
     Eigen::Vector3d gravity_odom_m_s2_ = Eigen::Vector3d::Zero();
     Pose T_odom_body_;
-    Eigen::Vector3d velocity_odom_m_s_ = Eigen::Vector3d::Zero();  ///< at the last frame
+    Eigen::Vector3d velocity_odom_m_s_ = Eigen::Vector3d::Zero();  ///< velocity at the last frame
     Eigen::Matrix3d velocity_covariance_ = Eigen::Matrix3d::Zero();
     std::optional<std::int64_t> time_ns_;
 };

@@ -39,13 +39,13 @@ constexpr Drop kDrops[] = {{"kerb 75 mm", 0.075, 1},
                            {"kerb 150 mm", 0.150, 1},
                            {"stairs down 180/310", 0.180, 5}};
 
-/// Decides which pixels the map fuses.
+/// A rule that decides which pixels the map fuses.
 struct Rule {
     std::string name;
     ElevationConfig config;
 };
 
-/// The default rule, and variants with one changed setting each.
+/// Returns the default rule, and variants with one changed setting each.
 std::vector<Rule> rules() {
     std::vector<Rule> all;
     const auto add = [&](const std::string& name, const auto& change) {
@@ -86,7 +86,7 @@ struct Cell {
     Sight sight = Sight::partly;
 };
 
-/// Cells around the edge, up to 0.5 m to either side of the camera.
+/// Returns the cells around the edge, up to 0.5 m to either side of the camera.
 std::vector<Cell> cells_around(const sim::Scene& scene,
                                const ZedBench& bench,
                                const std::vector<Pose>& poses,
@@ -110,8 +110,8 @@ std::vector<Cell> cells_around(const sim::Scene& scene,
 struct Counts {
     int hidden = 0;
     int invented = 0;
-    int invented_wrong = 0;  ///< more than 20 mm off the true ground
-    int invented_sure = 0;   ///< with a sigma of at most 10 mm
+    int invented_wrong = 0;  ///< hidden cells mapped more than 20 mm off the true ground
+    int invented_sure = 0;   ///< hidden cells mapped with a sigma of at most 10 mm
     int visible = 0;
     int visible_known = 0;
 };
@@ -139,7 +139,7 @@ Counts count(const elevation::ElevationMap& map, const std::vector<Cell>& cells)
     return counts;
 }
 
-/// One frame in front of an edge, or ten frames on the last 0.9 m towards it.
+/// One frame in front of an edge, or ten frames on the last 0.9 m of an approach.
 struct Look {
     const Drop& drop;
     double distance_m = 0.0;
@@ -147,7 +147,7 @@ struct Look {
     int frames = 1;
 };
 
-/// Maps of all rules from the same frames, with the truth.
+/// The maps of all rules from the same frames, and the true cells.
 struct Outcome {
     std::vector<elevation::ElevationMap> maps;
     std::vector<Cell> cells;
@@ -234,7 +234,7 @@ void measure_drops(ZedBench& bench, const std::string& out, int first_seed, int 
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     const auto arguments = surefoot::bench_arguments(argc, argv);
     if (!arguments) {

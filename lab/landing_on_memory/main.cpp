@@ -45,14 +45,15 @@ namespace surefoot {
 namespace {
 
 constexpr double kRate_hz = 8.0;
-constexpr int kDepthEvery = 2;  ///< every n-th frame has depth
+constexpr int kDepthEvery = 2;  ///< every second frame has depth
 constexpr double kSecondPitch_deg = 65.0;
 constexpr double kLongExposure_s = 0.016;  ///< longest exposure of the simulated control
 
-/// Image defects of the odometry, compared with a global shutter over carpet.
+/// Image defects that the odometry gets. The default is a global shutter and the full contrast of
+/// the carpet.
 struct Condition {
     std::string name = "plain";
-    double contrast = 1.0;  ///< factor on all textures
+    double contrast = 1.0;  ///< factor on the contrast of all textures
     int blur_samples = 0;   ///< number of instants within an exposure of 16 ms; 0 = sharp
     bool rolling = false;
 };
@@ -80,11 +81,11 @@ struct Memory {
     std::vector<camera::RectifiedRig> rigs;
 };
 
-/// State at the time of a step query.
+/// State of the run at the time of a step query.
 struct Decision {
     int step = 0;
     std::int64_t time_ns = 0;
-    int lost_frames = 0;  ///< since the start
+    int lost_frames = 0;  ///< number of LOST frames from the start to this time
 };
 
 struct Poses {
@@ -92,7 +93,7 @@ struct Poses {
     Pose T_world_body;  ///< true
 };
 
-/// Points 25 mm apart under both feet after a step, in the body frame before the step.
+/// Returns points 25 mm apart under both feet after a step, in the body frame before the step.
 std::vector<Eigen::Vector2d> landing_points(const Machine& machine, const sim::StepEvent& step) {
     const Pose T_before_after = step.T_world_before.inverse() * step.T_world_after;
     std::vector<Eigen::Vector2d> points;
@@ -120,7 +121,7 @@ void look_up(const Setup& setup,
     const Poses& now = poses.at(decision.time_ns);
     const auto& layers = memory.map.layers();
     for (const Eigen::Vector2d& point : points_body_m) {
-        // The gate reads the map at the estimated pose, taken as level.
+        // The gate reads the map at the estimated pose and assumes that the body is level.
         const Eigen::Vector3d ahead = now.T_odom_body.rotation * Eigen::Vector3d::UnitX();
         const Eigen::Rotation2Dd turn(std::atan2(ahead.y(), ahead.x()));
         const Eigen::Vector2d at = now.T_odom_body.translation_m.head<2>() + turn * point;
@@ -133,7 +134,7 @@ void look_up(const Setup& setup,
         if (known) {
             const Eigen::Vector3d stored(at.x(), at.y(), static_cast<double>(height_m));
             const Eigen::Vector3d met = now.T_world_body * (now.T_odom_body.inverse() * stored);
-            height_error_m = met.z();  // the floor is at 0
+            height_error_m = met.z();  // the true floor is at height 0
             const std::int64_t seen_ns = layers.seen_ns.at(cell->ix, cell->iy);
             const Poses& then = poses.at(seen_ns);
             const Eigen::Vector3d seen = then.T_world_body * (then.T_odom_body.inverse() * stored);
@@ -267,8 +268,8 @@ std::vector<Setup> mounts(std::uint64_t seed, double noise) {
 }
 
 std::vector<Setup> conditions(std::uint64_t seed, double noise) {
-    constexpr double kPoor = 0.3;  // factor on the contrast
-    constexpr int kInstants = 3;   // the machine vibrates by about a pixel per exposure
+    constexpr double kPoor = 0.3;  // factor on the contrast of a poor texture
+    constexpr int kInstants = 3;   // enough: the machine vibrates by about a pixel per exposure
     std::vector<Setup> all;
     const auto add = [&](const Condition& condition) {
         all.push_back(
@@ -283,7 +284,7 @@ std::vector<Setup> conditions(std::uint64_t seed, double noise) {
 
 using Set = std::vector<Setup> (*)(std::uint64_t seed, double noise);
 
-/// Returns nullptr for an unknown name.
+/// Returns the function that makes the setups of this name; nullptr for an unknown name.
 Set set_of(const std::string& name) {
     if (name == "grid") return grid;
     if (name == "mounts") return mounts;
@@ -293,7 +294,7 @@ Set set_of(const std::string& name) {
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 2) {

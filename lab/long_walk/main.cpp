@@ -36,7 +36,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kMostFrames = 250;  ///< frames of the path kept in memory
+constexpr int kMostFrames = 250;  ///< largest number of path frames in memory
 constexpr int kDepthEvery = 5;
 constexpr double kNewNoise_grey = 1.5;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
@@ -84,7 +84,8 @@ void add_noise(Rng& rng, GreyImage& image) {
     }
 }
 
-/// Index on the path, back and forth: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1, ...
+/// Returns the index on the path that goes back and forth: 0, 1, ..., n - 1, n - 2, ..., 1, 0, 1,
+/// ...
 std::size_t place_on_way(std::int64_t index, std::size_t frames) {
     const auto period = 2 * (static_cast<std::int64_t>(frames) - 1);
     const std::int64_t phase = index % period;

@@ -33,7 +33,7 @@ namespace {
 
 constexpr double kReach_m = 1.2;
 
-/// Lowest and highest true height in a cell. Returns false over a void.
+/// Computes the lowest and highest true height in a cell. Returns false over a void.
 bool range_in(const HazardScene& scene,
               const Eigen::Vector2d& center_m,
               double side_m,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How accurate is our matcher compared with OpenCV's matchers on Middlebury pairs? For the
-// calibration of its uncertainty see matcher_sigma.
+// How accurate is our matcher compared with OpenCV's matchers on Middlebury pairs? matcher_sigma
+// measures the calibration of its uncertainty.
 // Usage: matcher_accuracy STEREO_DATA_DIR OUT_DIR
 //
 // Writes into OUT_DIR:
@@ -30,7 +30,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Quantile: `share` of the values are smaller. Reorders `values`.
+/// Returns the quantile: `share` of the values are smaller than it. Reorders `values`.
 float quantile(std::vector<float>& values, double share) {
     if (values.empty()) return std::numeric_limits<float>::quiet_NaN();
     const auto at = values.begin() +
@@ -39,8 +39,8 @@ float quantile(std::vector<float>& values, double share) {
     return *at;
 }
 
-/// Writes the quantiles of matched minus true disparity. Rounded truth centres them on zero;
-/// truncated truth shifts them up.
+/// Writes the quantiles of matched minus true disparity. With rounded truth they are centred on
+/// zero; truncated truth shifts them up.
 void report_residuals(fmt::ostream& out,
                       const TruePair& pair,
                       const char* matcher,
@@ -116,7 +116,7 @@ int run(const std::string& data, const std::string& folder) {
 }  // namespace
 }  // namespace surefoot::experiments
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (argc < 3) {
         fmt::print(stderr, "usage: matcher_accuracy STEREO_DATA_DIR OUT_DIR\n");

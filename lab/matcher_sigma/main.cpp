@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the stated uncertainty of the matcher agree with its real errors? On Middlebury pairs and on
-// the simulated ZED. The coefficients come from sigma_fit.
+// Does the stated uncertainty of the matcher agree with its real errors? Input: Middlebury pairs
+// and images of the simulated ZED. The coefficients of the uncertainty come from sigma_fit.
 // Usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]     default seed: 1
 //
 // Writes OUT_DIR/sigma.csv: kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak
@@ -28,7 +28,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Inverse of the ratio of the second-best cost to the best one; large = unsure.
+/// Returns the best cost divided by the second-best cost for each pixel; large = uncertain.
 Image<float> peak_doubt(const TruePair& pair) {
     stereo::SemiGlobalConfig config;
     config.disparities = pair.disparities;
@@ -45,10 +45,10 @@ Image<float> peak_doubt(const TruePair& pair) {
 
 /// Stated sigmas and real errors of matches, from one image or several.
 struct Confidences {
-    std::vector<float> errors_px;  ///< of all matches; the uncertainties below have the same order
+    std::vector<float> errors_px;  ///< one per match, in the order of sigmas_px and peak_doubts
     std::vector<float> sigmas_px;
     std::vector<float> peak_doubts;
-    std::array<double, 3> within{};  ///< trusted matches within 1, 2, 3 sigma
+    std::array<double, 3> within{};  ///< number of trusted matches within 1, 2 and 3 sigma
     double trusted = 0.0;
     double pixels = 0.0;
 
@@ -66,7 +66,7 @@ void Confidences::add(const TruePair& pair) {
         const float error_px = depth.disparity_px.data()[i] - pair.truth_px.data()[i];
         if (std::isnan(error_px)) continue;
         errors_px.push_back(error_px);
-        // Combines sigma and outlier probability: a likely outlier counts as several pixels.
+        // Combines sigma and outlier probability: outlier probability 1 adds 4 px to sigma.
         const float p = depth.outlier_probability.data()[i];
         sigmas_px.push_back(depth.sigma_px.data()[i] + 4.0F * p);
         peak_doubts.push_back(doubt.data()[i]);
@@ -106,7 +106,7 @@ void Confidences::print(fmt::ostream& out, const char* kind, const std::string& 
               eval::sparsification(errors_px, peak_doubts).auc);
 }
 
-/// Writes a line for each pair and one for all pairs together.
+/// Writes one line for each pair and one line for all pairs together.
 void report_sigmas_of(fmt::ostream& out,
                       const std::string& name,
                       const std::vector<TruePair>& pairs) {
@@ -146,7 +146,7 @@ Status report_sigmas(const std::string& file,
                      std::uint64_t first_seed) {
     auto out = fmt::output_file(file);
     out.print("kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak\n");
-    // Truth in whole pixels cannot measure sub-pixel errors.
+    // A truth in whole pixels cannot measure sub-pixel errors.
     std::erase_if(pairs, [](const TruePair& pair) { return pair.step_px >= 1.0; });
     report_sigmas_of(out, "real pairs", pairs);
     sim::SceneOptions options;
@@ -177,7 +177,7 @@ Status run(const std::string& data, const std::string& folder, std::uint64_t fir
 }  // namespace
 }  // namespace surefoot::experiments
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 3) {

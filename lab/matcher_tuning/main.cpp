@@ -4,14 +4,14 @@
 // scores come from the other half, from new simulated images, and from images that are difficult
 // for cameras.
 // Usage: matcher_tuning STEREO_DATA_DIR OUT_DIR FIRST_SEED [FIRST_TUNING_SEED]
-//   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: of the images for the
-//   choice, default 21.
+//   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: first
+//   seed of the images for the choice, default 21.
 //
 // Writes into OUT_DIR:
 //   chosen.csv    matcher,set,words,loss,loss_as_it_comes: the setting with the smallest loss.
-//                 Loss: mean of bad_1 + 2 bad_2 over the pairs, plus the same over the simulated
-//                 images. Sets: "chosen"; "for pairs" and "for simulated" are chosen by one of the
-//                 two alone.
+//                 Loss: mean of bad_1 + 2 bad_2 over the pairs, plus this mean over the simulated
+//                 images. Sets: "chosen" uses both means; "for pairs" and "for simulated" use one
+//                 mean alone.
 //   held_out.csv  kind,truth,image,matcher,set,bad_1,bad_2,matched_bad_1,matched_bad_2,density [%]
 //                 kinds: "tuned on", "pair", "simulated", and one per difficult condition. Sets:
 //                 those above, and "as it comes" for the default settings of our whole matcher.
@@ -39,7 +39,7 @@ struct Images {
     std::vector<TruePair> pairs;
 };
 
-/// Scenes seen by the fitted ZED with additional settings; each scene has its own seed.
+/// Scenes that the fitted ZED sees with additional settings. Each scene has its own seed.
 struct Series {
     const char* kind;
     std::vector<std::string> scenes;
@@ -74,7 +74,7 @@ std::vector<Series> held_out_series() {
     };
 }
 
-/// Renders the series. Only pixels that both cameras see keep their truth.
+/// Renders the scenes of a series. Only pixels that both cameras see keep their truth.
 Result<Images> render(const Series& series, std::uint64_t first_seed) {
     Images images{series.kind, {}};
     images.pairs.reserve(series.scenes.size());
@@ -97,7 +97,7 @@ Result<Images> render(const Series& series, std::uint64_t first_seed) {
     return images;
 }
 
-/// Splits the pairs: cones and cloth3 for tuning, the others for the scores.
+/// Splits the pairs: cones and cloth3 are for tuning, the other pairs for the scores.
 std::vector<Images> halves(std::vector<TruePair> pairs) {
     Images tuned{"tuned on", {}};
     Images kept{"pair", {}};
@@ -122,7 +122,8 @@ struct Loss {
     double simulated = 0.0;
 };
 
-/// Criterion for the choice of a setting: both kinds of tuning images, or one of them alone.
+/// Criterion for the choice of a setting. It weights both kinds of tuning images, or uses one kind
+/// alone.
 struct Aim {
     const char* set;
     double pairs;
@@ -139,7 +140,7 @@ constexpr Aim kAims[] = {{"chosen", 1.0, 1.0, nullptr},
                          {"for pairs", 1.0, 0.0, "pair"},
                          {"for simulated", 0.0, 1.0, "simulated"}};
 
-/// Chooses the best setting of a matcher for each aim, and its loss.
+/// Chooses the best setting of a matcher for each aim and computes its loss.
 class Choice {
   public:
     Choice(const Candidate& candidate,
@@ -199,7 +200,7 @@ void report(fmt::ostream& out,
     }
 }
 
-/// Renders all series; the seeds continue from one series to the next.
+/// Renders all series. The seeds continue from one series to the next.
 Status add_series(const std::vector<Series>& all, std::uint64_t seed, std::vector<Images>& out) {
     for (const Series& series : all) {
         auto images = render(series, seed);
@@ -210,8 +211,8 @@ Status add_series(const std::vector<Series>& all, std::uint64_t seed, std::vecto
     return {};
 }
 
-/// `our_whole` rebuilds the pipeline's matcher so that its penalties can be set. Checks that
-/// both give the same disparities.
+/// `our_whole` rebuilds the matcher of the pipeline, so that its penalties can be set. Checks that
+/// both matchers give the same disparities.
 bool is_the_chain(const TruePair& pair) {
     const Image<float> built_px = our_whole({})(pair);
     const Image<float> chain_px = chain()(pair);
@@ -256,7 +257,7 @@ Status run(const std::string& data,
 }  // namespace
 }  // namespace surefoot::experiments
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 4) {

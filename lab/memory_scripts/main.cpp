@@ -60,11 +60,11 @@ constexpr std::uint8_t kBack = 17;
 constexpr std::uint8_t kTurnLeft = 25;
 constexpr double kToe_m = 0.24;
 constexpr double kStepAhead_m = 0.40;
-/// Length of the backward movement of class stair. A real REX makes no backward step of that
-/// length. A shorter one would land on the strip behind the nosing, which its camera never sees.
+/// Length of the backward movement of class stair. A real REX cannot step so far back. A shorter
+/// step would land on the strip behind the nosing, which the camera never sees.
 constexpr double kStairBack_m = 0.60;
 constexpr double kAttested_m = 1.0;
-constexpr double kRate_hz = 0.5;  ///< a step takes ten seconds
+constexpr double kRate_hz = 0.5;  ///< camera rate; a step takes ten seconds
 constexpr double kSettled_s = 1.0;
 
 enum class Script : std::uint8_t { table, door, tread };
@@ -77,22 +77,22 @@ struct Setup {
     Script script = Script::table;
     std::uint64_t seed = 0;
     double pitch_deg = 32.0;
-    double drift = 0.0;  ///< share of the distance, without sign
+    double drift = 0.0;  ///< motion error as a share of the distance, without sign
     Stated stated = Stated::own;
     bool images = false;
 };
 
 struct Order {
     std::uint8_t command = 0;
-    bool asked = false;   ///< this order is the question of the script
-    bool forced = false;  ///< made even if the oracle forbids it: it ends at an edge
-    bool stair = false;   ///< movement of the machine with stairs; asked, never made
+    bool asked = false;   ///< true: this order is the question of the script
+    bool forced = false;  ///< true: made even if the oracle forbids it, because it ends at an edge
+    bool stair = false;   ///< true: movement of the machine with stairs; asked but not made
 };
 
 struct Plan {
     std::string yaml;
     std::vector<Order> orders;
-    bool ends_where_unsafe = false;  ///< an order refused by the oracle ends the script
+    bool ends_where_unsafe = false;  ///< true: the script ends at an order that the oracle refuses
     double relief_m = 0.0;
     double size_m = 0.0;
 };
@@ -128,7 +128,7 @@ std::string scene_tail(double bottom_m) {
 constexpr const char* kFloor =
     "  - floor: {min_x_m: -3, min_y_m: -4, max_x_m: 8, max_y_m: 4, material: ground}\n";
 
-/// A table whose edge is 0.5 to 0.9 m behind the body after the turn.
+/// Makes a table whose edge is 0.5 to 0.9 m behind the body after the turn.
 Plan table_plan(Rng& rng) {
     Plan plan;
     plan.relief_m = rng.uniform(0.68, 0.78);
@@ -149,7 +149,7 @@ Plan table_plan(Rng& rng) {
     return plan;
 }
 
-/// A door whose wall is 1.1 to 1.3 m ahead when the machine begins to turn.
+/// Makes a door whose wall is 1.1 to 1.3 m ahead when the machine begins to turn.
 Plan door_plan(Rng& rng) {
     Plan plan;
     plan.size_m = rng.uniform(1.00, 1.20);
@@ -169,8 +169,8 @@ Plan door_plan(Rng& rng) {
     return plan;
 }
 
-/// A floor that ends 0.02 to 0.07 m ahead of the toes at the place where the machine observes
-/// the edge. From there the occluded strip behind the edge is one cell wide. Then follows a tread,
+/// Makes a floor that ends 0.02 to 0.07 m ahead of the toes at the place where the machine observes
+/// the edge. From there the occluded strip behind the edge is one cell wide. Then follow a tread,
 /// and ground one riser below it. The machine goes back, turns, and comes back with its heels to
 /// the edge.
 Plan tread_plan(Rng& rng) {
@@ -210,7 +210,7 @@ Plan plan_of(const Setup& setup) {
     return tread_plan(rng);
 }
 
-/// The REX with class stair enabled and one movement of that class.
+/// Returns the REX with class stair enabled and one movement of that class.
 Machine stair_machine(const Machine& rex) {
     Machine machine = rex;
     machine.limits.step[static_cast<std::size_t>(MovementClass::stair)].enabled = true;
@@ -220,7 +220,7 @@ Machine stair_machine(const Machine& rex) {
     return machine;
 }
 
-/// A source that reports the motion with an error, and ends on `end`.
+/// A source that reports the motion with an error. It ends when `end` is called.
 class DriftingSource final : public camera::FrameSource {
   public:
     DriftingSource(sim::SceneSource& source, double share, Stated stated)
@@ -235,15 +235,15 @@ class DriftingSource final : public camera::FrameSource {
             drift(*(*frame)->known_motion);
         return frame;
     }
-    /// Announces the length of the next step.
+    /// Sets the length of the next step.
     void way_grows(double step_m) { way_m_ += step_m; }
     void end() { over_ = true; }
 
   private:
     void drift(MotionEstimate& motion) {
         motion.T_previous_body.translation_m *= 1.0 + share_;
-        // The error is a constant share of the distance. The sum of the variances must therefore
-        // grow with the square of the distance.
+        // The error is a constant share of the distance. So the sum of the variances must grow with
+        // the square of the distance.
         const double way_m = std::exchange(stated_way_m_, way_m_);
         if (stated_ == Stated::told) {
             const double grown_m2 = share_ * share_ * (way_m_ * way_m_ - way_m * way_m);
@@ -268,8 +268,8 @@ double yaw_of(const Pose& T_odom_body) {
     return std::atan2(ahead.y(), ahead.x());
 }
 
-/// Fills cells that are unknown, or less certain than half of the gate's limit, from the
-/// nearest good cell within three cells. Of equally near cells it takes the lowest.
+/// Fills cells that are unknown, or whose sigma exceeds half of the gate's limit, from the nearest
+/// good cell within three cells. If several are equally near, takes the lowest.
 void fill_holes(const GateLimits& limits, grid::MapSnapshot& map) {
     constexpr int kFarthest = 3;
     const auto known = std::make_unique<grid::MapSnapshot>(map);
@@ -327,7 +327,7 @@ class Walk {
           pipeline_(pipeline),
           out_(out) {}
 
-    /// Runs after every frame. When the machine has stood long enough, asks the gate and gives
+    /// Runs after every frame. When the machine has stood for kSettled_s, asks the gate and gives
     /// the next order.
     void step() {
         const auto& motion = source_.commanded();
@@ -356,7 +356,7 @@ class Walk {
     [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
 
   private:
-    /// Asks gate and oracle, writes both answers, and returns the oracle's.
+    /// Asks gate and oracle, writes both answers, and returns the answer of the oracle.
     bool ask(const Order& order) {
         const Machine& machine = order.stair ? stairs_ : rex_;
         const Pose T_world_body = source_.truth().trajectory.back().T_world_body;
@@ -481,7 +481,7 @@ Result<sim::SceneOptions> scene_options(const Setup& setup,
         options.sensor = sim::Sensor::analytic;
         options.known_motion = true;
     } else {
-        options.rate_hz = 5.0;  // the odometry needs this rate
+        options.rate_hz = 5.0;  // The odometry needs this frame rate.
     }
     return options;
 }
@@ -546,7 +546,7 @@ std::vector<Setup> runs_of(const std::string& name, std::uint64_t seed) {
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 4) {

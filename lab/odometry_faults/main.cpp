@@ -14,9 +14,11 @@
 //   health, reason, camera, lit   as reported; the map takes a frame with `lit` that is not LOST
 //   path_mm             true motion since the last frame
 //   err_mm, err_deg     error of the motion since the last frame
-//   sig_mm, sig_deg     its stated sigma in the direction of the largest one
-//   s_*                 the same over the last second; s_health: the worst health in it
-//   since_*             the same since the last frame before the fault; empty before the fault
+//   sig_mm, sig_deg     stated sigma of this motion in the direction of the largest sigma
+//   s_*                 error and sigma of the motion over the last second; s_health: the worst
+//                       health in this second
+//   since_*             error and sigma of the motion since the last frame before the fault; empty
+//                       before the fault
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -45,7 +47,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kFirst = 20;  ///< first frame of the scene's path: before it the machine stands
+constexpr int kFirst = 20;  ///< first recorded frame of the path; before it the machine stands
 constexpr int kFrames = 76;
 constexpr int kOnset = 40;
 constexpr int kAfter = 16;  ///< frames recorded after the end of a fault
@@ -61,7 +63,7 @@ struct Shown {
     bool dropped = false;
 };
 
-/// Renders images of other content through the same camera.
+/// Renders images of other content through the same camera as the scene.
 class Painter {
   public:
     Painter(const camera::StereoRig& rig, sim::Renderer renderer, Executor& executor)
@@ -71,7 +73,7 @@ class Painter {
         clean_.left.depth_m = clean_.left.signal_dn;
     }
 
-    /// A wall without texture, or darkness.
+    /// Renders a wall without texture, or darkness.
     void flat(double signal_dn, Shown& shown) {
         clean_.left.signal_dn.fill(static_cast<float>(signal_dn));
         clean_.right.signal_dn.fill(static_cast<float>(signal_dn));
@@ -112,7 +114,7 @@ class Painter {
     }
 
   private:
-    /// Adds noise; its frame number differs from those of the scene.
+    /// Adds noise. The frame number differs from those of the scene, so the noise is different.
     void expose(int frame) { renderer_.expose(clean_, {}, 10'000 + frame, *executor_, pair_); }
     static void over(const Image<float>& mask, const GreyImage& from, GreyImage& image) {
         for (int v = 0; v < image.height(); ++v)
@@ -130,7 +132,7 @@ class Painter {
     sim::RenderedPair pair_;
 };
 
-/// Material for a fault: the clean recording and other images.
+/// Material for a fault: the clean recording and a painter of other images.
 struct Bench {
     const std::vector<Shown>& clean;
     Painter& painter;
@@ -140,11 +142,11 @@ struct Fault {
     std::string name;
     std::string severity;
     int first = kOnset;
-    int frames = 0;  ///< 0 = to the end
-    /// `k` counts from the first faulty frame.
+    int frames = 0;  ///< number of faulty frames; 0 = to the end
+    /// Damages a frame. `k` counts from the first faulty frame.
     std::function<void(Shown&, int k, Bench&)> damage = {};
     std::function<void(camera::StereoRig&)> rig = {};
-    bool watched = true;  ///< true as in the application: repeated and torn images are marked
+    bool watched = true;  ///< true: mark repeated and torn images, as the application does
     bool of_imu = false;
 };
 
@@ -351,7 +353,7 @@ std::vector<Fault> all_faults() {
     return faults;
 }
 
-/// The recording with the fault. The IMU samples of a dropped frame go to the next frame.
+/// Returns the recording with the fault. The IMU samples of a dropped frame go to the next frame.
 std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, Painter& painter) {
     Bench bench{clean, painter};
     camera::FrameIntegrityCheck watch;
@@ -369,7 +371,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
             ++dropped;
             continue;
         }
-        if (dropped > 0) shown.faulty = true;  // the next frame shows the gap
+        if (dropped > 0) shown.faulty = true;  // the next frame shows the gap in the images
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
         shown.frame.frame_status.dropped = std::exchange(dropped, 0);
@@ -379,7 +381,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
     return out;
 }
 
-/// A motion: estimated, true, and with its stated covariance.
+/// An estimated motion, its stated covariance, and the true motion.
 struct Piece {
     Pose T_true;
     Pose T_found;
@@ -392,7 +394,7 @@ struct Piece {
         T_found = T_found * next.T_found;
         worst = std::max(worst, next.worst);
     }
-    /// Columns err_mm,err_deg,sig_mm,sig_deg.
+    /// Returns the columns err_mm,err_deg,sig_mm,sig_deg.
     [[nodiscard]] std::string text() const {
         const Vector6 error = difference(T_true, T_found);
         const auto sigma = [](const Eigen::Matrix3d& part) {
@@ -444,7 +446,7 @@ Status follow(const Recording& recording,
         times_s.push_back(seconds_from_ns(
             recording.frames[static_cast<std::size_t>(shown[i].frame.index - kFirst)]
                 .frame.time_ns));
-        // A motion belongs to the frame at its end: the first motion of the last second begins
+        // A motion belongs to the frame at its end. So the first motion of the last second begins
         // one second ago.
         Piece second;
         for (std::size_t k = 0; k <= i; ++k)

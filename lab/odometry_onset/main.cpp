@@ -35,10 +35,10 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kStands = 30;  ///< standing frames before the motion
-constexpr int kAfter = 15;   ///< frames after its begin
+constexpr int kStands = 30;  ///< number of standing frames before the motion
+constexpr int kAfter = 15;   ///< number of frames after the begin of the motion
 constexpr int kLongStand = 100;
-constexpr int kSettled = 3;  ///< first frames are not judged: the pose may change within the noise
+constexpr int kSettled = 3;  ///< number of first frames that are not judged
 constexpr double kPeriod_s = 0.1;
 
 struct Onset {
@@ -49,13 +49,13 @@ struct Onset {
 constexpr Onset kOnsets[] = {
     {0.0, 1}, {0.001, 1}, {0.003, 1}, {0.005, 1}, {0.001, 5}, {0.003, 5}, {0.005, 5}};
 
-/// Distance from the start at a frame.
+/// Returns the distance from the start [m] at a frame.
 double shift_at_m(const Onset& onset, int frame) {
     const double part = static_cast<double>(frame - kStands + 1) / onset.spread_frames;
     return onset.shift_m * std::clamp(part, 0.0, 1.0);
 }
 
-/// A motion that stands still during an exposure.
+/// A pose that stays the same during an exposure.
 struct Held final : sim::Motion {
     explicit Held(const Pose& T) { state.T_world_body = T; }
     [[nodiscard]] sim::MotionState at(double) const override { return state; }
@@ -65,7 +65,7 @@ struct Held final : sim::Motion {
 
 /// Camera, pose and images of one scene.
 struct Stage {
-    camera::StereoRig rig;  ///< rig with its calibration
+    camera::StereoRig rig;  ///< rig that the odometry uses, with its calibration
     Pose T_world_body;
     sim::Renderer renderer;
     pipeline::PipelineConfig config;

@@ -53,7 +53,7 @@ constexpr std::int64_t kRounding_ns = 1'000'000;
 
 using experiments::SceneCase;
 
-/// Accumulates the results of one run.
+/// Sums up the results of one run.
 class Tally {
   public:
     void add(const MotionEstimate& motion, const Pose& T_world_body) {
@@ -181,7 +181,7 @@ Status measure(const SceneCase& now,
     Tally tally;
     const auto follow = [&](const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::odometry);
-        // Trajectory files round their stamps.
+        // Trajectory files contain rounded stamps.
         tally.add(report.motion,
                   experiments::true_pose(recording->bodies, frame.time_ns - kRounding_ns));
     };

@@ -8,10 +8,10 @@
 //   MOTION_MODELS: motion models, default: scene. RIGS: rig presets, default: zed_vga. KEY=VALUE: a
 //   setting of surefoot.
 //
-// The whole pipeline runs on rendered images and starts at the true pose. Beside its map, three
-// other maps are made of the same frames: of its depth at the true poses, and of exact depth at the
-// pipeline's poses and at the true poses. If a motion model cannot follow a scene's path, the
-// program prints a message and skips the case.
+// The whole pipeline runs on rendered images and starts at the true pose. The program makes three
+// other maps of the same frames: the depth of the pipeline at the true poses, exact depth at the
+// poses of the pipeline, and exact depth at the true poses. If a motion model cannot follow the
+// path of a scene, the program prints a message and skips the case.
 //
 // Writes OUT.csv, one line per scene, seed, profile, motion model and rig:
 //   path_m, end_mm, end_deg     length of the true path; error at its end
@@ -55,7 +55,7 @@ struct Case {
     std::string rig;
 };
 
-/// The additional maps beside the pipeline's own.
+/// The additional maps of a run, besides the map of the pipeline.
 class Maps {
   public:
     explicit Maps(const elevation::ElevationConfig& config)
@@ -83,7 +83,7 @@ class Maps {
     elevation::ElevationMap matched_true;
 };
 
-/// Columns ",jump_mm,spread_mm" of the level floor of a map in the world frame.
+/// Returns the columns ",jump_mm,spread_mm" of the level floor of a map in the world frame.
 std::string floor_figures(const sim::Scene& scene, const elevation::ElevationMap& map) {
     eval::MapPair maps;
     maps.geometry = map.geometry();

@@ -28,11 +28,11 @@ namespace {
 
 constexpr const char* kScenes[] = {"floor", "cross_fall"};
 constexpr int kTenths = 10;
-constexpr int kReach_px = 6;  ///< least extent of a plane around a counted pixel
+constexpr int kReach_px = 6;  ///< smallest half width of the plane around a counted pixel
 constexpr float kFlatness_px = 1e-3F;
 constexpr float kRight_px = 1.0F;
 
-/// Whether the surface around a pixel is a plane: its disparities are linear in the image.
+/// Returns true if the surface around a pixel is a plane: its disparities are linear in the image.
 bool on_plane(const Image<float>& truth_px, int u, int v) {
     if (!truth_px.contains(u - kReach_px, v - kReach_px) ||
         !truth_px.contains(u + kReach_px, v + kReach_px))
@@ -44,7 +44,7 @@ bool on_plane(const Image<float>& truth_px, int u, int v) {
            std::abs(bent_down - twice_px) < kFlatness_px;
 }
 
-/// Errors by tenths of a pixel.
+/// Errors by the fraction of the true disparity, in tenths of a pixel.
 struct Locking {
     std::array<double, kTenths> count{};
     std::array<double, kTenths> sum_px{};
@@ -62,8 +62,8 @@ struct Locking {
             for (int u = 0; u < disparity_px.width(); ++u) {
                 const float truth_px = pair.truth_px.at(u, v);
                 const float error_px = disparity_px.at(u, v) - truth_px;
-                // Also skips pixels where one of the two is unknown: comparisons with NaN are
-                // false.
+                // Also skips pixels whose true or matched disparity is unknown, because comparisons
+                // with NaN are false.
                 if (!(std::abs(error_px) <= kRight_px) || !on_plane(pair.truth_px, u, v)) continue;
                 add(static_cast<double>(truth_px), static_cast<double>(error_px));
             }
@@ -119,7 +119,7 @@ Status run(const std::string& file, std::uint64_t first_seed, int seeds) {
 }  // namespace
 }  // namespace surefoot::experiments
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 3) {

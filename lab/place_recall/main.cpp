@@ -19,7 +19,7 @@
 //
 // Writes OUT.csv, one line per keyframe that could be recognised (`revisit`: it shows a scene part
 // seen before):
-//   refusal, inliers, agreeing...  see places/view_comparison.hpp
+//   refusal, inliers, agreeing...  see surefoot/place_recognition/view_comparison.hpp
 //   accepted                       the tracker accepted T_map_odom
 //   error_m, error_deg             error of base_link in the map, if accepted
 //   single_m                       error of the best keyframe's answer, accepted or not
@@ -53,21 +53,21 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kLean_deg = 0.2;  ///< tilt of odom
-constexpr double kStep_m = 0.26;   ///< distance between two keyframes, just enough for one
+constexpr double kLean_deg = 0.2;  ///< tilt of the odom frame
+constexpr double kStep_m = 0.26;   ///< distance between two stops; each stop gives one keyframe
 constexpr double kTurn_deg = 13.0;
 constexpr double kBay_m = 1.5;
 constexpr std::uint64_t kWayStream = 0x706c616365;
-constexpr int kSecondRun = 10'000;  ///< first frame number of the second run: its noise differs
+constexpr int kSecondRun = 10'000;  ///< first frame number of the second run, for different noise
 
-/// CPU time of this thread, independent of other threads.
+/// Returns the CPU time of this thread. Other threads do not affect it.
 double cpu_ms() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// A pose of base_link.
+/// A pose of base_link on the path.
 struct Stop {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -79,7 +79,7 @@ struct Stop {
     }
 };
 
-/// Distance that the machine can go ahead in a scene.
+/// Returns the distance that the machine can go ahead in a scene [m].
 double reach_m(const std::string& scene) {
     if (scene == "walk_turn_round") return 2 * kStep_m;
     return 3 * kStep_m;
@@ -110,7 +110,7 @@ class Way {
     std::vector<Stop> stops_;
 };
 
-/// Path of the first run: forward, with views to both sides.
+/// Returns the path of the first run: forward, with views to both sides.
 std::vector<Stop> first_way(const std::string& scene) {
     Way way({});
     way.forward(reach_m(scene));
@@ -139,7 +139,7 @@ std::vector<Stop> way_and_back(const std::string& scene, Rng& rng) {
     return way.stops();
 }
 
-/// Images of one machine in one scene.
+/// Makes the images of one machine in one scene.
 class Cameras {
   public:
     static Result<Cameras> open(const std::string& scene,
@@ -287,7 +287,7 @@ class Run {
     }
 
     Case now_;
-    Pose T_world_map_;  ///< odom of the first run
+    Pose T_world_map_;  ///< pose of the odom frame of the first run
     place_recognition::PlaceTracker tracker_;
     place_recognition::Place saved_;
     fmt::ostream& out_;
@@ -300,7 +300,7 @@ Pose leaning(const Pose& T_world_odom, Rng& rng) {
                                {0.0, 0.0, 0.0}};
 }
 
-/// Second run with its own odom frame in the saved place `saved`.
+/// Makes a second run with its own odom frame in the saved place `saved`.
 Status drive_second(const Case& now,
                     Cameras& cameras,
                     const Pose& T_world_map,
@@ -308,7 +308,7 @@ Status drive_second(const Case& now,
                     Rng& rng,
                     Executor& executor,
                     fmt::ostream& out) {
-    // A few bays farther, which the first run did not reach.
+    // Begins a few bays farther, where the first run did not go.
     const double ahead_m = now.kind == "bay" ? kBay_m * static_cast<double>(2 + rng.below(3)) : 0.0;
     const auto again = second_way(now.scene, ahead_m, rng);
     Run second(now, T_world_map, std::move(saved), out);

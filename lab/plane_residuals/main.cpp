@@ -37,15 +37,15 @@ struct Window {
     double texture_dn = 0.0;
     double grey_dn = 0.0;
     double density = 0.0;
-    double residual_px = 0.0;  ///< 1.4826 median |residual|: one sigma of a normal scatter
-    double rms_px = 0.0;       ///< rms of all matched pixels, outliers too
+    double residual_px = 0.0;  ///< 1.4826 median |residual| = one sigma of a normal scatter
+    double rms_px = 0.0;       ///< rms over all matched pixels, with outliers
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
     Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< disparity = plane . (u, v, 1), window
     std::vector<double> departure_px;  ///< disparity minus plane; NaN = no match or outlier
 };
 
-/// Rms of the horizontal grey difference between the pixels `reach` to the left and right, divided
-/// by their distance.
+/// Returns the rms horizontal gradient of the grey values: difference of the pixels `reach` to the
+/// left and right, divided by their distance.
 double texture_of(const GreyImage& image, int u0, int v0, int reach) {
     double sum = 0.0;
     for (int v = v0; v < v0 + kWindow_px; ++v) {
@@ -58,7 +58,7 @@ double texture_of(const GreyImage& image, int u0, int v0, int reach) {
 }
 
 /// Fits the plane d = a u + b v + c in five rounds of least squares. Each round uses the points
-/// within 3 sigma of the plane before.
+/// within 3 sigma of the plane of the previous round.
 Window fit(const Image<float>& disparity_px, int u0, int v0) {
     std::vector<Eigen::Vector3d> places;
     std::vector<double> values;
@@ -110,9 +110,9 @@ Window fit(const Image<float>& disparity_px, int u0, int v0) {
     return window;
 }
 
-/// One sigma [dn] of the difference between both cameras after alignment by the window's plane and
-/// correction of gain and offset. This is image noise, independent of the matcher. NaN: the right
-/// camera does not see the whole window.
+/// Returns one sigma [dn] of the difference between both cameras. The images are first aligned by
+/// the plane of the window and corrected in gain and offset. The matcher does not affect this image
+/// noise. NaN = the right camera does not see the whole window.
 double camera_difference_of(const camera::RectifiedPair& pair,
                             const Window& window,
                             int u0,
@@ -144,8 +144,8 @@ double camera_difference_of(const camera::RectifiedPair& pair,
     return 1.4826 * *middle;
 }
 
-/// Correlation of the departures at the same pixel in consecutive frames. Where camera or scene has
-/// moved, only a fixed error of the lens or its rectification repeats.
+/// Correlation of the departures from the plane at the same pixel in consecutive frames. If the
+/// camera or the scene has moved, only a fixed error of the lens or its rectification repeats.
 class Repetition {
   public:
     void add(const Window& before, const Window& now) {
@@ -170,7 +170,7 @@ class Repetition {
 
   private:
     static bool is_even(const Window& window) {
-        constexpr double kEven_px = 0.4;  // clutter scatters more
+        constexpr double kEven_px = 0.4;  // largest scatter that is not clutter
         return window.density > 0.8 && window.residual_px < kEven_px;
     }
     int windows_ = 0;
@@ -276,7 +276,7 @@ int run(const std::string& name,
 }  // namespace
 }  // namespace surefoot
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (argc < 3) {
         fmt::print(stderr, "usage: plane_residuals SOURCE OUT.csv [MAX_FRAMES [KEY=VALUE...]]\n");

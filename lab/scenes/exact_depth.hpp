@@ -6,8 +6,8 @@
 
 namespace surefoot::experiments {
 
-/// Depth image of a matcher without errors at a body pose: true disparities of the scene, with a
-/// stated sigma of 0.1 px and outlier probability 0 everywhere.
+/// Returns the depth image of a matcher without errors at a body pose: true disparities of the
+/// scene, a stated sigma of 0.1 px, and outlier probability 0 everywhere.
 [[nodiscard]] inline DepthImage exact_depth(const sim::Scene& scene,
                                             const camera::RectifiedRig& rig,
                                             const Pose& T_world_body,

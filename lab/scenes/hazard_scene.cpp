@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFar_m = 6.0;   ///< extent of the levels
-constexpr double kDeep_m = 2.0;  ///< thickness of the ground
+constexpr double kFar_m = 6.0;   ///< extent of the levels [m]
+constexpr double kDeep_m = 2.0;  ///< thickness of the ground [m]
 constexpr double kTrolleyHeight_m = 0.95;
 
 /// Converts a value of the machine file to metres.
@@ -30,7 +30,7 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
             std::sin(angle_rad) * v.x() + std::cos(angle_rad) * v.y()};
 }
 
-/// Largest extent of a box along `n` after a movement; nullptr: at the current pose.
+/// Returns the largest extent of a box along `n` after a movement. nullptr = at the current pose.
 double reach_m(const GroundBox& box, double grown_m, const Movement* movement, const Vector2d& n) {
     double farthest_m = -1e9;
     for (const int along : {-1, 1}) {
@@ -50,8 +50,8 @@ double reach_m(const GroundBox& box, double grown_m, const Movement* movement, c
     return farthest_m;
 }
 
-/// Range of positions along the normal at which the thing matters: from just outside the current
-/// footprint to the limit of its effect.
+/// Positions along the normal at which the hazard has an effect: from just outside the current
+/// footprint to the farthest feet and body after the movement.
 struct Reach {
     double feet_now_m = 0.0;
     double feet_then_m = 0.0;
@@ -74,8 +74,8 @@ Reach reach_of(const Machine& machine, const Movement& movement, const Vector2d&
     return {feet(nullptr), feet(&movement), body(nullptr), body(&movement)};
 }
 
-/// Builds solids in the machine's frame (base_link = origin). The near border of the thing is at
-/// `at` along `n`.
+/// Builds solids in the frame of the machine (base_link = origin). The near border of the hazard is
+/// at `at` along `n`.
 class Builder {
   public:
     explicit Builder(const Vector2d& n) : n_(n), t_(-n.y(), n.x()) {}
@@ -106,8 +106,8 @@ class Builder {
         box(from_m, to_m, -kFar_m, kFar_m, top_m - kDeep_m, top_m);
     }
 
-    /// Adds a flight that begins at `at_m`. Its levels go down or up, each `going_m` deep; the last
-    /// one extends to the end.
+    /// Adds a flight that begins at `at_m`. Its levels go down or up, and each is `going_m` deep.
+    /// The last level extends to the end of the scene.
     void flight(double at_m, double rise_m, double going_m, int steps) {
         level(-kFar_m, at_m, 0.0);
         for (int k = 1; k <= steps; ++k) {
@@ -151,29 +151,29 @@ class Builder {
     Vector2d t_;
 };
 
-/// Random values of one thing. Every thing draws all of them, so that a hazard and its harmless
+/// Random values of one hazard. Every hazard draws all of them, so that a hazard and its harmless
 /// relief share the other draws.
 struct Draw {
-    double share = 0.0;                ///< position within the allowed range
+    double share = 0.0;                ///< position within the allowed range, 0 to 1
     double across = 0.0;               ///< sideways position, -1 to 1
     double a = 0.0, b = 0.0, c = 0.0;  ///< sizes, 0 to 1
-    double spare = 0.0;                ///< for a later size, which then changes no other draw
+    double spare = 0.0;                ///< draw for a later size; using it changes no other draw
 };
 
 double between(double low, double high, double share) {
     return low + share * (high - low);
 }
 
-/// Position and relief of an added thing. `low_m` limits the relief to at most 10 mm where only
-/// harmless relief is wanted.
+/// Position and relief of an added hazard. For a harmless scene, `low_m` sets the relief, which is
+/// at most 10 mm.
 struct Thing {
     double at_m = 0.0;
     double relief_m = 0.0;
 };
 
 Thing build(Hazard thing, const double* low_m, const Draw& draw, const Reach& reach, Builder& out) {
-    // Farthest position at which the thing matters. A drop: up to the end of the drop band. A low
-    // thing: up to the margin of the foot. A high thing: up to the sway of the body.
+    // Farthest position at which a hazard has an effect. A drop: the end of the drop band. A low
+    // hazard: the margin of the foot. A high hazard: the sway of the body.
     constexpr double kBand_m = 0.09;
     const auto place = [&](double from_m, double to_m) {
         return between(from_m, std::max(to_m, from_m + 0.02), draw.share);
@@ -273,8 +273,8 @@ Thing build(Hazard thing, const double* low_m, const Draw& draw, const Reach& re
     return {high_m, height_m};
 }
 
-/// Draws a normal within 35 deg of the movement. It never points against the walked path, because
-/// the machine has walked there: it is ground.
+/// Draws a normal within 35 deg of the movement. The normal never points against the walked path:
+/// the machine has walked there, so that side is ground.
 Vector2d normal_for(const Movement& movement, Vector2d& ahead, bool& was_turned, Rng& rng) {
     const Vector2d move_m(metres(movement.forward_tenth_mm), metres(movement.left_tenth_mm));
     const bool turns = move_m.norm() < 1e-3;
@@ -307,7 +307,7 @@ void move_to(HazardScene& scene, const Vector2d& at_m, double yaw_rad) {
 
 constexpr const char* kLooks[] = {"carpet", "tiles", "wood", "concrete", "patches"};
 
-/// Line of the scene file for a solid.
+/// Returns the line of the scene file for a solid.
 std::string solid_line(const Solid& solid, std::size_t index) {
     const double yaw_deg = kDegPerRad * std::atan2(solid.sin_yaw, solid.cos_yaw);
     const std::size_t look = index % std::size(kLooks);
@@ -345,7 +345,7 @@ bool Solid::covers(const Vector2d& p_m) const noexcept {
 }
 
 bool Solid::blocks(const Vector3d& from_m, const Vector3d& to_m) const noexcept {
-    // Clips the line to the heights of the solid, then to its footprint.
+    // Clips the line segment to the heights of the solid, then to its footprint.
     const Vector3d way = to_m - from_m;
     double first = 0.0;
     double last = 1.0;

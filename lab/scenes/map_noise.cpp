@@ -16,14 +16,14 @@ using Eigen::Vector2d;
 
 constexpr double kReach_m = 1.1;
 constexpr double kCell_m = 0.025;
-/// Above this height over the ground around it, the camera sees the face of a thing instead of its
-/// top.
+/// Height above the surrounding ground [m]. Of a higher object the camera sees the face instead of
+/// the top.
 constexpr float kTall_m = 0.25F;
 
-/// Normal numbers of unit variance with correlated neighbours: white noise filtered by (1 2 1) / 4
-/// in both directions. Correlation of the filtered noise: 0.67 at one cell, 0.17 at two cells. With
-/// `smooth_share` of the variance in it: 0.44 and 0.11. Measured: 0.44, 0.16, and 0.06 at three
-/// cells.
+/// Returns normal numbers of unit variance with correlated neighbours: white noise filtered by (1 2
+/// 1) / 4 in both directions. The correlation of the filtered noise is 0.67 at one cell and 0.17 at
+/// two cells. If `smooth_share` of the variance is filtered noise, it is 0.44 and 0.11. Measured on
+/// maps: 0.44 at one cell, 0.16 at two and 0.06 at three cells.
 Image<float> smooth_field(int width, int height, Rng& rng) {
     constexpr float kNorm = 1.0F / 0.375F;  // 1 / (sqrt(1 + 4 + 1) / 4)^2
     Image<float> white(width + 2, height + 2);
@@ -41,9 +41,10 @@ Image<float> smooth_field(int width, int height, Rng& rng) {
     return smooth;
 }
 
-/// A cell at an edge, by the share of high ground within 50 mm of its middle: the mapped height
-/// between the lower and the higher level (5, 50 and 95 % of cells), the probability that it is
-/// known although its middle is hidden, and the stated sigma.
+/// A cell at an edge whose share of high ground within 50 mm of its middle is `share_high`. `up`:
+/// mapped height between the lower (0) and the higher level (1) in 5, 50 and 95 % of cells.
+/// `known`: probability that the cell is known although its middle is hidden. `sigma_m`: its stated
+/// sigma.
 struct EdgeRow {
     double share_high;
     std::array<double, 3> up;
@@ -51,19 +52,20 @@ struct EdgeRow {
     double sigma_m;
 };
 using EdgeTable = std::array<EdgeRow, 5>;
-/// Kerbs and first steps of 40-220 mm that rise away from the camera: the higher level dominates.
+/// Rising edges, away from the camera: kerbs and first steps of 40-220 mm. The higher level
+/// dominates.
 constexpr EdgeTable kRising{{{0.0, {0.0, 0.0, 0.0}, 0.0, 3.1e-3},
                              {0.25, {0.0, 0.53, 0.95}, 1.0, 6.6e-3},
                              {0.5, {0.12, 0.90, 0.98}, 1.0, 3.7e-3},
                              {0.75, {0.70, 0.96, 1.0}, 1.0, 3.5e-3},
                              {1.0, {0.95, 1.0, 1.0}, 1.0, 3.1e-3}}};
-/// The same for edges that fall away from the camera: the matcher continues the ground as a ramp.
+/// Falling edges, away from the camera. The matcher continues the ground as a ramp.
 constexpr EdgeTable kFalling{{{0.0, {0.0, 0.0, 0.0}, 0.0, 3.1e-3},
                               {0.25, {0.56, 0.76, 0.89}, 0.38, 8.2e-3},
                               {0.5, {0.70, 0.86, 0.95}, 0.71, 6.8e-3},
                               {0.75, {0.82, 0.93, 1.0}, 0.96, 4.4e-3},
                               {1.0, {0.95, 0.99, 1.0}, 1.0, 3.1e-3}}};
-/// The next cell beyond a falling edge; it is hidden.
+/// The first cell beyond a falling edge, which is hidden.
 constexpr EdgeRow kRamp{0.0, {0.33, 0.62, 0.90}, 0.25, 5.5e-3};
 
 double up_of(const EdgeRow& row, double luck) {
@@ -88,13 +90,13 @@ EdgeDraw edge_draw(const EdgeTable& table, double share_high, double luck) {
     return {mix(up_of(a, luck), up_of(b, luck)), mix(a.known, b.known), mix(a.sigma_m, b.sigma_m)};
 }
 
-/// Share of a normal distribution below `x`.
+/// Returns the share of a normal distribution below `x`.
 double normal_share(double x) {
     return 0.5 * std::erfc(-x * M_SQRT1_2);
 }
 
-/// Whether the middle of a cell or one of four points around it is visible. A small step hides only
-/// a part of the next cell.
+/// Returns true if the middle of a cell or one of four points around it is visible. A small step
+/// hides only a part of the next cell.
 bool is_seen(const HazardScene& scene, const Sight& sight, const Vector2d& center_m) {
     constexpr double kOff_m = 0.3 * kCell_m;
     for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
@@ -155,8 +157,8 @@ SceneCells::SceneCells(const HazardScene& scene, const Sight& sight)
         kCell_m, side, side, kCell_m * ((here_m / kCell_m).array().floor() - side / 2).matrix()};
     cells_ = Image<Cell>(side, side);
 
-    // Samples have half the cell spacing. Cell (ix, iy) contains sample (2 ix, 2 iy) and the next
-    // ones in x and y.
+    // Samples are half a cell apart. Cell (ix, iy) contains sample (2 ix, 2 iy) and the next
+    // samples in x and y.
     const int samples = 2 * side + 2;
     struct Sample {
         float z_m = kNanF;
@@ -238,7 +240,8 @@ MadeMap empty_map(const grid::GridGeometry& g) {
             Image<float>(g.nx, g.ny, kNanF)};
 }
 
-/// Whether a cell contains a surface or a hanging solid more than kTall_m above its lowest ground.
+/// Returns true if a cell contains a surface or a hanging solid more than kTall_m above its lowest
+/// ground.
 bool is_tall(const SceneCells::Cell& cell) {
     return cell.highest_m - cell.low_m > kTall_m || cell.high_m - cell.low_m > kTall_m;
 }
@@ -260,7 +263,7 @@ MadeMap clean_map(const SceneCells& scene) {
 
 namespace {
 
-/// Builds one noisy map.
+/// Draws one map with errors.
 class NoisyMap {
   public:
     NoisyMap(const SceneCells& scene, const MapNoise& noise, bool once, Rng& rng)
@@ -282,20 +285,21 @@ class NoisyMap {
     }
 
   private:
-    // Cells of walls and persons and cells under boards that the map shows wrongly; seeds 21-28.
-    // Walls: 35 % unknown, 3.5 % of the known ones as floor. Persons: 46 % and 2.3 %. Boards (near
-    // 0.1 m): 12 % unknown; of the others 53 % floor with a clearance, 37 % the board's top, and 10
-    // % floor without a clearance. The last share varies by run from 0 to 22 % (farther in up to 43
-    // %): 0.45 u^2 with uniform u.
+    // Cells of walls and persons, and cells under boards, that the map shows wrongly; seeds 21-28.
+    // * Walls: 35 % are unknown. Of the known cells, 3.5 % show floor.
+    // * Persons: 46 % are unknown. Of the known cells, 2.3 % show floor.
+    // * Boards (near 0.1 m): 12 % are unknown. Of the known cells, 53 % show floor with a
+    //   clearance, 37 % the top of the board, and 10 % floor without a clearance. This last share
+    //   varies by run from 0 to 22 %, farther in up to 43 %. Model: 0.45 u^2 with uniform u.
     static constexpr double kTallUnknown = 0.35;
     static constexpr double kTallAsFloor = 0.035;
     static constexpr double kHungUnknown = 0.12;
     static constexpr double kHungAsFloor = 0.45;
     static constexpr double kHungAsClearance = 0.53;
     static constexpr double kFaceSigma_m = 0.018;
-    /// Share of cells that is the same in every run. The number of the others varies from run to
-    /// run like an exponential distribution. Measured share of cells beyond 8 mm: 0, 0.06 and 0.7 %
-    /// in the run at 10, 50 and 90 %, and 3.3 % in the worst run.
+    /// Share of cells that is the same in every run. The number of the other cells varies from run
+    /// to run like an exponential distribution. Measured share of cells beyond 8 mm, by run: 10th
+    /// percentile 0, median 0.06 %, 90th percentile 0.7 %, worst run 3.3 %.
     static constexpr double kBulk = 0.9;
 
     void fill(int ix, int iy) {
@@ -325,16 +329,17 @@ class NoisyMap {
         set(ix, iy, low_m + edge.up * step_m, edge.sigma_m);
     }
 
-    /// A tall thing is mapped at a random height of its face.
+    /// A tall object is mapped at a random height of its face.
     void fill_tall(const SceneCells::Cell& cell, int ix, int iy, double luck) {
         if (rng_.uniform() < kTallUnknown) return;
         const double low_m = static_cast<double>(cell.low_m);
         if (luck < kTallAsFloor) return set(ix, iy, low_m, 0.0);
-        const double up = rng_.uniform(0.05, 0.75);  // the range of 5 and 95 % of wall cells
+        const double up = rng_.uniform(0.05, 0.75);  // 5th to 95th percentile of wall cells
         set(ix, iy, low_m + up * (static_cast<double>(cell.high_m) - low_m), kFaceSigma_m);
     }
 
-    /// A cell under a board: floor without clearance, floor with clearance, or the board's top.
+    /// Maps a cell under a board as floor without clearance, floor with clearance, or top of the
+    /// board.
     void fill_hung(const SceneCells::Cell& cell, int ix, int iy, double luck) {
         if (rng_.uniform() < kHungUnknown) return;
         const double floor_m = static_cast<double>(cell.low_m);
@@ -345,7 +350,8 @@ class NoisyMap {
         map_.clearance_m.at(ix, iy) = cell.top_m - cell.low_m;
     }
 
-    /// Draws a sigma. Cells of the table's last tenth are rare in some runs and frequent in others.
+    /// Draws a sigma. Cells of the last tenth of the table are rare in some runs and frequent in
+    /// others.
     double drawn_sigma_m() {
         double from_top = rng_.uniform() / tail_factor_;
         if (from_top > 1.0 - kBulk) from_top = rng_.uniform(1.0 - kBulk, 1.0);

@@ -9,18 +9,18 @@
 #include "surefoot/grid/grid_geometry.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 
-/// Maps of a scene without images: true heights plus errors that are drawn from the distribution
-/// measured on maps of whole runs.
+/// Draws maps of a scene without rendering images: true heights plus random errors. The
+/// distribution of the errors was measured on maps of whole runs.
 namespace surefoot::experiments {
 
-/// Distribution of map errors. Source: `map_noise_fit` on maps at the end of whole runs, with the
-/// fitted ZED profile on a trolley that goes 1.3-2 m towards the hazard, seeds 21-28. Sample: 72
-/// runs, 192 348 cells of level ground. Both cameras see these cells from at least three poses,
-/// within 0.9 m of the machine and 0.15 m from the hazard. Where runs differ, the constants take
-/// the value that is harder for the gate. docs/lab/gate_scenes.md lists the figures.
+/// Distribution of map errors. Source: `map_noise_fit` on maps at the end of whole runs, seeds
+/// 21-28. A trolley with the fitted ZED profile goes 1.3-2 m towards the hazard. Sample: 72 runs,
+/// 192 348 cells of level ground. Both cameras see these cells from at least three poses, within
+/// 0.9 m of the machine and 0.15 m from the hazard. Where runs differ, the constants take the value
+/// that is harder for the gate. docs/lab/gate_scenes.md lists the figures.
 struct MapNoise {
-    /// `share` of the cells state a sigma of at most `sigma_m`. Most cells are near the map's
-    /// minimum of 3 mm. Cells beyond 6 mm have just rejected a measurement, which doubles sigma.
+    /// `share` of the cells state a sigma of at most `sigma_m`. Most are near 3 mm, the minimum of
+    /// the map. A cell above 6 mm has just rejected a measurement, which doubles sigma.
     struct Quantile {
         double share;
         double sigma_m;
@@ -41,55 +41,55 @@ struct MapNoise {
                                                {0.9995, 9.96e-3},
                                                {0.9999, 11.90e-3},
                                                {1.0, 17.00e-3}}};
-    double error_share = 0.77;  ///< sd of (error / stated sigma); normal tails
+    double error_share = 0.77;  ///< standard deviation of error / stated sigma; normal distribution
     double smooth_share =
         0.66;  ///< share of the error variance in the spatially correlated part (smooth_field)
-    double tilt = 1.5e-3;                   ///< sd of a run's slope error [m/m], each axis
-    double outlier_share = 9.4e-5;          ///< outlier cells: 18 of 192 348 measured
-    double outlier_least_m = 0.020;         ///< smallest error of an outlier, either sign
-    double outlier_most_m = 0.042;          ///< largest; small errors are more frequent
-    double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier
+    double tilt = 1.5e-3;                   ///< sd of the slope error of a run [m/m], per axis
+    double outlier_share = 9.4e-5;          ///< share of outlier cells: 18 of 192 348 measured
+    double outlier_least_m = 0.020;         ///< smallest |error| of an outlier
+    double outlier_most_m = 0.042;          ///< largest |error|; small errors are more frequent
+    double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier [m]
     double outlier_most_sigma_m = 17e-3;    ///< largest
-    double drift_m = 2.2e-3;                ///< 90th percentile of the stated horizontal drift
-    /// Factor on stated sigma if the machine did not walk: cells seen from one pose, compared with
-    /// cells seen from six.
+    double drift_m = 2.2e-3;                ///< 90th percentile of the stated drift [m]
+    /// Factor on the stated sigma if the machine did not walk: sigma of cells seen from one pose,
+    /// divided by the sigma of cells seen from six poses.
     double once_factor = 1.25;
 
-    /// true: the map states the smallest sigma everywhere although its errors are at least as
-    /// large, so that the gate never refuses because of noise. Harder than every measured map.
+    /// true: the map states the smallest sigma everywhere, so that the gate never refuses because
+    /// of noise. The errors keep their drawn size. This is harder than every measured map.
     bool overconfident = false;
 
-    /// A copy with errors and stated sigma multiplied by `factor`.
+    /// Returns a copy with errors and stated sigma multiplied by `factor`.
     [[nodiscard]] MapNoise times(double factor) const;
 };
 
 /// Distribution for doubled image noise; sample: 17 runs, seeds 31 and 32. The stated sigma is 2.4
-/// times as large, and too small in half of the runs (sd of the errors 0.8-1.4 sigma). One run with
-/// the odom frame 0.94 m too low is excluded.
+/// times as large. It is too small in half of the runs: the errors have an sd of 0.8-1.4 sigma. One
+/// run whose odom frame is 0.94 m too low is excluded.
 [[nodiscard]] MapNoise doubled_image_noise();
 
-/// True heights and visibility of the map cells within 1.1 m of the machine: the part of a map that
-/// noise does not change. Computed once a scene.
+/// True heights and visibility of the map cells within 1.1 m of the machine. Noise does not change
+/// them, so they are computed once per scene.
 class SceneCells {
   public:
     SceneCells(const HazardScene& scene, const Sight& sight);
 
-    /// A map cell, described by 4 x 4 samples half a cell apart, over twice the cell's width.
+    /// A map cell, described by 4 x 4 samples half a cell apart, over twice the width of the cell.
     struct Cell {
-        float low_m = 0.0F;       ///< lowest sample, without voids
-        float high_m = 0.0F;      ///< highest sample, without hanging things
-        float highest_m = 0.0F;   ///< highest sample inside the cell
-        float under_m = 0.0F;     ///< underside of the thing that hangs over the middle; NaN = none
-        float top_m = 0.0F;       ///< top of that thing
-        float share_high = 0.0F;  ///< samples nearer to high_m than to low_m
-        bool ground = false;      ///< at least one sample is not a void
-        bool seen = false;        ///< both cameras see the middle of the cell
-        bool beside_seen = false;    ///< at least one of its 8 neighbours is seen
-        float beside_high_m = 0.0F;  ///< highest of these neighbours
+        float low_m = 0.0F;          ///< lowest sample [m]; voids do not count
+        float high_m = 0.0F;         ///< highest sample [m]; overhangs do not count
+        float highest_m = 0.0F;      ///< highest sample inside the cell [m]
+        float under_m = 0.0F;        ///< underside of an overhang above the middle; NaN = none
+        float top_m = 0.0F;          ///< top of this overhang [m]
+        float share_high = 0.0F;     ///< share of samples nearer to high_m than to low_m
+        bool ground = false;         ///< true: at least one sample is not a void
+        bool seen = false;           ///< true: both cameras see the middle of the cell
+        bool beside_seen = false;    ///< true: at least one of its 8 neighbours is seen
+        float beside_high_m = 0.0F;  ///< highest sample of these neighbours [m]
     };
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
     [[nodiscard]] const Image<Cell>& cells() const noexcept { return cells_; }
-    /// The hazard goes down: its relief is negative.
+    /// Whether the hazard goes down, which means a negative relief.
     [[nodiscard]] bool falling() const noexcept { return falling_; }
 
   private:
@@ -107,16 +107,16 @@ struct MadeMap {
     Image<float> clearance_m;
 };
 
-/// A map without errors: the highest point of each seen cell, with sigma 1 mm.
+/// Returns a map without errors: the highest point of each seen cell, with sigma 1 mm.
 [[nodiscard]] MadeMap clean_map(const SceneCells& scene);
-/// Draws a map with errors. `once`: the machine did not walk, all observations come from one pose.
+/// Draws a map with errors. `once`: the machine did not walk, so all observations have one pose.
 [[nodiscard]] MadeMap noisy_map(const SceneCells& scene,
                                 const MapNoise& noise,
                                 bool once,
                                 Rng& rng);
 
-/// Fills `out` with the map as a healthy, fresh snapshot of the pipeline. The layer of free space
-/// over unknown cells stays empty; in a real snapshot it only adds evidence of drops.
+/// Fills `out` with the map as a healthy, fresh snapshot of the pipeline. The layer with free space
+/// over unknown cells stays empty. In a real snapshot this layer only adds evidence of drops.
 [[nodiscard]] Status snapshot_of(const MadeMap& map,
                                  const Pose& T_odom_body,
                                  grid::MapSnapshot& out);

@@ -13,9 +13,9 @@
 #include "surefoot/sim/scene_source.hpp"
 
 /// Shared arguments of the experiments on simulated scenes: SCENES [FIRST_SEED [SEEDS [PROFILES]]].
-/// SCENES and PROFILES are lists with commas. FIRST_SEED and SEEDS default to 1, PROFILES to
-/// ideal,zed. A profile is a camera profile of the simulator, or zed_calibrated: the zed without
-/// its calibration error.
+/// SCENES and PROFILES are comma-separated lists. FIRST_SEED and SEEDS default to 1, PROFILES to
+/// ideal,zed. A profile is a camera profile of the simulator, or zed_calibrated, which is zed
+/// without its calibration error.
 namespace surefoot::experiments {
 
 /// One scene, seed and camera profile.
@@ -61,16 +61,16 @@ struct SceneCase {
     return cases;
 }
 
-/// The rig that renders the images: the nominal rig with the calibration errors of the profile and
-/// of the settings.
+/// Returns the rig that renders the images: the nominal rig with the calibration errors of the
+/// profile and of the settings.
 [[nodiscard]] inline camera::StereoRig true_rig(const camera::StereoRig& nominal,
                                                 const sim::SceneOptions& sim) {
     return sim::with_error(sim::with_error(nominal, sim::figures_of(sim.profile).calibration),
                            sim.calibration_error);
 }
 
-/// True pose of base_link at a frame's time: the first pose of `trajectory` that is not earlier, or
-/// the last pose. `trajectory`: sorted by time, not empty.
+/// Returns the true pose of base_link at a frame's time: the first pose of `trajectory` that is not
+/// earlier, or the last pose. `trajectory` must be sorted by time and not empty.
 [[nodiscard]] inline Pose true_pose(const std::vector<StampedPose>& trajectory,
                                     std::int64_t time_ns) {
     const auto found = std::lower_bound(

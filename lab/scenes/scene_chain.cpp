@@ -16,7 +16,7 @@ namespace surefoot::experiments {
 namespace {
 
 /// Runs the pipeline to the end. Returns the time of the last frame; nullopt without a frame.
-/// `app::RunSession` would also compare depth and map with the truth, which took a third of the
+/// `app::RunSession` would also compare depth and map with the truth, which takes a third of its
 /// time.
 Result<std::optional<std::int64_t>> process_all(sim::SceneSource& source,
                                                 pipeline::Pipeline& pipeline) {

@@ -14,8 +14,8 @@ namespace surefoot::experiments {
 
 /// Input of the pipeline in a simulated run.
 enum class Look : std::uint8_t {
-    analytic,  ///< true disparities with a matcher's errors, true motion
-    images,    ///< rendered images of the fitted ZED profile; matcher and odometry run
+    analytic,  ///< true disparities with the errors of a matcher, and true motion
+    images,    ///< rendered images of the fitted ZED profile; matcher and odometry use them
 };
 
 /// State after the last frame of a run.

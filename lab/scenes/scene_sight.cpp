@@ -19,8 +19,8 @@ Heights heights_at(const HazardScene& scene, const Vector2d& p_m) {
             highest = &solid;
     }
     if (highest == nullptr) return {kNan, kNan, std::numeric_limits<double>::infinity()};
-    const Solid* below = nullptr;  // the highest solid that ends below it
-    bool joined = false;           // or on which it stands
+    const Solid* below = nullptr;  // the highest other solid at this point
+    bool joined = false;           // true: another solid reaches up to the highest solid
     for (const Solid& solid : scene.solids) {
         if (&solid == highest || !solid.covers(p_m)) continue;
         if (solid.top_m >= highest->bottom_m) joined = true;

@@ -11,8 +11,8 @@ namespace surefoot::experiments {
 
 /// Surfaces of a scene on one vertical line, as heights in the world frame.
 struct Heights {
-    double top_m = 0.0;    ///< highest surface; NaN = void
-    double floor_m = 0.0;  ///< surface below a hanging solid, otherwise `top_m`
+    double top_m = 0.0;    ///< highest surface [m]; NaN = void
+    double floor_m = 0.0;  ///< surface below a hanging solid; otherwise equals `top_m`
     double under_m = 0.0;  ///< underside of a hanging solid; infinity = none
 };
 [[nodiscard]] Heights heights_at(const HazardScene& scene, const Eigen::Vector2d& p_m);
@@ -27,11 +27,11 @@ class Sight {
 
     struct Look {
         int looks = 0;           ///< number of poses that see the point
-        double nearest_m = 0.0;  ///< smallest distance from their left cameras
+        double nearest_m = 0.0;  ///< smallest distance from the left cameras of these poses [m]
     };
     /// Counts the poses that see a point of the world, from the last pose backwards, up to `most`.
     [[nodiscard]] Look look(const Eigen::Vector3d& p_m, int most) const;
-    /// Left camera at each pose, last pose first.
+    /// Pose of the left camera at each pose of the machine, last pose first.
     [[nodiscard]] const std::vector<Pose>& T_world_camera() const noexcept {
         return T_world_camera_;
     }

@@ -28,20 +28,20 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Neighbouring pixels have correlated errors: only every n-th match is used.
+/// Uses only every n-th match, because neighbouring pixels have correlated errors.
 constexpr int kTakenEvery = 13;
-/// Weight of a real pair in simulated images: both real pairs together weigh half as much as all 32
-/// images.
+/// Weight of a real pair; a simulated image weighs 1. Both real pairs together weigh half as much
+/// as all 32 images.
 constexpr double kWeightOfRealPair = 8.0;
 /// Degrees of freedom of Student's t. Its likelihood tolerates the few large outliers.
 constexpr double kFreedom = 8.0;
-/// Wanted shares within 1 and 2 sigma of every image [%], and the deviations that cost the same
-/// loss.
+/// Wanted shares within 1 and 2 sigma of every image [%]. Deviations of kMiss [%] from the two
+/// shares cost the same loss.
 constexpr double kWanted[] = {68.3, 95.0};
 constexpr double kMiss[] = {5.0, 3.0};
 constexpr double kMissWeight = 0.03;
 
-/// Coefficients of match_sigma_px: floor, gain, share of the shift, jump, hole.
+/// Coefficients of match_sigma_px, in this order: floor, gain, share of the shift, jump, hole.
 using Coefficients = std::array<double, 5>;
 constexpr Coefficients kNow = {static_cast<double>(stereo::kSigmaFloor_px),
                                static_cast<double>(stereo::kSigmaGain),
@@ -49,13 +49,13 @@ constexpr Coefficients kNow = {static_cast<double>(stereo::kSigmaFloor_px),
                                static_cast<double>(stereo::kSigmaJump_px),
                                static_cast<double>(stereo::kSigmaHole_px)};
 
-/// Coefficient that is held: the share of the shift. The loss hardly depends on it. But the order
-/// of the uncertainties under an ideal camera does (sparsification, matcher_sigma from seed 21 on):
-/// it is worse with the share of smallest loss, 0.8, than with this value.
+/// The coefficient that is not fitted: the share of the shift. The loss hardly depends on it. But
+/// the value of smallest loss, 0.8, gives a worse order of the uncertainties under an ideal camera
+/// than this value (sparsification, matcher_sigma from seed 21 on).
 constexpr std::size_t kHeld = 2;
 constexpr double kHeldShare = 0.45;
 
-/// Squared factors of the coefficients, and the real error of the match.
+/// Factors of the squared coefficients, and the real error of the match.
 struct Sample {
     std::array<double, 5> terms{};
     double error_px = 0.0;
@@ -68,7 +68,7 @@ struct Seen {
     std::vector<Sample> samples;
 };
 
-/// The formula of match_sigma_px with any coefficients.
+/// Computes the formula of match_sigma_px with any coefficients.
 double variance_px2(const Sample& sample, const Coefficients& c) {
     constexpr auto kMost_px = static_cast<double>(stereo::kMaxSigma_px);
     double sum = 0.0;
@@ -92,7 +92,7 @@ std::array<double, 5> terms_of(const stereo::MatchEvidence& evidence) {
             square(static_cast<double>(evidence.unknown_share))};
 }
 
-/// Data of the refinement and its neighbourhood for every match, as Finisher collects it.
+/// Data of the refinement and of its neighbourhood for every match, collected as in Finisher.
 struct Evidence {
     explicit Evidence(const TruePair& pair);
     [[nodiscard]] stereo::MatchEvidence at(int u, int v) const;
@@ -162,7 +162,7 @@ Result<Seen> see(const TruePair& pair) {
     return seen;
 }
 
-/// Shares of the matches within one, two and three sigma [%].
+/// Returns the shares of the matches within one, two and three sigma [%].
 std::array<double, 3> cover(const Seen& seen, const Coefficients& c) {
     std::array<double, 3> within{};
     for (const Sample& sample : seen.samples) {
@@ -177,7 +177,7 @@ std::array<double, 3> cover(const Seen& seen, const Coefficients& c) {
     return within;
 }
 
-/// Mean negative log-likelihood of a match, up to a constant.
+/// Returns the mean negative log-likelihood of a match, up to a constant.
 double surprise(const Seen& seen, const Coefficients& c) {
     double sum = 0.0;
     for (const Sample& sample : seen.samples) {
@@ -188,8 +188,8 @@ double surprise(const Seen& seen, const Coefficients& c) {
     return sum / static_cast<double>(seen.samples.size());
 }
 
-/// Sum of two terms. The likelihood orders the matches of an image; the deviations from kWanted
-/// prevent that one kind of image gains at the expense of another.
+/// Returns the sum of two terms. The likelihood orders the matches of an image. The deviations from
+/// kWanted prevent a gain for one kind of image at the expense of another.
 double loss(const std::vector<Seen>& all, const Coefficients& c) {
     double sum = 0.0;
     double weights = 0.0;
@@ -204,8 +204,8 @@ double loss(const std::vector<Seen>& all, const Coefficients& c) {
     return sum / weights;
 }
 
-/// Coordinate descent: changes one coefficient after the other, then all together, with decreasing
-/// steps.
+/// Fits by coordinate descent: changes one coefficient after the other, then all together, with
+/// decreasing steps.
 Coefficients fitted(const std::vector<Seen>& all) {
     Coefficients best = kNow;
     best[kHeld] = kHeldShare;
@@ -309,7 +309,7 @@ Status run(const std::string& data,
 }  // namespace
 }  // namespace surefoot::experiments
 
-// An exception ends an experiment with its message, as it should.
+// An uncaught exception ends the experiment and prints its message. This is intended.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 3) {

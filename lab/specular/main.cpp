@@ -10,12 +10,12 @@
 // Writes OUT.csv, one line per case: scene, seed; then for the last pose (here_) and the positions
 // around it (around_):
 //   unsafe                          clearly dangerous movements
-//   missed_before, missed_after     of these allowed without and with the search
+//   missed_before, missed_after     unsafe movements allowed without and with the search
 //   safe                            clearly safe movements
-//   allowed_before, allowed_after   of these allowed without and with the search
+//   allowed_before, allowed_after   safe movements allowed without and with the search
 // and for the case:
 //   panes                           number of suspected panes
-//   score, correlation, ahead_m     of the nearest pane; 0 = none
+//   score, correlation, ahead_m     values of the nearest pane; 0 = no pane
 //   search_ms                       mean additional time per frame with the search
 #include <fmt/format.h>
 #include <fmt/os.h>
@@ -41,10 +41,10 @@ namespace {
 
 constexpr double kAround_m = 0.6;
 
-/// Pipeline of a case, with its map and its time.
+/// The pipeline of a case and its time.
 struct Chain {
     std::optional<pipeline::Pipeline> pipeline;
-    double ground_ms = 0.0;  ///< time of the ground plane and of the search for mirrors
+    double ground_ms = 0.0;  ///< sum of the times of ground plane and search for mirrors
 
     void process(const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::full);
@@ -55,14 +55,14 @@ struct Chain {
                                          const Pose& T_world_body,
                                          double reach_m) const {
         const auto map = std::make_unique<grid::MapSnapshot>();
-        // A failed snapshot is not intact, and the gate refuses it.
+        // If the snapshot fails, it is not intact and the gate refuses it.
         [[maybe_unused]] const Status taken = pipeline->snapshot(0, *map);
         return app::compare_verdicts(source.truth(), T_world_body, machine, *map, reach_m).counts;
     }
 };
 
 struct CaseResult {
-    app::VerdictCounts before[2];  ///< at the last pose, and around it
+    app::VerdictCounts before[2];  ///< counts at the last pose, and around it
     app::VerdictCounts after[2];
     std::vector<specular::SuspectedPane> panes;
     Eigen::Vector2d body_m = Eigen::Vector2d::Zero();
@@ -99,7 +99,7 @@ Result<CaseResult> run_case(const std::string& scene,
     if (!with) return with.error();
 
     std::optional<Error> failed;
-    std::vector<StereoFrame> first;  // the second chain starts with the same frames
+    std::vector<StereoFrame> first;  // The second chain starts with the same frames.
     const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         auto frame = (*source)->next();
         if (!frame) failed = frame.error();

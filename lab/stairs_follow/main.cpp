@@ -15,14 +15,15 @@
 //   new_ids                features whose id changed at the same place; followed only
 //   drops_lost             drops that a frame detected, but that are missing in the result, or
 //                          farther away in it by more than their sigma
-//   found_observations     frames that found the true flight
-//   steps_changes          changes of its number of steps between consecutive frames of these
-//   steps_exact            frames of these with the true number of steps
-//   riser_mean, _sd, _step, _last   error: mean and sd over the frames, rms change between frames,
-//                          and value at the last frame; the same for going_ and width_, and for
-//                          across_: position of the first edge of the flight, or of the drop
-//   riser_sure, across_sure   frames with an error within 2 stated sigmas
-//   call_us, most_us       time of a call: median, longest
+//   found_observations     number of frames that found the true flight
+//   steps_changes          changes of its number of steps between consecutive such frames
+//   steps_exact            number of such frames with the true number of steps
+//   riser_mean, _sd, _step, _last   error of the riser: mean and sd over the frames, rms change
+//                          between frames, and value at the last frame
+//   going_..., width_...   the same four errors of going and width
+//   across_...             the same four errors of the position of the first edge (flight or drop)
+//   riser_sure, across_sure   number of frames with an error within 2 stated sigmas
+//   call_us, most_us       median and longest time of a call
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -53,7 +54,7 @@ using experiments::TrueKind;
 using stairs::FeaturePose;
 using stairs::TerrainFeatures;
 
-constexpr std::int64_t kFrame_ns = 100'000'000;  ///< trolleys are simulated at 10 Hz
+constexpr std::int64_t kFrame_ns = 100'000'000;  ///< period of the simulated trolley, 10 Hz
 constexpr double kSameTurn_rad = 20.0 / 180.0 * std::numbers::pi;
 
 FeaturePose pose_of(const stairs::Edge& edge) {
@@ -71,9 +72,9 @@ bool is_same_place(const FeaturePose& a, const FeaturePose& b) {
            std::abs(experiments::turned_rad(a, at)) < kSameTurn_rad;
 }
 
-/// Whether a machine that knows the tracked drop `told` stops in time before the detected drop
-/// `found`. The tracked one must not begin farther away by more than a sigma, not be much nearer,
-/// and be as wide.
+/// Returns true if a machine that knows the tracked drop `told` stops in time before the detected
+/// drop `found`. The tracked drop must be as wide. Its edge may be at most a sigma farther away
+/// than the detected edge, and at most 0.25 m nearer.
 bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found) {
     constexpr double kRounding_m = 1e-6;
     constexpr double kNearer_m = 0.25;
@@ -95,7 +96,7 @@ bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found)
     return way.dot(found_way) > 0.0;
 }
 
-/// Features that appeared, disappeared, or changed their class between two frames.
+/// Counts features that appeared, disappeared, or changed their class between two frames.
 struct Changes {
     int came_or_went = 0;
     int new_ids = 0;
@@ -274,7 +275,7 @@ Result<std::string> judge_run(const std::vector<std::string>& folders, const Set
            fmt::format(",{:.1f},{:.1f}\n", call_us[call_us.size() / 2], call_us.back());
 }
 
-/// Folders of each run, in the order of the frames.
+/// Folders of each run, in the order of its frames.
 std::map<std::string, std::vector<std::string>> runs_in(const std::string& maps) {
     std::map<std::string, std::vector<std::string>> runs;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(maps)) {

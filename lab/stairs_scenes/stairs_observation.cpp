@@ -21,7 +21,7 @@
 namespace surefoot::experiments {
 namespace {
 
-/// Range of the columns and rows with content, with a margin.
+/// Range of the columns and rows with known cells, plus a margin.
 struct Box {
     int min_x = std::numeric_limits<int>::max();
     int min_y = std::numeric_limits<int>::max();
@@ -55,7 +55,8 @@ grid::Layer cut(const Image<From>& layer, const Box& box) {
     return part;
 }
 
-/// Puts `part` into an otherwise unknown layer of the map's size, with its first cell at `begin`.
+/// Returns a layer of the size of the map that is unknown except for `part`. The first cell of
+/// `part` is at `begin`.
 grid::Layer whole(const grid::Layer& part, const grid::GridGeometry& map, const grid::Cell& begin) {
     grid::Layer layer(map.nx, map.ny, std::numeric_limits<float>::quiet_NaN());
     for (int iy = 0; iy < part.height(); ++iy)
@@ -64,7 +65,7 @@ grid::Layer whole(const grid::Layer& part, const grid::GridGeometry& map, const 
     return layer;
 }
 
-/// All numbers of truth.txt.
+/// Returns all numbers of truth.txt.
 std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(
     Observation& observation) {
     TrueFeature& truth = observation.truth;

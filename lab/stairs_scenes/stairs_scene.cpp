@@ -25,11 +25,11 @@ namespace {
 
 constexpr std::uint64_t kRigStream = 101;
 constexpr std::uint64_t kOdomStream = 102;
-/// Distance from base_link to a door in the path at the judged frame.
+/// Distance from base_link to a door in the path at the judged frame [m].
 constexpr double kBeforeDoor_m = 0.9;
 
-/// Factors on the noise of the `zed` profile that give our matcher errors of so many pixels on
-/// level floor.
+/// Noise modes, and the factors on the noise of the `zed` profile. With the factor, our matcher has
+/// an error of 0.25 or 0.5 px on level floor.
 constexpr std::pair<std::string_view, double> kImageNoise[] = {{"images_0.25", 0.9},
                                                                {"images_0.5", 2.1}};
 
@@ -58,8 +58,8 @@ TrueKind kind_of(const sim::ScriptedScene& script) {
     return TrueKind::none;
 }
 
-/// True feature in the world frame. Scenes of lab/scenes turn about (pivot_x_m, pivot_y_m), those
-/// of the simulator about (distance_m, 0).
+/// Returns the true feature in the world frame. Scenes of lab/scenes turn about (pivot_x_m,
+/// pivot_y_m); scenes of the simulator turn about (distance_m, 0).
 TrueFeature truth_in_world(const sim::ScriptedScene& script) {
     TrueFeature truth;
     truth.kind = kind_of(script);
@@ -111,7 +111,7 @@ Pose drawn_odom(std::uint64_t seed) {
     return T_odom_world;
 }
 
-/// 1 = the pixel shows floor at world height 0, within the map's range.
+/// Returns 1 for pixels that show floor at world height 0, within the range of the map.
 Image<std::uint8_t> floor_pixels(const Image<float>& disparity_px,
                                  const camera::RectifiedRig& rig,
                                  const Pose& T_world_body,
@@ -179,7 +179,7 @@ void measure_noise(const sim::Scene& scene,
     observation.noise_px = 1.4826 * median(std::move(errors_px));
 }
 
-/// Runs one scene.
+/// Runs the pipeline on one scene.
 class Run {
   public:
     Run(const StairsCase& now, const sim::ScriptedScene& script, Executor& executor)

@@ -16,12 +16,12 @@ namespace surefoot::experiments {
 struct StairsCase {
     std::string scene;
     std::uint64_t seed = 1;
-    /// analytic_N: true disparities with a matcher's errors of sigma N px. images_0.25, images_0.5:
-    /// rendered images of the `zed` profile with the noise at which our matcher's errors on level
-    /// floor are about 0.25 or 0.5 px. images_xF: its image noise times F.
+    /// analytic_N: true disparities with matcher errors of sigma N px. images_0.25, images_0.5:
+    /// rendered images of the `zed` profile. Their noise gives our matcher an error of about 0.25
+    /// or 0.5 px on level floor. images_xF: image noise of `zed` times F.
     std::string mode;
-    /// Keeps every n-th frame. 0: keeps every frame, but only the last one is judged and has its
-    /// disparity noise measured.
+    /// Keeps every n-th frame. 0: keeps every frame, but judges only the last frame and measures
+    /// the disparity noise only there.
     int every = 0;
 
     /// Sets scene, seed, sensor and noise. A usage error names an unknown mode.
@@ -29,9 +29,9 @@ struct StairsCase {
 };
 
 /// Runs the whole pipeline on a scene and returns the kept frames. Poses are the true ones unless
-/// `settings` has sim.known_motion = false. Beside the scene, the seed draws the camera's height
-/// (0.95-1.05 m) and pitch (28-36 deg), and the yaw and position of odom, so that the map's cells
-/// lie at random to the scene.
+/// `settings` has sim.known_motion = false. The seed draws the scene, the height (0.95-1.05 m) and
+/// pitch (28-36 deg) of the camera, and yaw and position of odom. The map cells therefore have a
+/// random position in the scene.
 ///
 /// With `every` = 0 the run ends at the end of the path, or 0.9 m before a door in it.
 /// `Observation::noise_px` is 1.4826 times the median absolute deviation of the disparity errors.

@@ -19,9 +19,11 @@
 //   found              flight whose first edge lies within 0.1 m and 10 deg of the true one
 //   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut   its parameters
 //   across, turn       error of its first edge at the true middle, + = farther; error of its yaw
-//   flights, of_2      other flights; those of them with two steps or more
-//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same for drops; height downward
-//   drops              other drops
+//   flights, of_2      number of other flights; number of these with two steps or more
+//   drop               drop whose edge lies within 0.1 m and 10 deg of the true edge
+//   drop_across, drop_height, drop_sigma, bottom_seen   error of its edge at the true middle, its
+//                      height downward, sigma of this height, and whether its bottom was seen
+//   drops              number of other drops
 //   door, door_width, door_width_sigma, door_sill   the opening within 0.3 m and 15 deg of the true
 //                                                   one
 //   sill_height        height of the sill within 0.3 m
@@ -113,7 +115,7 @@ std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const Tr
                        others);
 }
 
-/// A door may be detected from either side.
+/// A door may be detected from both sides.
 bool is_opening_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
     const double turn_rad = std::abs(turned_rad(found, truth));
     return truth.kind == TrueKind::door &&
@@ -150,11 +152,11 @@ class Judge {
 
     void observation(const Observation& observation) { (void)observe_once(observation); }
 
-    /// The two CSV lines of a frame.
+    /// Returns the two CSV lines of a frame.
     std::string rows(const Observation& observation) {
         const std::int64_t first_ns = observe_once(observation);
         std::int64_t took_ns = first_ns;
-        for (int call = 1; call < kCalls; ++call) {  // the first call with a new size allocates
+        for (int call = 1; call < kCalls; ++call) {  // the first call also allocates
             const std::int64_t start_ns = steady_now_ns();
             finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);
@@ -213,7 +215,7 @@ struct Done {
     std::optional<Error> error;
 };
 
-/// Folder with saved frames. A list file names one of them per line and is written last.
+/// Folder with saved frames. Its list file names one frame per line and is written last.
 class Keep {
   public:
     Keep(std::string maps, const StairsCase& now)

@@ -14,9 +14,9 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr int kLeftRight_px = 1;  ///< limit of OpenCV's left-right check, as in our matcher
+constexpr int kLeftRight_px = 1;  ///< limit of OpenCV's left-right check, equal to our limit [px]
 
-/// Adds borders: OpenCV leaves the pixels there without a match.
+/// Adds borders to an image, because OpenCV finds no match for pixels near the border.
 cv::Mat padded(const GreyImage& image, int left_px, int margin_px) {
     const cv::Mat in(
         image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()));
@@ -43,7 +43,7 @@ Image<float> opencv_disparities(cv::StereoMatcher& matcher, const TruePair& pair
 }
 
 // The ranges of our matcher and of SGBM were shifted once, because the best setting on the tuning
-// images was at the border of the range. Our jump penalty cannot exceed 54.
+// images was at the border of the range. The jump penalty of our matcher cannot exceed 54.
 std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
     std::vector<Setting> all;
     for (const int slope : {8, 11, 15})
@@ -183,7 +183,8 @@ Match opencv_bm(const BmSettings& settings) {
         matcher->setDisp12MaxDiff(kLeftRight_px);
         matcher->setSpeckleWindowSize(stereo::kSpeckleSize_px);
         matcher->setSpeckleRange(stereo::kSpeckleRange_px);
-        // Half a window on every side plus one pixel: OpenCV needs images larger than its window.
+        // The border is half a window plus one pixel on every side, because OpenCV needs images
+        // larger than its window.
         return opencv_disparities(*matcher, pair, settings.block / 2 + 1);
     };
 }

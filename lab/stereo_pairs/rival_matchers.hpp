@@ -16,13 +16,13 @@ namespace surefoot::experiments {
 /// A matcher with fixed settings. Returns disparities of the left image [px]; NaN = unknown.
 using Match = std::function<Image<float>(const TruePair&)>;
 
-/// The matcher of the pipeline with its default settings.
+/// Returns the matcher of the pipeline with its default settings.
 [[nodiscard]] Match chain();
-/// The same matcher; drops disparities of an outlier probability above kTrusted.
+/// Returns this matcher without the disparities whose outlier probability is above kTrusted.
 [[nodiscard]] Match trusted_chain();
 /// Largest outlier probability of a trusted match.
 inline constexpr float kTrusted = 0.5F;
-/// Output of the pipeline's matcher: disparities with sigma and outlier probability.
+/// Runs the matcher of the pipeline: disparities with sigma and outlier probability.
 [[nodiscard]] DepthImage chain_depth(const TruePair& pair);
 
 /// Settings of our matcher.
@@ -30,21 +30,21 @@ struct OurSettings {
     stereo::SemiGlobalConfig search;
     stereo::SelectionConfig selection;
 };
-/// Disparities of our search after stereo::settle and the speckle filter: the input of the
-/// pipeline's refinement.
+/// Returns the disparities of our search after stereo::select_disparities and the speckle filter.
+/// They are the input of the refinement in the pipeline.
 [[nodiscard]] Image<float> selected_px(const OurSettings& settings, const TruePair& pair);
-/// `selected_px` and a 3 x 3 median, without the pipeline's refinement.
+/// Returns `selected_px` after a 3 x 3 median, without the refinement of the pipeline.
 [[nodiscard]] Match our_search(const OurSettings& settings);
-/// `selected_px` and the pipeline's refinement. With the default settings the disparities equal
-/// those of `chain`.
+/// Returns `selected_px` after the refinement of the pipeline. With the default settings the
+/// disparities equal those of `chain`.
 [[nodiscard]] Match our_whole(const OurSettings& settings);
 
 /// OpenCV's semi-global matcher. The images are padded on the left so that no column is lost.
 struct SgbmSettings {
-    int mode = 0;  ///< cv::StereoSGBM::MODE_...
+    int mode = 0;  ///< one of cv::StereoSGBM::MODE_...
     int block = 3;
-    double slope = 8.0;  ///< P1 / number of pixels of a block
-    double jump = 32.0;  ///< P2 / number of pixels of a block
+    double slope = 8.0;  ///< P1 of OpenCV divided by the pixels of a block
+    double jump = 32.0;  ///< P2 of OpenCV divided by the pixels of a block
     int prefilter_cap = 63;
     int uniqueness_percent = 10;
 };
@@ -70,7 +70,7 @@ struct Candidate {
     Match as_it_comes;
     std::vector<Setting> settings;
 };
-/// Our whole matcher, our search alone, then OpenCV's modes.
+/// Returns our whole matcher, our search alone, and then the modes of OpenCV.
 [[nodiscard]] std::vector<Candidate> candidates();
 
 }  // namespace surefoot::experiments

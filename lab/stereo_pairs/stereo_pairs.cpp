@@ -21,7 +21,7 @@ struct PairFiles {
     const char* folder = nullptr;
     const char* right = nullptr;
     const char* truth = nullptr;
-    const char* right_truth = nullptr;  ///< nullptr: use `mask`
+    const char* right_truth = nullptr;  ///< nullptr = use `mask` instead
     const char* mask = nullptr;
     double scale = 1.0;
     int disparities = 64;
@@ -43,7 +43,7 @@ constexpr PairFiles kPairs[] = {
      0.5},
 };
 
-/// Returns an empty image if the file is not an image.
+/// Reads a grey image. Returns an empty image if the file is not an image.
 GreyImage load(const std::string& path) {
     const cv::Mat read = cv::imread(path, cv::IMREAD_GRAYSCALE);
     GreyImage image(read.cols, read.rows);

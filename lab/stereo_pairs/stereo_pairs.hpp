@@ -18,10 +18,10 @@ struct TruePair {
     GreyImage left;
     GreyImage right;
     Image<float> truth_px;  ///< disparity as published; NaN = unknown or excluded from scores
-    int disparities = 64;   ///< search range: 0 to disparities - 1
-    double step_px = 0.0;   ///< quantization of the stored truth; 0 = exact
+    int disparities = 64;   ///< search range [px]: 0 to disparities - 1
+    double step_px = 0.0;   ///< quantization of the stored truth [px]; 0 = exact
     double truth_offset_px =
-        0.0;  ///< added by Truth::centred; adirondack's truth is truncated to whole px
+        0.0;  ///< Truth::centred adds it [px]; the truth of adirondack is truncated to whole px
 };
 
 /// Reads the Middlebury pairs cones, teddy, cloth3, adirondack, and adirondack with a different
@@ -29,23 +29,23 @@ struct TruePair {
 /// An error names the pair whose images are missing in `folder`.
 [[nodiscard]] Result<std::vector<TruePair>> middlebury_pairs(const std::string& folder);
 
-/// Renders the first frame of a scene. It contains the calibration error of the profile. Every
-/// pixel on a surface has a truth; for glass and mirrors it is the disparity of the pane itself.
+/// Renders the first frame of a scene. The images contain the calibration error of the profile.
+/// Every pixel on a surface has a truth. For glass and mirrors it is the disparity of the pane.
 [[nodiscard]] Result<TruePair> simulated_pair(const sim::SceneOptions& options);
 
-/// Sets the truth of pixels that the right camera does not see to NaN: pixels outside the right
-/// image, and pixels occluded by a surface farther right.
+/// Sets the truth of pixels that the right camera does not see to NaN. These pixels are outside the
+/// right image, or a surface farther right occludes them.
 void forget_hidden(TruePair& pair);
 
-/// Fills each unknown pixel with the smaller of its nearest known neighbours in the row.
+/// Fills each unknown pixel with the smaller of the nearest known values on its left and right.
 [[nodiscard]] Image<float> filled(const Image<float>& disparity_px);
 
-/// Shares of the pixels with a truth [%].
+/// Shares in percent of the pixels that have a truth.
 struct Score {
-    double bad_1 = 0.0;          ///< error above 1 px, after `filled`
-    double bad_2 = 0.0;          ///< error above 2 px, after `filled`
-    double matched_bad_1 = 0.0;  ///< error above 1 px, share of the matched pixels
-    double matched_bad_2 = 0.0;  ///< error above 2 px, share of the matched pixels
+    double bad_1 = 0.0;          ///< error above 1 px, after filled()
+    double bad_2 = 0.0;          ///< error above 2 px, after filled()
+    double matched_bad_1 = 0.0;  ///< error above 1 px, in percent of the matched pixels
+    double matched_bad_2 = 0.0;  ///< error above 2 px, in percent of the matched pixels
     double density = 0.0;        ///< matched pixels
 };
 
@@ -53,8 +53,8 @@ struct Score {
 enum class Truth : std::uint8_t { as_published, centred };
 inline constexpr const char* kTruthNames[] = {"as published", "centred"};
 
-/// Scores disparities against a truth. The disparities are first rounded to OpenCV's steps of
-/// 1/16 px, because with a truth in whole pixels half a step changes the score.
+/// Scores disparities against a truth. First rounds the disparities to OpenCV's steps of 1/16 px,
+/// because half a step changes the score if the truth is in whole pixels.
 [[nodiscard]] Score score(const TruePair& pair, const Image<float>& disparity_px, Truth truth);
 
 }  // namespace surefoot::experiments

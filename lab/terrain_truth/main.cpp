@@ -12,16 +12,20 @@
 // it rejects one of them. The machine is the REX; reachability starts at the first base_link.
 //
 // Writes OUT.csv, one line per scene, seed and profile:
-//   median_mm, p90_mm, coverage        of all heights
+//   median_mm, p90_mm, coverage        median and 90th percentile of |height error|, known share
 //   sigma_1, sigma_2, sigma_3          share of the errors within 1, 2 and 3 sigma, in cells more
 //                                      than 2 cells from any surface edge, in view at any range
-//   truly_unsafe, called_safe, cluster   cells; those of them that the map rates safe; the largest
-//                                      connected group of these
-//   hazards, hazards_called_safe, hazard_cluster   the same for cells on which the foot itself
-//                                      clearly cannot stand (the distance to drops is not
-//                                      considered)
-//   truly_safe, called_unsafe, unsure, unknown   cells; the last three are subsets of truly_safe
-//   near_...                           the same within 0.7 m of the body, in view or not
+//   truly_unsafe                       number of truly unsafe cells
+//   called_safe, cluster               truly unsafe cells that the map rates safe, and the largest
+//                                      connected group of these cells
+//   hazards, hazards_called_safe, hazard_cluster   the same three numbers for cells on which the
+//                                      foot itself clearly cannot stand. The distance to drops is
+//                                      not considered.
+//   truly_safe                         number of truly safe cells
+//   called_unsafe, unsure, unknown     truly safe cells that the map rates as unsafe, unsure or
+//                                      unknown
+//   near_...                           all counts above for cells within 0.7 m of the body, in view
+//                                      or not
 // OUT.csv.wrong.csv contains each wrongly rated cell, one per line, in odom: truly unsafe cells
 // rated safe and truly safe cells rated unsafe, with the true and the given rating.
 #include <fmt/format.h>
@@ -57,8 +61,8 @@ constexpr double kNear_m = 0.7;
 
 using experiments::SceneCase;
 
-/// Number of truly unsafe cells, how many of them the map rates safe, and the largest connected
-/// group of these.
+/// Number of truly unsafe cells, number of these cells that the map rates safe, and the largest
+/// connected group of the latter.
 struct Missed {
     int truly_unsafe = 0;
     int called_safe = 0;
@@ -67,15 +71,16 @@ struct Missed {
 
 struct FootholdCounts {
     Missed all;
-    Missed hazards;  ///< cells where clearly the foot itself cannot stand
+    Missed hazards;  ///< cells where the foot itself clearly cannot stand
     int truly_safe = 0;
     int called_unsafe = 0;
     int unsure = 0;
     int unknown = 0;
 };
 
-/// Whether a surface of one cell, highest or not, has no counterpart within `step_m` in the other
-/// cell. So floor under a table and the legs of a table have edges too.
+/// Returns true if a surface of one cell has no counterpart within `step_m` in the other cell. All
+/// surfaces count, not only the highest. So floor under a table and the legs of a table also have
+/// edges.
 bool has_edge_towards(const std::vector<sim::SurfaceHeight>& here,
                       const std::vector<sim::SurfaceHeight>& there,
                       double step_m) {
@@ -86,8 +91,8 @@ bool has_edge_towards(const std::vector<sim::SurfaceHeight>& here,
     });
 }
 
-/// 1 = all surfaces continue beyond the margin in all directions. Distances are those of
-/// eval::away_from_edges, which considers only the highest surfaces.
+/// Returns 1 for cells whose surfaces all continue beyond the margin in all directions. Distances
+/// are those of eval::away_from_edges, which considers only the highest surfaces.
 eval::CellMask away_from_all_edges(const sim::Scene& scene,
                                    const sim::Lattice& lattice,
                                    const grid::Layer& dem_m,
@@ -122,8 +127,8 @@ eval::CellMask away_from_all_edges(const sim::Scene& scene,
     return away;
 }
 
-/// Whether the errors agree with the stated sigma. Only cells whose highest surface both cameras
-/// had in view, near or far: the top of a wall is never in view.
+/// Returns whether the errors agree with the stated sigma. Uses only cells whose highest surface
+/// both cameras had in view, near or far. The top of a wall is never in view.
 eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
                                      const sim::Lattice& lattice,
                                      const elevation::ElevationLayers& layers,
@@ -148,14 +153,14 @@ eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
     return eval::sigma_coverage(error_m, sigma_m);
 }
 
-/// 1 = a foot is safe at every yaw.
+/// Returns 1 for cells where a foot is safe at every yaw.
 eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
                                 const Machine& machine,
                                 const sim::Lattice& lattice,
                                 Executor& executor) {
     eval::CellMask safe(lattice.nx, lattice.ny, 1);
     sim::CellQuestion question;
-    // Every scene begins on ground at world height 0; the machine ends on ground that it reached.
+    // Every scene begins on ground at world height 0. The machine ends on ground that it reached.
     const Pose& T_world_first = truth.trajectory.front().T_world_body;
     question.start_m = truth.trajectory.back().T_world_body.translation_m;
     question.start_m.z() -= T_world_first.translation_m.z();
@@ -168,9 +173,9 @@ eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
     return safe;
 }
 
-/// Machine for the rules under the foot itself, without the drop band around it. Applies the
-/// oracle's safety margin: every limit looser by its share, and the foot smaller by its length on
-/// all sides.
+/// Returns a machine whose rules cover only the ground under the foot, without the drop band around
+/// it. Applies the safety margin of the oracle: looser limits, by the limit share of the margin,
+/// and a smaller foot, by the position margin on all sides.
 Machine foot_alone(Machine machine) {
     const sim::SafetyMargin margin;
     const auto looser = [&](std::int32_t& limit) {
@@ -189,7 +194,7 @@ Machine foot_alone(Machine machine) {
     return machine;
 }
 
-/// Size of the largest 4-connected group of cells in the mask.
+/// Returns the size of the largest 4-connected group of cells in the mask.
 int largest_cluster(eval::CellMask mask) {
     int largest = 0;
     std::vector<std::pair<int, int>> open;
@@ -212,13 +217,13 @@ int largest_cluster(eval::CellMask mask) {
     return largest;
 }
 
-/// Cells of a map where a foot may truly stand.
+/// Cells of a map on which a foot may truly stand.
 struct TrulySafe {
-    eval::CellMask all;    ///< by all rules
-    eval::CellMask alone;  ///< by the rules for the ground under the foot; see `foot_alone`
+    eval::CellMask all;    ///< by all rules for a foothold
+    eval::CellMask alone;  ///< only by the rules for the ground under the foot; see `foot_alone`
 };
 
-/// Truly unsafe cells in view that the map rates safe.
+/// Returns the truly unsafe cells in view that the map rates safe.
 eval::CellMask missed_cells(const Image<traversability::Foothold>& found,
                             const eval::CellMask& truly_safe,
                             const eval::CellMask& visible) {

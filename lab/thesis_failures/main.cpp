@@ -6,20 +6,23 @@
 //   fixed: constant delays, on the floor and on the stairs. drawn: occasional delays, compared with
 //   none, only on the floor.
 //
-// Settings of the thesis: the ZED's images at 15 Hz, one cloud a second into the map, points
-// reduced to 1 cm cubes, the simplified stereo error model, the fusion of the reference
-// implementation with a minimum variance of (45 mm)^2, the ground plane taken once at the start
-// (RANSAC, 75 mm). Faults of the thesis: a cloud is placed at the true pose of `late` images ago (a
-// correct but delayed tracker), either always, or for a drawn share of the clouds with a drawn
-// delay of 50-500 ms; and all disparities have a constant offset, because the camera was never
-// recalibrated. Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same
-// delays.
+// Settings of the thesis:
+// * The ZED has 15 images per second. One cloud per second goes into the map.
+// * Points are reduced to cubes of 1 cm. The error model is simplified stereo.
+// * The fusion is that of the reference implementation, with a minimum variance of (45 mm)^2.
+// * The ground plane is taken once at the start (RANSAC, 75 mm).
+// Faults of the thesis:
+// * A cloud is placed at the true pose of `late` images ago, as with a correct but delayed tracker.
+//   Either all clouds are late, or a drawn share of the clouds has a drawn delay of 50-500 ms.
+// * All disparities have a constant offset, because the camera was never recalibrated.
+// Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same delays.
 //
 // Writes into OUT_DIR:
-//   runs.csv     one line per map: spread of the level floor; jumps between its neighbouring cells
-//                (all; seen in the middle of the image; at its sides); median height of the floor
-//                before the demonstration stairs and of their treads. Spread and jumps also for
-//                medians of 4 x 4 cells (coarse), which removes the pixel noise.
+//   runs.csv     one line per map: spread of the level floor; height steps between neighbouring
+//                floor cells (all cells; cells seen in the middle of the image; cells seen at its
+//                sides); median height of the floor before the demonstration stairs and of the
+//                treads. The columns "coarse" give spread and steps for medians of 4 x 4 cells,
+//                which have less pixel noise.
 //   heights.csv  one line per cell of level floor (floor) or of a tread; tread0 is the floor before
 //                it
 //   map_*.csv    heights of the maps of the first seed, row by row along x
@@ -64,12 +67,12 @@ constexpr int kCoarse_cells = 4;
 struct Fault {
     int late_images = 0;
     double disparity_offset_px = 0.0;
-    double drawn_share = 0.0;  ///< share of the clouds that are late by kDrawnLate_s instead
+    double drawn_share = 0.0;  ///< share of the clouds that are late by kDrawnLate_s
 };
 constexpr double kDrawnLate_s[] = {0.05, 0.5};
 constexpr std::uint64_t kDelayStream = 0x1a7e;
 /// The thesis observed poses that were 50-500 ms late. Its ZED measured 18 mm too much or too
-/// little at 1 m, which is 0.7 px.
+/// little at 1 m; this is 0.7 px.
 constexpr Fault kFaults[] = {{0, 0.0},
                              {1, 0.0},
                              {2, 0.0},
@@ -97,8 +100,8 @@ elevation::ElevationConfig thesis_points() {
     config.sensor.model = elevation::SensorModel::simplified_stereo;
     config.pixels.surface_check = false;
     config.prefilter.min_range_m = 0.7;     // smallest range of the ZED
-    config.prefilter.min_height_m = -1.95;  // 1 m under the floor ...
-    config.prefilter.max_height_m = 1.05;   // ... to 2 m over it
+    config.prefilter.min_height_m = -1.95;  // lower limit: 1 m under the floor
+    config.prefilter.max_height_m = 1.05;   // upper limit: 2 m over the floor
     return config;
 }
 
@@ -114,8 +117,8 @@ elevation::ReferenceConfig thesis_map() {
     return config;
 }
 
-/// Error of the body pose after the alignment of the thesis. It takes the largest plane of the
-/// first depth image within the tolerance as level ground at the feet.
+/// Returns the error of the body pose after the alignment of the thesis. This alignment takes the
+/// largest plane of the first depth image, within the tolerance, as level ground at the feet.
 Pose ground_error(const camera::RectifiedRig& rig,
                   const DepthImage& depth,
                   const Pose& T_world_body) {
@@ -136,7 +139,7 @@ Pose ground_error(const camera::RectifiedRig& rig,
     return T_believed_world;
 }
 
-/// The thesis' processing after the matcher, with one of its faults.
+/// Processes depth after the matcher as the thesis did, with one of its faults.
 class Mapper {
   public:
     /// `seed` draws the delays.
@@ -201,7 +204,8 @@ double median_of(std::vector<float> values) {
     return static_cast<double>(values[values.size() / 2]);
 }
 
-/// Medians of square blocks. A block with less than half of its cells known is unknown.
+/// Returns the medians of square blocks. A block is unknown if less than half of its cells are
+/// known.
 HeightMap coarse(const HeightMap& fine) {
     HeightMap result{fine.geometry, {}};
     result.geometry.resolution_m *= kCoarse_cells;
@@ -223,7 +227,7 @@ HeightMap coarse(const HeightMap& fine) {
     return result;
 }
 
-/// Known heights in a rectangle.
+/// Returns the known heights in a rectangle.
 std::vector<float> heights_in(const HeightMap& map, const Eigen::AlignedBox2d& area_m) {
     std::vector<float> heights_m;
     const grid::GridGeometry& geometry = map.geometry;
@@ -238,8 +242,8 @@ std::vector<float> heights_in(const HeightMap& map, const Eigen::AlignedBox2d& a
     return heights_m;
 }
 
-/// Floor before the demonstration stairs, its two treads and the platform. The thesis selected them
-/// by hand; here they are whole treads from the known geometry.
+/// The floor before the demonstration stairs, the two treads of the stairs, and the platform. The
+/// thesis selected them by hand; here they are whole treads from the known geometry.
 std::vector<Eigen::AlignedBox2d> treads(double first_riser_x_m) {
     using sim::demo_stairs::kGoing_m;
     constexpr double kHalf_m = 0.4;
@@ -274,8 +278,8 @@ eval::MapComparison compare(const sim::Scene& scene,
     return eval::compare_maps(maps, {});
 }
 
-/// The larger 99 % error of the two bins that are `from_outside` bins from the left and right image
-/// border.
+/// Returns the larger 99th percentile of the errors in two bins. The bins are `from_outside` bins
+/// from the left and from the right image border.
 double worse_p99(const std::vector<eval::ErrorBin>& columns, std::size_t from_outside) {
     const double left = columns[from_outside].errors.p99_abs;
     const double right = columns[columns.size() - 1 - from_outside].errors.p99_abs;

@@ -87,7 +87,7 @@ struct Pairs {
     std::vector<BoardView> right;
 };
 
-/// Whether a camera sees all inner corners of the board and half a square around them.
+/// Returns true if a camera sees all inner corners of the board and half a square around them.
 bool is_whole(const camera::Camera& camera, const Pose& T_camera_board) {
     constexpr double kBorder_px = 0.5 * kLeastStep_px;
     const auto corners =
@@ -124,7 +124,7 @@ Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
     return pairs;
 }
 
-/// Error of the depth of a point straight ahead: the true cameras take the pictures, and the
+/// Returns the depth error of a point straight ahead. The true cameras take the pictures; the
 /// estimated rig rectifies and measures them.
 double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& found) {
     const camera::Rectification plan = camera::plan_rectification(
@@ -219,7 +219,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         fmt::print(stderr, "usage: wide_rigs OUT_FOLDER FIRST_SEED SEEDS\n");
         return 2;
     }
-    cv::setNumThreads(1);  // same setting as in the surefoot program
+    cv::setNumThreads(1);  // The surefoot program uses the same setting.
     return surefoot::measure(
         argv[1], std::strtoull(argv[2], nullptr, 10), std::strtoull(argv[3], nullptr, 10));
 }

@@ -22,9 +22,9 @@ using Points = std::vector<Eigen::Vector3f>;
 constexpr std::size_t kPoints = 1'000'000;
 constexpr int kRepeats = 3;
 
-/// Synthetic scan of stairs, the scene on which other tools were measured. It has a floor of 3 m by
-/// 3 m, 20 steps (riser 0.17 m, going 0.285 m, width 1.25 m), a landing and a wall beside. The
-/// points are spread evenly over the area, in random order, with 2 mm noise.
+/// Synthetic scan of stairs, the same scene on which other tools were measured: a floor of 3 m by 3
+/// m, 20 steps (riser 0.17 m, going 0.285 m, width 1.25 m), a landing and a wall beside the steps.
+/// The points are spread evenly over the area, in random order, with 2 mm noise.
 Points scanned_stairs(std::size_t count, std::uint64_t seed) {
     constexpr double kRiser_m = 0.17;
     constexpr double kGoing_m = 0.285;
@@ -71,7 +71,7 @@ Result<std::vector<BenchResult>> bench_clouds(const CommonOptions& common, Execu
     const auto time = [&](const std::string& name, const std::function<void()>& work) {
         results.push_back({"clouds/" + name, timed(kRepeats, work)});
     };
-    std::size_t kept = 0;  // uses the results, so that the compiler keeps the work
+    std::size_t kept = 0;  // uses the results, so that the compiler does not remove the work
     for (const int size_mm : {5, 10, 25}) {
         time(fmt::format("voxel_{}mm", size_mm),
              [&] { kept += eval::voxel_means_m(reference_m, 1e-3 * size_mm, executor).size(); });

@@ -28,12 +28,14 @@ class NoDisk final : public gate_process::AuditDisk {
     Status remove(const std::string&) override { return {}; }
 };
 
-/// Times the push of one verdict into the audit log, as the deciding thread sees it.
+/// Times the push of one verdict into the audit log. The time is that of the thread that makes the
+/// verdicts.
 Result<BenchResult> bench_audit_push(const Machine& machine,
                                      const gate_process::AuditedVerdict& audited) {
     constexpr int kRepeats = 2000;
     gate_process::AuditConfig config;
-    config.memory_bytes = 128U << 20U;  // room for all: a push into a full ring copies nothing
+    config.memory_bytes =
+        128U << 20U;  // room for all entries: a push into a full ring copies nothing
     gate_process::AuditLog log(machine, std::make_unique<NoDisk>(), config);
     if (auto status = log.start(); !status) return status.error();
     const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
@@ -43,7 +45,7 @@ Result<BenchResult> bench_audit_push(const Machine& machine,
     return result;
 }
 
-/// Level ground of 6x6 m; all cells are known with a standard deviation of 3 mm.
+/// Returns level ground of 6 x 6 m. All cells are known with a standard deviation of 3 mm.
 Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
     constexpr int kSide = 240;
     const grid::Layer height_m(kSide, kSide, 0.0F);
@@ -64,8 +66,8 @@ Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
     return snapshot;
 }
 
-/// Queries all movements in turn, repeatedly. All verdicts must be OK, because only then has the
-/// gate checked all the ground that the movement needs.
+/// Queries all movements in turn, repeatedly. All verdicts must be OK, because only an OK shows
+/// that the gate has checked all the ground that the movement needs.
 class Asking {
   public:
     Asking(const Machine& machine, const grid::MapSnapshot& map) : machine_(machine), map_(map) {
@@ -118,7 +120,7 @@ class OtherMemory {
 }  // namespace
 
 Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
-    constexpr int kQuestions = 5200;  // 200 of each movement of the REX
+    constexpr int kQuestions = 5200;  // 200 queries of each movement of the REX
     constexpr int kOfOne = 500;
     constexpr int kCold = 260;
     const auto loaded = load_machine("rex");

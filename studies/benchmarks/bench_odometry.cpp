@@ -15,9 +15,9 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kFrames = 70;
-constexpr int kSkipped = 15;  ///< frames at the start: IMU initialisation, trolley at rest
+constexpr int kSkipped = 15;  ///< first frames, not timed: IMU initialisation, trolley at rest
 
-/// The simulator's ZED rig with the wider lenses of the EuRoC data set.
+/// Returns the ZED rig of the simulator with the wider lenses of the EuRoC data set.
 Result<camera::StereoRig> wide_rig() {
     auto rig = sim::rig_preset("zed_vga");
     if (!rig) return rig.error();

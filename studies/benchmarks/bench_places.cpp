@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kCorridors = 50;
 constexpr int kKeyframes = 10;    ///< keyframes per corridor; together they fill the database
-constexpr int kQueries = 5;       ///< queries per queried corridor
-constexpr int kGoneThrough = 12;  ///< corridors that are queried, of either kind
+constexpr int kQueries = 5;       ///< queries per corridor that is queried
+constexpr int kGoneThrough = 12;  ///< corridors that are queried, of each kind
 constexpr double kApart_m = 100.0;
 static_assert(kCorridors * kKeyframes == place_recognition::kMostKeyframes);
 
@@ -35,8 +35,8 @@ struct Look {
     }
 };
 
-/// Simulated corridors, seen by a camera with the noise profile of the ZED. They differ in their
-/// textures and by centimetres in their dimensions.
+/// Simulated corridors, seen by a camera with the noise profile of the ZED. The corridors differ in
+/// their textures, and by centimetres in their dimensions.
 class Corridors {
   public:
     Corridors(const Settings& settings, Executor& executor)
@@ -44,8 +44,8 @@ class Corridors {
           executor_(executor),
           matcher_(stereo::make_matcher(settings.pipeline.stereo)) {}
 
-    /// `count` observations along the path through one corridor. The first frame, at rest, is left
-    /// out.
+    /// Returns `count` observations along the path through one corridor. The first frame is at rest
+    /// and is left out.
     [[nodiscard]] Result<std::vector<Look>> look(std::uint64_t seed, double rate_hz, int count) {
         sim::SceneOptions scene = settings_.sim;
         scene.scene = "corridor";
@@ -73,7 +73,7 @@ class Corridors {
         }
         return looks;
     }
-    /// The rig of the last call of `look`.
+    /// Returns the rig of the last call of `look`.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
 
   private:
@@ -87,7 +87,7 @@ place_recognition::View view_of(const Look& look, const camera::RectifiedRig& ri
     return {0, rig, place_recognition::describe({}, look.images.left.view(), look.depth)};
 }
 
-/// Fills the place database to its limit; the corridors lie far from each other.
+/// Fills the place database to its limit. The corridors are kApart_m apart.
 Result<place_recognition::PlaceMemory> remember(Corridors& corridors, std::uint64_t first_seed) {
     constexpr double kRate_hz = 1.0;
     place_recognition::PlaceMemory memory;
@@ -110,7 +110,7 @@ struct Queries {
     int recognised = 0;
 };
 
-/// Times one query, including the description of its image.
+/// Times one query. The time includes the description of the image.
 void ask(const place_recognition::PlaceMemory& memory,
          const Look& look,
          const camera::RectifiedRig& rig,
@@ -127,7 +127,7 @@ void ask(const place_recognition::PlaceMemory& memory,
 }  // namespace
 
 Result<std::vector<BenchResult>> bench_places(const CommonOptions& common, Executor& executor) {
-    constexpr double kRate_hz = 0.7;  // queries lie between keyframes and have other noise
+    constexpr double kRate_hz = 0.7;  // Queries lie between keyframes and have different noise.
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
     Corridors corridors(*settings, executor);

@@ -13,14 +13,14 @@
 
 namespace surefoot::app {
 
-/// Durations of repeated calls of the same work.
+/// Durations of repeated calls that do the same work.
 struct Timing {
     double median_ms = 0.0;  ///< wall clock
     double p99_ms = 0.0;     ///< wall clock
-    /// Least processor time that the process used in one call. Other load on the machine changes
-    /// this figure least, so compare runs by it.
+    /// Smallest processor time that the process used in one call. Other load on the machine changes
+    /// this figure less than the others, so compare runs by it.
     std::optional<double> least_cpu_ms = {};
-    /// Median processor time. Use it where calls do different work, as with frames.
+    /// Median processor time. Use this figure if the calls do different work, as with frames.
     std::optional<double> median_cpu_ms = {};
 };
 
@@ -28,11 +28,11 @@ struct Timing {
 struct BenchResult {
     std::string name;
     Timing ours;
-    /// The same work in the same run, done by OpenCV or (terrain) by a plain implementation.
+    /// The same work by OpenCV, or for terrain by a plain implementation, in the same run.
     std::optional<Timing> peer = {};
 };
 
-/// Processor time that all threads of this process have used [ns].
+/// Returns the processor time that all threads of this process have used [ns].
 [[nodiscard]] std::int64_t cpu_now_ns();
 
 /// Calls `work` once to warm up, then times `repeats` calls. `before` runs before each timed call
@@ -53,19 +53,19 @@ struct BenchResult {
 [[nodiscard]] Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common,
                                                               Executor& executor);
 
-/// Times the recognition of one view, description included, in a place database that holds the
+/// Times the recognition of one view, which includes its description. The place database holds the
 /// largest allowed number of keyframes. The views come from corridors in the database and from
 /// similar corridors that are not in it.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_places(const CommonOptions& common,
                                                             Executor& executor);
 
-/// Times stereo matching beside OpenCV's. With more than one thread it also times two matchers at
-/// once: this is the upper bound of the gain from two threads.
+/// Times stereo matching by our matcher and by OpenCV. With more than one thread it also times two
+/// matchers at once: this is the upper bound of the gain from two threads.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
                                                             Executor& executor);
 
-/// Times the workloads of the terrain engine (terrain_workloads.hpp), some of them beside a plain
-/// implementation.
+/// Times the workloads of the terrain engine (terrain_workloads.hpp), and some of them also by a
+/// plain implementation.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
                                                              Executor& executor);
 
@@ -74,8 +74,8 @@ struct BenchResult {
                                                             Executor& executor);
 
 /// Times how long the simulator needs for one frame of two scenes: sharp, blurred, and without
-/// images (sim.sensor = analytic). Only frames during which the camera moves count. For comparison
-/// it times rectification, odometry and stereo matching on images of the same scenes.
+/// images (sim.sensor = analytic). Only frames during which the camera moves count. For comparison,
+/// also times rectification, odometry and stereo matching on images of the same scenes.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common,
                                                          Executor& executor);
 

@@ -15,11 +15,11 @@
 namespace surefoot::app {
 namespace {
 
-/// A camera slower than both limits counts as at rest. The simulator renders its frames once for
-/// the whole exposure, so they would not show the cost of blur.
+/// A camera below both limits counts as at rest. The simulator renders its frames once for the
+/// whole exposure, so they do not show the cost of blur.
 constexpr double kMoving_m_s = 0.02;
 constexpr double kTurning_rad_s = 0.02;
-/// Low, so that few frames cover the whole path, with its driving, turning and standing.
+/// Frame rate, so low that few frames cover the whole path with driving, turning and standing.
 constexpr double kRate_hz = 2.0;
 
 using Choose = std::function<void(sim::SceneOptions&)>;
@@ -44,7 +44,7 @@ Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
         const auto frame = (*source)->next();
         if (!frame) return frame.error();
         if (!*frame) break;
-        // The first frame is the warm-up.
+        // The first frame is a warm-up and is not timed.
         if (i == 0 || !moves(*script->motion, i / kRate_hz)) continue;
         cpu_ms.push_back(1e-6 * static_cast<double>(cpu_now_ns() - cpu_ns));
         wall_ms.push_back(1e-6 * static_cast<double>(steady_now_ns() - wall_ns));
@@ -56,7 +56,7 @@ Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
 }
 
 /// Times rectification, odometry and stereo matching. A source that delivers depth and motion
-/// (sim.sensor = analytic) does not need them. All figures are processor time.
+/// (sim.sensor = analytic) does not need these stages. All figures are processor time.
 Result<Timing> time_front_end(const SourceRequest& request,
                               const Settings& settings,
                               Executor& executor) {
@@ -113,7 +113,8 @@ Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common, Executor
             if (!timing) return timing.error();
             results.push_back({fmt::format("sim/{}/{}", scene, name), *timing});
         }
-        // Odometry needs consecutive frames, so use the scene's own rate, from the first frame on.
+        // Uses the frame rate of the scene from the first frame on, because odometry needs
+        // consecutive frames.
         constexpr int kChainFrames = 40;
         const auto timing = time_front_end(
             {scene, "", 0.0, kChainFrames, common.seed, settings->sim}, *settings, executor);

@@ -95,8 +95,9 @@ Timing opencv(const Work& work, const Settings& settings) {
     });
 }
 
-/// Times two matchers that run on two threads without shared data. Half of that time is the lower
-/// bound for one pair on two threads: only memory bandwidth and clock frequency are shared.
+/// Times two matchers that run on two threads without shared data. Half of this time is the lower
+/// bound for one pair on two threads. The two matchers share only memory bandwidth and clock
+/// frequency.
 BenchResult time_two_copies(const Work& work, const Settings& settings) {
     const auto first = stereo::make_census_matcher(config_of(work, settings));
     const auto second = stereo::make_census_matcher(config_of(work, settings));

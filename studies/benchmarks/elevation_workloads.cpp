@@ -23,16 +23,16 @@ using elevation::ElevationMap;
 constexpr int kRepeats = 60;
 constexpr int kViews = 8;
 constexpr int kSide = 240;
-constexpr int kSides[] = {120, 480, 960, 1920};  ///< cells per side, in addition to kSide
+constexpr int kSides[] = {120, 480, 960, 1920};  ///< cells per side of the additional map sizes
 constexpr double kResolution_m = 0.025;
 constexpr std::int64_t kFrame_ns = 66'666'667;
 
-/// Fewer repeats for large maps, so that a workload takes a second or two.
+/// Uses fewer repeats for large maps, so that a workload takes at most about two seconds.
 int repeats_for(int side) {
     return std::clamp(kRepeats * kSide / side, 5, kRepeats);
 }
 
-/// The rectified VGA rig of a ZED, pitched 32 deg down.
+/// Returns the rectified VGA rig of a ZED, pitched 32 deg down.
 camera::RectifiedRig zed() {
     camera::RectifiedRig rig;
     rig.width = 672;
@@ -116,7 +116,7 @@ Workload fusing(std::string name, const ElevationConfig& config, int repeats, Ex
     return {std::move(name), repeats, prepare};
 }
 
-/// Moves the map with a body that advances by `step_m` each time.
+/// Moves the map with a body that advances by `step_m` in each call.
 Workload moving(std::string name, double step_m, const Matrix6& covariance, int repeats) {
     struct State {
         ElevationMap map{window_of(kSide)};
@@ -158,8 +158,8 @@ Workload seeing_through(std::string name, int side) {
     return {std::move(name), repeats_for(side), prepare};
 }
 
-/// Visibility clean-up of a remembered map by a frame that sees the floor in every cell. The map
-/// holds the floor and, in the middle, a table top above the rays, whose cells support each other.
+/// Cleans a remembered map by a frame that sees the floor in every cell. The map holds the floor.
+/// In its middle it holds a table top above the rays, whose cells support each other.
 Workload checking_sight(std::string name, int side, Executor& executor) {
     struct State {
         ElevationConfig config;

@@ -34,8 +34,8 @@ constexpr double kResolution_m = 0.025;
 constexpr int kSide = 240;
 constexpr int kRepeats = 41;
 
-/// Floor with four stairs, a ramp and a box, 2 mm of noise and 3 % of holes: the map on which the
-/// reference implementations were timed (repeated every 6 m on larger maps).
+/// Returns a floor with four stairs, a ramp and a box, with 2 mm of noise and 3 % of holes. The
+/// reference implementations were timed on this map. Larger maps repeat it every 6 m.
 grid::Layer measured_ground(int side, double resolution_m) {
     constexpr std::uint64_t kSeed = 11;
     constexpr double kPeriod_m = 6.0;
@@ -84,7 +84,7 @@ Workload rating_of(const std::string& settings,
                    const TraversabilityConfig& config,
                    int side,
                    Executor& executor) {
-    // Fewer repetitions for large maps, to stay within a second or two.
+    // Uses fewer repetitions for large maps, so that a workload takes at most about two seconds.
     return {fmt::format("terrain/rate_{0}_{1}x{1}", settings, side),
             std::clamp(kRepeats * kSide / side, 5, kRepeats),
             rating(config, side, kResolution_m, executor)};
@@ -107,7 +107,7 @@ Workload rating_on_avx2(const TraversabilityConfig& config, Executor& executor) 
     return {fmt::format("terrain/rate_rex_zed_avx2_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Rates the cells that a change of 60 x 60 cells can affect, in the middle of a rated map.
+/// Rates again the cells that a change of 60 x 60 cells in the middle of a rated map can affect.
 Workload rating_a_change(const TraversabilityConfig& config, Executor& executor) {
     const auto prepare = [config, &executor]() -> Result<Workload::Job> {
         const auto map = std::make_shared<Rated>(
@@ -121,7 +121,7 @@ Workload rating_a_change(const TraversabilityConfig& config, Executor& executor)
     return {"terrain/rate_rex_zed_changed_60x60", kRepeats, prepare};
 }
 
-/// Reachability from the floor beside the stairs, the box and the ramp, across the holes.
+/// Computes reachability from the floor beside the stairs, the box and the ramp, across the holes.
 Workload reaching(const TraversabilityConfig& config) {
     struct State {
         grid::Layer height_m = measured_ground(kSide, kResolution_m);
@@ -140,7 +140,7 @@ Workload reaching(const TraversabilityConfig& config) {
     return {fmt::format("terrain/reach_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Confidence of the ratings, without the time of the rating.
+/// Times the confidence of the ratings, without the rating itself.
 Workload telling_confidence(const TraversabilityConfig& config, Executor& executor) {
     struct State {
         Rated map;
@@ -191,7 +191,7 @@ Workload finding_footholds(Executor& executor) {
     return {fmt::format("terrain/footholds_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Flat floor without unknown cells.
+/// Returns a flat floor without unknown cells.
 struct Floor {
     grid::Layer height_m{kSide, kSide, 0.0F};
     grid::Layer rating{kSide, kSide, 0.95F};
@@ -232,7 +232,7 @@ Workload asking(std::string name,
     return {std::move(name), kRepeats, prepare, {}, kQueries};
 }
 
-/// Queries of standing footprints and of a path of 1 m.
+/// Times queries of standing footprints and of a path of 1 m.
 std::vector<Workload> footprints() {
     using namespace traversability;
     const auto stand = [](const Footprint& footprint, int i, const FootprintLayers& layers) {

@@ -18,13 +18,13 @@
 namespace surefoot::app {
 namespace {
 
-/// Share of the board's half side that is evaluated. The border is left out, because stereo
-/// matchers smear foreground and background there.
+/// Half side of the evaluated part, as a share of the half side of the board. The border is left
+/// out, because stereo matchers smear foreground and background there.
 constexpr double kInnerShare = 0.8;
 constexpr double kMinDistance_m = 0.1;
 constexpr double kMaxDistance_m = 20.0;
 constexpr std::array kUsualDistances_m = {0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0};
-/// Tolerance for equal distances; the reference thesis (Lange 2016) uses round numbers.
+/// Largest difference of equal distances [m]. The reference thesis (Lange 2016) uses round numbers.
 constexpr double kSameDistance_m = 1e-6;
 
 /// Errors of one image pair of a board.
@@ -34,8 +34,8 @@ struct BoardObservation {
     double density_percent;
 };
 
-/// Widens the configured disparity range, if a board at this distance needs more, to that need plus
-/// a tenth.
+/// Widens the configured disparity range if a board at this distance needs more. The new range is
+/// the need plus a tenth.
 pipeline::PipelineConfig with_range_for(double distance_m,
                                         const camera::RectifiedRig& rig,
                                         pipeline::PipelineConfig config) {
@@ -47,15 +47,15 @@ pipeline::PipelineConfig with_range_for(double distance_m,
     return config;
 }
 
-/// Points of the trusted pixels that show the inner part of the board. `pixels` counts all pixels
-/// that show it.
+/// Returns the points of the trusted pixels that show the inner part of the board. `pixels` counts
+/// all pixels that show this part.
 std::vector<Eigen::Vector3d> board_points(const camera::RectifiedRig& rig,
                                           const DepthImage& depth,
                                           double distance_m,
                                           double side_m,
                                           std::int64_t& pixels) {
-    const double limit = 0.5 * kInnerShare * side_m / distance_m;  // on the plane z = 1
-    // Farther left the matching point lies outside the right image.
+    const double limit = 0.5 * kInnerShare * side_m / distance_m;  // position on the plane z = 1
+    // Farther left, the matching point lies outside the right image.
     const double first_u = rig.depth_to_disparity_px_m() / distance_m;
     std::vector<Eigen::Vector3d> points_m;
     for (int v = 0; v < rig.height; ++v) {
@@ -86,8 +86,9 @@ BoardObservation look_at(const MeasuredPair& measured,
     return {nominal_m, eval::board_errors(points_m, true_m), 100.0 * share};
 }
 
-/// True distance of the board along the optical axis of the rectified camera. That axis differs
-/// from the raw camera's if the cameras of the rig are rotated against each other.
+/// Returns the true distance of the board along the optical axis of the rectified camera. This axis
+/// differs from the axis of the raw camera if the cameras of the rig are rotated against each
+/// other.
 double true_distance_m(const camera::RectifiedRig& rig,
                        const Image<float>& disparity_px,
                        double nominal_m,

@@ -15,20 +15,20 @@ namespace surefoot::app {
 /// Options of `surefoot depth-accuracy`.
 struct DepthAccuracyOptions {
     CommonOptions common;
-    std::string rig = "zed_vga";      ///< file or built-in name
-    std::vector<double> distances_m;  ///< empty = the default distances
-    int repeats = 3;  ///< rendered images per distance, each with its own texture and noise
-    /// Real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M".
+    std::string rig = "zed_vga";      ///< rig file or name of a built-in rig
+    std::vector<double> distances_m;  ///< distances of the board [m]; empty = defaults
+    int repeats = 3;  ///< number of rendered images per distance; texture and noise differ
+    /// File with real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M".
     std::string pairs_file;
-    double board_m = 0.6;  ///< side of the square textured board
+    double board_m = 0.6;  ///< side of the square textured board [m]
     std::string out_dir;
-    bool design = false;      ///< compute the smallest resolvable height from the fields below
-    double baseline_m = 0.0;  ///< --design: 0 = as the rig
-    double focal_px = 0.0;    ///< --design: 0 = as the rig
-    std::string size;         ///< --design: WIDTHxHEIGHT, empty = as the rig
-    double sigma_px = 0.0;    ///< --design: of the disparity; 0 = lower limit of our matcher
-    double height_m = 1.0;    ///< --design: height of the camera above the floor
-    double pitch_deg = 32.0;  ///< --design: angle of the camera below the horizon
+    bool design = false;      ///< true: compute the smallest resolvable height as a design
+    double baseline_m = 0.0;  ///< --design: baseline [m]; 0 = baseline of the rig
+    double focal_px = 0.0;    ///< --design: focal length [px]; 0 = that of the rig
+    std::string size;         ///< --design: image size WIDTHxHEIGHT; empty = size of the rig
+    double sigma_px = 0.0;    ///< --design: sigma of the disparity [px]; 0 = limit of our matcher
+    double height_m = 1.0;    ///< --design: height of the camera above the floor [m]
+    double pitch_deg = 32.0;  ///< --design: angle of the camera below the horizon [deg]
 };
 
 /// Depth accuracy that the reference thesis (Lange 2016, Table 4.1) measured with a commercial
@@ -36,20 +36,20 @@ struct DepthAccuracyOptions {
 struct ThesisAccuracy {
     const char* camera;
     double distance_m;
-    double axial_m;  ///< absolute error along the optical axis
+    double axial_m;  ///< absolute error along the optical axis [m]
     double std_m;
 };
 [[nodiscard]] const std::vector<ThesisAccuracy>& thesis_accuracy();
-/// "ZED" or "DUO"; nullopt if the reference thesis did not measure the camera of this rig.
+/// Returns "ZED" or "DUO"; nullopt if the reference thesis did not measure this camera.
 [[nodiscard]] std::optional<std::string> thesis_camera(const std::string& rig_name);
 
 /// Depth accuracy of a rig at one distance of the board.
 struct DistanceAccuracy {
     double distance_m = 0.0;
     int observations = 0;                     ///< number of image pairs
-    std::optional<eval::BoardErrors> errors;  ///< nullopt if the depth image shows no board
+    std::optional<eval::BoardErrors> errors;  ///< nullopt = the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
-    std::optional<ThesisAccuracy> thesis;     ///< accuracy in the thesis, same camera and distance
+    std::optional<ThesisAccuracy> thesis;     ///< thesis value for the same camera and distance
 };
 
 /// Measures depth accuracy on rendered boards, or on the images that `options.pairs_file` lists.

@@ -16,7 +16,7 @@ namespace {
 
 using Use = std::function<void(BoardImages)>;
 
-/// Image files taken at the same time; `right` is empty for one camera and for side-by-side images.
+/// Image files of the same time. `right` is empty for one camera and for side-by-side images.
 struct Entry {
     std::string name;
     std::string left;
@@ -31,8 +31,8 @@ bool begins_with(const std::string& name, const std::string& word) {
     return name.starts_with(word);
 }
 
-/// Pairs each file of `left` with the file of `right` whose name is equal after the word
-/// `left_word` or `right_word`. Files without a partner are left out with a note.
+/// Pairs files of `left` and `right` whose names are equal after the word `left_word` or
+/// `right_word`. Leaves files without a partner out and adds a note.
 std::vector<Entry> paired(const std::string& left_folder,
                           const std::vector<std::string>& left,
                           const std::string& left_word,
@@ -58,7 +58,7 @@ std::vector<Entry> paired(const std::string& left_folder,
     return entries;
 }
 
-/// The folders of the left and right images inside `folder`; nullopt if there are none.
+/// Returns the folders of the left and right images inside `folder`; nullopt if there are none.
 std::optional<std::pair<std::string, std::string>> camera_folders(const std::string& folder) {
     constexpr const char* kPairs[][2] = {
         {"left", "right"}, {"cam0/data", "cam1/data"}, {"cam0", "cam1"}, {"image_0", "image_1"}};

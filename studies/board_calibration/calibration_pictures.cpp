@@ -21,7 +21,8 @@ namespace palette = eval::palette;
 /// Approximate width of a drawn image plane.
 constexpr double kWidth_px = 900.0;
 
-/// Empty drawing of a camera's image plane. `scale`: pixels of the drawing per pixel of the image.
+/// An empty drawing of the image plane of a camera. `scale`: pixels of the drawing per pixel of the
+/// image.
 struct Plane {
     eval::Figure figure;
     double scale = 1.0;
@@ -55,7 +56,7 @@ void stripe(const calibration::Coverage& coverage, eval::Figure& figure) {
     }
 }
 
-/// One flag per view: true if the result uses the view.
+/// Returns one flag per view: true if the result uses the view.
 std::vector<bool> used_views(const CalibrationRun& run) {
     std::vector<bool> used(run.views.size(), true);
     for (const calibration::RejectedView& rejected : rejected_views(run))
@@ -63,7 +64,7 @@ std::vector<bool> used_views(const CalibrationRun& run) {
     return used;
 }
 
-/// Two images of equal height beside each other.
+/// Returns two images of equal height side by side.
 GreyImage side_by_side(const GreyImage& left, const GreyImage& right) {
     GreyImage both(left.width() + right.width(), left.height());
     for (int v = 0; v < left.height(); ++v) {
@@ -81,7 +82,8 @@ eval::Picture coverage_picture(const CalibrationRun& run, int camera) {
         run.size,
         {fmt::format("Positions of the board, {}", camera_name(run, camera)),
          fmt::format(
-             "{:.0f} % of the image covered; blue: used, orange: left out, stripes: no board",
+             "{:.0f} % of the image covered; blue: view used, orange: view left out, stripes: no "
+             "board",
              100.0 * coverage.seen_share)});
     stripe(coverage, plane.figure);
     const std::vector<bool> used = used_views(run);
@@ -107,7 +109,8 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
         false,
         {},
         {fmt::format("Tilt of the board, {}", camera_name(run, camera)),
-         "degrees; each dot is a view, drawn towards its nearer side; stripes: missing tilts"});
+         "[deg]; each dot is a view, drawn towards the nearer side of the board; stripes: "
+         "missing tilts"});
     const PointPx center{figure.plot.left + 0.5 * kSide_px, figure.plot.top + 0.5 * kSide_px};
     bool seen[std::size(calibration::kNearSideNames)] = {};
     for (const calibration::ViewShape& view : coverage.views)
@@ -141,7 +144,7 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
         const calibration::ViewShape& view = coverage.views[i];
         if (view.spacing_px <= 0.0) continue;
         constexpr double kDirection_deg[] = {180.0, 0.0, 270.0, 90.0};  // by NearSide, clockwise
-        // Spread the dots of one side, so that they do not hide each other.
+        // Spreads the dots of one side, so that they do not hide each other.
         const double fan_deg = 9.0 * (static_cast<double>(i % 7) - 3.0);
         const double angle_rad =
             (kDirection_deg[static_cast<std::size_t>(view.near_side)] + fan_deg) *
@@ -164,14 +167,15 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera
     }
     std::sort(lengths_px.begin(), lengths_px.end());
     const double usual_px = lengths_px.empty() ? 1.0 : eval::percentile_of_sorted(lengths_px, 0.95);
-    constexpr double kShown_px = 20.0;  // drawn length of the 95th percentile
+    constexpr double kShown_px = 20.0;  // length of the arrow of the 95th percentile
     const double enlarged = kShown_px / std::max(usual_px, 1e-6);
     const bool right = std::string(this_camera.name) == "right";
     Plane plane = plane_of(
         run.size,
-        {fmt::format("Measured minus predicted, {}", this_camera.name),
+        {fmt::format("Measured minus predicted position, {}", this_camera.name),
          fmt::format(
-             "{} points; 95 % within {:.2f} px; arrows enlarged {:.0f} times; orange: left out",
+             "{} points; 95 % of the residuals are within {:.2f} px; arrows enlarged {:.0f} "
+             "times; orange: view left out",
              lengths_px.size(),
              usual_px,
              enlarged / plane_of(run.size, {}).scale)});

@@ -6,18 +6,18 @@
 
 namespace surefoot::app {
 
-/// Draws the board points of all views in the image plane, used points and left-out points in
+/// Draws the board points of all views in the image plane. Used points and left-out points have
 /// different colours. Stripes mark parts of the image without any point.
 [[nodiscard]] eval::Picture coverage_picture(const CalibrationRun& run, int camera);
-/// Draws how far the board was tilted in each view and which of its sides was nearer. Stripes mark
+/// Draws the tilt of the board in each view and which side of the board was nearer. Stripes mark
 /// sides for which no view is tilted enough.
 [[nodiscard]] eval::Picture tilt_picture(const CalibrationRun& run, int camera);
-/// Draws the residual (measured minus predicted pixel) of every point used, enlarged so that the
-/// 95th percentile is clearly visible.
+/// Draws the residual (measured minus predicted pixel) of every used point. The residuals are
+/// enlarged so that their 95th percentile is clearly visible.
 [[nodiscard]] eval::Picture residual_picture(const CalibrationRun& run,
                                              const CalibratedCamera& this_camera);
-/// Draws the sample pair, rectified by the result, side by side. Corresponding points must lie on
-/// the same horizontal line. Empty for one camera.
+/// Draws the sample pair side by side, rectified with the calibration. Corresponding points must
+/// lie on the same horizontal line. Empty for one camera.
 [[nodiscard]] eval::Picture epipolar_picture(const CalibrationRun& run);
 
 }  // namespace surefoot::app

@@ -47,8 +47,10 @@ void add_figures(const CalibrationRun& run, eval::ReportContent& content) {
                                fmt::format("{:.3f}", rms_px),
                                "px",
                                "root mean square distance, as OpenCV defines it"});
-    content.figures.push_back(
-        {"Corner noise", fmt::format("{:.3f}", sigma_px), "px", "one sigma of a coordinate"});
+    content.figures.push_back({"Corner noise",
+                               fmt::format("{:.3f}", sigma_px),
+                               "px",
+                               "one sigma of a corner coordinate in the image"});
     const std::size_t used = calibrated_cameras(run).front().views.size();
     content.figures.push_back({run.stereo ? "Pairs used" : "Views used",
                                std::to_string(used),
@@ -60,8 +62,8 @@ void add_figures(const CalibrationRun& run, eval::ReportContent& content) {
         {"Row error",
          fmt::format("{:.3f}", stereo.row_rms_px),
          "px",
-         fmt::format("rms after rectification, in px at the focal length of the lenses ({:.0f} "
-                     "px); rectified images have {:.0f} px",
+         fmt::format("rms after rectification, scaled to the focal length of the lenses ({:.0f} "
+                     "px); the focal length of the rectified images is {:.0f} px",
                      stereo.row_focal_px,
                      stereo.rectified_focal_px)});
     content.figures.push_back(
@@ -83,8 +85,9 @@ eval::ReportTable depth_table(const calibration::StereoCalibration& stereo) {
                                   : fmt::format("{:.2f}", kMillimetres * error.sigma_m)});
     }
     table.hint =
-        "Straight ahead of the rectified left camera, from the covariance of this calibration "
-        "only. This error is the same in every image. The noise of the matching is added to it.";
+        "Depth error straight ahead of the rectified left camera, from the covariance of this "
+        "calibration only. This error is the same in every image. The noise of the matching adds "
+        "to the error.";
     return table;
 }
 
@@ -102,8 +105,8 @@ eval::ReportTable lens_table(const CalibratedCamera& this_camera, calibration::L
                               fmt::format("{:.2g}", this_camera.sigmas[k])});
     }
     table.hint = fmt::format(
-        "With these parameters, the image position of a direction is known to {:.3f} px (one "
-        "sigma, median), and to {:.2f} px at the worst point, an image corner without board "
+        "These parameters predict the image position of a direction with a median error of {:.3f} "
+        "px (one sigma). The largest error is {:.2f} px, in an image corner without board "
         "positions.{}",
         this_camera.mapping.median_px,
         this_camera.mapping.largest_px,

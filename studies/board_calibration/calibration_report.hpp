@@ -7,8 +7,8 @@
 
 namespace surefoot::app {
 
-/// One self-contained HTML page: board coverage, residuals, a rectified pair, the cameras with
-/// their uncertainty and its effect on depth, and every rejected view with the reason.
+/// Returns one self-contained HTML page. It shows board coverage, residuals, a rectified pair, the
+/// cameras, their uncertainty and its effect on depth, and every rejected view with the reason.
 [[nodiscard]] std::string calibration_html(const CalibrationRun& run);
 
 }  // namespace surefoot::app

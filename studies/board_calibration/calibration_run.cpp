@@ -21,7 +21,7 @@ void add_uncertainty(const Eigen::MatrixXd& covariance,
                                        {this_camera.camera.width, this_camera.camera.height});
 }
 
-/// Parameters in the order of calibration::parameter_names.
+/// Returns the parameters in the order of calibration::parameter_names.
 Eigen::VectorXd parameters_of(const camera::PinholeRadTan& k, calibration::LensKind kind) {
     Eigen::VectorXd all(9);
     all << k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.k1, k.k2, k.p1, k.p2, k.k3;

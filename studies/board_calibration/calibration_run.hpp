@@ -15,9 +15,9 @@ namespace surefoot::app {
 /// Board points that were detected in the images of one moment.
 struct FoundView {
     std::string name;
-    calibration::BoardView left;  ///< left or only camera; empty if `left_problem` is set
+    calibration::BoardView left;  ///< points of the left or only camera; empty after a problem
     calibration::BoardView right;
-    std::string left_problem;  ///< why the detection failed; empty if it succeeded
+    std::string left_problem;  ///< problem of the detection; empty if it succeeded
     std::string right_problem;
 };
 
@@ -30,7 +30,7 @@ struct CalibrationRun {
     calibration::ImageSize size;
     std::vector<FoundView> views;
     std::vector<std::string> notes;
-    std::vector<calibration::Coverage> coverage;  ///< one per camera
+    std::vector<calibration::Coverage> coverage;  ///< one element per camera
     BoardImages sample;  ///< first images in which all cameras see the board
     std::optional<calibration::MonoCalibration> mono;
     std::optional<calibration::StereoCalibration> stereo;
@@ -42,27 +42,27 @@ struct CalibrationRun {
 struct CalibratedCamera {
     const char* name = "";
     camera::Camera camera;
-    Eigen::VectorXd parameters;          ///< in the order of calibration::parameter_names
+    Eigen::VectorXd parameters;          ///< ordered as calibration::parameter_names
     Eigen::VectorXd sigmas;              ///< standard deviation of each parameter
-    calibration::MappingSigmas mapping;  ///< joint effect of all parameters on the pixels
+    calibration::MappingSigmas mapping;  ///< effect of all parameter errors on the pixels
     struct View {
-        std::size_t index = 0;  ///< into CalibrationRun::views
+        std::size_t index = 0;  ///< index into CalibrationRun::views
         calibration::CameraFit fit;
     };
     std::vector<View> views;
 };
-/// The cameras of the result: left and right, or the only one. Requires a result.
+/// Returns the calibrated cameras: left and right, or the only one. Requires a result in `run`.
 [[nodiscard]] std::vector<CalibratedCamera> calibrated_cameras(const CalibrationRun& run);
 [[nodiscard]] const std::vector<calibration::RejectedView>& rejected_views(
     const CalibrationRun& run);
 [[nodiscard]] calibration::LensKind lens_kind(const CalibrationRun& run);
 [[nodiscard]] std::string camera_name(const CalibrationRun& run, int camera);
-/// Why a view was rejected: the problem of the board detection, or else of the calibration.
+/// Returns why a view was rejected: the problem of the board detection or of the calibration.
 [[nodiscard]] std::string why_left_out(const CalibrationRun& run,
                                        const calibration::RejectedView& rejected);
-/// Pixel of the board point `id` in a view. Precondition: the view shows this point.
+/// Returns the pixel of the board point `id` in a view. Precondition: the view shows this point.
 [[nodiscard]] Eigen::Vector2d pixel_of(const calibration::BoardView& view, int id);
-/// The rig to write to a file. For one camera it has no right camera.
+/// Returns the rig to write to a file. After the calibration of one camera it has no right camera.
 [[nodiscard]] camera::StereoRig calibrated_rig(const CalibrationRun& run);
 
 }  // namespace surefoot::app

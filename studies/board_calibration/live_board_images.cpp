@@ -11,7 +11,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Placeholder rig of the right image size: LiveCamera needs a rig, but it is not calibrated yet.
+/// Returns a placeholder rig of the right image size, because LiveCamera needs a rig and this
+/// camera is not calibrated yet.
 camera::StereoRig rig_of_size(int width, int height) {
     const camera::Camera camera{camera::PinholeRadTan{.fx_px = static_cast<double>(width),
                                                       .fy_px = static_cast<double>(width),
@@ -36,9 +37,9 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
     if (!address) return address.error();
     if (!address->width || *address->width % 2 != 0) {
         return usage_error(
-            fmt::format("{}: give the size of the live camera, both images side by side: "
-                        "v4l2:DEVICE@WIDTHxHEIGHT with an even width; 'surefoot info v4l2:DEVICE' "
-                        "lists the sizes",
+            fmt::format("{}: the size of the camera image is missing or its width is odd; give "
+                        "v4l2:DEVICE@WIDTHxHEIGHT with the size of both images side by side and "
+                        "an even width; 'surefoot info v4l2:DEVICE' lists the sizes",
                         session.address));
     }
     if (!session.stereo && session.camera.empty()) {

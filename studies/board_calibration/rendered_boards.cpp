@@ -11,17 +11,18 @@ namespace {
 
 constexpr double kMostTilt_rad = std::numbers::pi / 4.5;
 constexpr double kMostRoll_rad = std::numbers::pi / 9.0;
-/// Distance over the longer side of the board: it fills the image of a 60 deg lens, or a third.
+/// Limits of the distance divided by the longer side of the board. At the nearest the board fills
+/// the image of a 60 deg lens, at the farthest a third of it.
 constexpr double kNearest = 0.9;
 constexpr double kFarthest = 1.7;
 constexpr double kBorder_px = 4.0;
 
-/// True if a camera sees the whole sheet, at least kBorder_px inside the image.
+/// Returns true if a camera sees the whole sheet at least kBorder_px inside the image.
 bool sees(const BoardCamera& camera,
           const PrintedSheet::Rectangle& paper,
           const Pose& T_left_board) {
     const Pose T_camera_board = camera.T_left_camera.inverse() * T_left_board;
-    constexpr int kSteps = 8;  // samples along each side, because straight edges bend in a fisheye
+    constexpr int kSteps = 8;  // samples along each side: straight edges bend in a fisheye
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps;
         const double x_m = paper.left_m + s * (paper.right_m - paper.left_m);
@@ -69,7 +70,7 @@ std::vector<Pose> shown_poses(const calibration::Board& board,
                                        rng.uniform(-kMostRoll_rad, kMostRoll_rad));
         const auto ray = camera::unproject(left.model, pixel);
         if (!ray) continue;
-        // The board faces the camera, then is turned.
+        // The board first faces the camera and is then turned.
         const Eigen::Quaterniond facing =
             Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *ray);
         Pose T_left_board{facing * exp_so3(turn_rad), Eigen::Vector3d::Zero()};

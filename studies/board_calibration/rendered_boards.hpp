@@ -19,8 +19,8 @@ struct BoardCamera {
 [[nodiscard]] std::vector<BoardCamera> cameras_of(const camera::StereoRig& rig);
 
 /// Returns `count` poses of the board in the left optical frame, as a careful operator shows it.
-/// All cameras see the whole board. Some poses are near, some far; each is turned by up to 40 deg
-/// about each axis. Returns fewer poses if too few positions fit into all images.
+/// All cameras see the whole board. Some poses are near, others far. The tilt about each axis is at
+/// most 40 deg. Returns fewer poses if too few positions fit into all images.
 [[nodiscard]] std::vector<Pose> shown_poses(const calibration::Board& board,
                                             std::span<const BoardCamera> cameras,
                                             int count,

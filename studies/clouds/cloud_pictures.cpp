@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// Range of values to draw: from 0, or symmetric about 0 if the distances are signed. It holds 98 %
-/// of the values.
+/// Returns the range of values to draw. It starts at 0, or is symmetric about 0 if the distances
+/// are signed. It contains 98 % of the values.
 eval::ValueRange shown(const PlacedDistances& placed) {
     std::vector<float> sizes_m;
     for (const float d_m : placed.distances_m) {
@@ -39,7 +39,8 @@ eval::ValueRange shown(const PlacedDistances& placed) {
     return {placed.is_signed ? -high_m : 0.0, high_m};
 }
 
-/// Grid whose cells hold about five points each, so that a picture has few holes but sharp edges.
+/// Returns a grid whose cells hold about five points each, so that a picture has few holes but
+/// sharp edges.
 Result<eval::DemGrid> grid_of(const std::vector<Eigen::Vector3d>& points_m) {
     eval::CloudBounds bounds;
     bounds.add(points_m);
@@ -51,7 +52,7 @@ Result<eval::DemGrid> grid_of(const std::vector<Eigen::Vector3d>& points_m) {
     }
     const Eigen::Vector2d side_m = (high_m - low_m).cwiseMax(1e-3);
     constexpr double kPointsPerCell = 5.0;
-    constexpr double kMostCells = 640.0;  ///< along a side
+    constexpr double kMostCells = 640.0;  ///< largest number of cells along a side
     const double by_density_m =
         std::sqrt(kPointsPerCell * side_m.prod() / static_cast<double>(points_m.size()));
     return bounds.grid(std::max(by_density_m, side_m.maxCoeff() / kMostCells), eval::Lattice::cell);
@@ -60,7 +61,7 @@ Result<eval::DemGrid> grid_of(const std::vector<Eigen::Vector3d>& points_m) {
 Status write_from_above(const std::string& path,
                         const PlacedDistances& placed,
                         const eval::ValueRange& range) {
-    std::vector<Eigen::Vector3d> at_m;  // z is the distance instead of the height
+    std::vector<Eigen::Vector3d> at_m;  // z holds the distance instead of the height
     for (std::size_t i = 0; i < placed.points_m.size(); ++i) {
         if (std::isnan(placed.distances_m[i])) continue;
         at_m.emplace_back(static_cast<double>(placed.points_m[i].x()),
@@ -79,8 +80,8 @@ Status write_from_above(const std::string& path,
     style.value_scale = kMillimetres;
     if (placed.is_signed) {
         style.centre = 0.0;
-        style.low_word = "compared is lower";
-        style.high_word = "compared is higher";
+        style.low_word = "compared cloud is lower";
+        style.high_word = "compared cloud is higher";
     }
     const auto png =
         eval::encode_png(eval::render_layer(grid->geometry, builder.heights_m(), style, {}));
@@ -103,7 +104,7 @@ Status write_histogram(const std::string& path,
     eval::LinePlot plot;
     plot.title = placed.title;
     plot.x_label =
-        placed.is_signed ? "distance minus the smallest shown one [mm]" : "distance [mm]";
+        placed.is_signed ? "distance minus the smallest shown distance [mm]" : "distance [mm]";
     plot.y_label = "share of the points in each bin [%]";
     eval::LinePlot::Line line;
     const double bin_mm = kMillimetres * (range.high - range.low) / kBins;
@@ -166,7 +167,8 @@ std::string heights_svg(const eval::HeightHistogram& heights,
     plot.title = fmt::format("{}: {} levels", title, heights.levels.size());
     plot.x_label = fmt::format("height above {:.3f} m [m]",
                                heights.low_m);  // the axis of a plot begins at zero
-    plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
+    plot.y_label =
+        fmt::format("share of the level points in each bin of {:g} mm [%]", 1e3 * heights.bin_m);
     eval::LinePlot::Line line;
     for (std::size_t i = 0; i < heights.counts.size(); ++i) {
         line.points.push_back(

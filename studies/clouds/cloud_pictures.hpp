@@ -28,7 +28,7 @@ struct PlacedDistances {
                                           const Eigen::Vector3d& shift_m);
 
 /// Draws the histogram of heights above the lowest bin as an SVG. `points`: number of all level
-/// points, which is 100 % of the vertical axis.
+/// points; this number is 100 % of the vertical axis.
 [[nodiscard]] std::string heights_svg(const eval::HeightHistogram& heights,
                                       std::int64_t points,
                                       const std::string& title);

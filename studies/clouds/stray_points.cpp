@@ -15,14 +15,15 @@ namespace {
 constexpr double kOff_m = 0.015;
 constexpr double kOffShare = 0.5;
 constexpr double kGrazing_deg = 3.0;
-/// Largest beam width that is considered, in angular steps. Only at close range a beam is wider.
+/// Largest beam width that the filter considers, in angular steps. A beam is wider only at close
+/// range.
 constexpr std::ptrdiff_t kMostApart = 4;
 constexpr std::ptrdiff_t kReach = 2 * kMostApart;
 
-/// True if two beams on one side, `spacing_m` apart, predict the range of a point.
+/// Returns true if two beams on one side, `spacing_m` apart, predict the range of a point.
 bool foretell(double range_m, double beside_m, double beyond_m, double spacing_m) {
     static const double steepest = 1.0 / std::tan(kGrazing_deg * kRadPerDeg);
-    const double change_m = std::abs(beside_m - beyond_m);  // NaN if a beam has no range
+    const double change_m = std::abs(beside_m - beyond_m);  // NaN = the beam has no range
     if (!(change_m <= steepest * spacing_m)) return false;
     const double inverse = 2.0 / beside_m - 1.0 / beyond_m;
     return inverse > 0.0 && std::abs(1.0 / inverse - range_m) <= kOff_m + kOffShare * change_m;
@@ -77,7 +78,7 @@ bool StrayFilter::hand_over(std::size_t at, const Take& take) {
 
 bool StrayFilter::add(const sim::ScanColumn& column, const Take& take) {
     Column added;
-    // The oldest column is no longer needed; reuse its memory.
+    // The filter needs the oldest column no more, so its memory is reused.
     if (std::ssize(columns_) > 2 * kReach) {
         added = std::move(columns_.front());
         columns_.pop_front();

@@ -13,7 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest number of points of a band in memory: 12 bytes each, and a copy sorted by cell.
+/// Largest number of points of a band in memory. A point takes 12 bytes, plus a copy sorted by
+/// cell.
 constexpr std::int64_t kMostPoints = 1 << 25;
 
 struct CellPoint {
@@ -21,7 +22,7 @@ struct CellPoint {
     float z_m;
 };
 
-/// Rows [begin, end) that are processed together. The neighbour rows supply witnesses.
+/// Rows [begin, end) that are processed together. The neighbouring rows supply witnesses.
 struct Band {
     int begin = 0;
     int end = 0;
@@ -41,7 +42,7 @@ std::vector<Band> bands_of(const std::vector<std::int64_t>& points_of_row) {
     return bands;
 }
 
-/// The heights of each cell, ascending.
+/// The heights of each cell in ascending order.
 class CellHeights {
   public:
     CellHeights(const std::vector<CellPoint>& points, std::uint32_t first, std::size_t cells)
@@ -85,20 +86,20 @@ class CellReducer {
         const std::span<const float> z_m = heights.of(number(ix, iy));
         CellGround ground;
         if (z_m.empty()) return ground;
-        // Each group needs the support that follows from all points of the cell.
+        // Each group needs the support that follows from the number of points in the whole cell.
         const int wanted = elevation::support_of(rules_.reduction, static_cast<int>(z_m.size()));
         for (std::size_t begin = 0, end = 0; begin < z_m.size(); begin = end) {
             end = end_of_group(z_m, begin);
             const auto group = z_m.subspan(begin, end - begin);
             if (std::isnan(ground.z_m)) {
-                // Mirror images lie below a surface with points above it; they have fewer points.
+                // A mirror image lies below a surface, so other points lie above it. It also has
+                // fewer points than a surface.
                 const int twice =
                     end < z_m.size() ? std::max(wanted, 2 * rules_.reduction.min_points) : wanted;
                 ground.z_m = surface_m(heights, group, twice, ix, iy);
                 ground.points = static_cast<float>(group.size());
             } else if (static_cast<int>(group.size()) >=
-                       wanted) {  // a group above the ground overhangs, even without a surface of
-                                  // its own
+                       wanted) {  // this group overhangs, even if it has no surface
                 ground.clearance_m = group.front() - ground.z_m;
                 return ground;
             }
@@ -118,24 +119,24 @@ class CellReducer {
         return static_cast<std::uint32_t>(iy) * static_cast<std::uint32_t>(geometry_.nx) +
                static_cast<std::uint32_t>(ix);
     }
-    /// Highest surface of a group; NaN without one.
+    /// Returns the highest surface of a group; NaN if there is none.
     [[nodiscard]] float surface_m(const CellHeights& heights,
                                   std::span<const float> group,
                                   int wanted,
                                   int ix,
                                   int iy) const {
         if (static_cast<int>(group.size()) < wanted) {
-            // Sparse cloud: the whole cell has fewer points than a surface needs.
+            // The cloud is sparse if the whole cell has fewer points than a surface needs.
             const bool sparse =
                 static_cast<int>(heights.of(number(ix, iy)).size()) < rules_.reduction.min_points;
             return sparse ? witnessed_m(heights, group, wanted, ix, iy) : kNanF;
         }
         return dense_surface_m(group, wanted);
     }
-    /// The highest surface that enough points share and that is denser than a uniform scatter over
-    /// the height of the group, which points in flight fill evenly. If more than a third of the
-    /// points lie above a surface, it is not the ground: with many points the cell is a vertical
-    /// face, otherwise it is unknown.
+    /// Returns the highest surface that enough points share and that is denser than a uniform
+    /// scatter over the height of the group. Points in flight fill this height evenly. A surface
+    /// with more than a third of the points above it is not the ground. Without ground, a cell with
+    /// many points is a vertical face; otherwise it is unknown.
     [[nodiscard]] float dense_surface_m(std::span<const float> group, int wanted) const {
         constexpr float kDenser = 2.5F;
         elevation::ReductionConfig config = rules_.reduction;
@@ -161,8 +162,9 @@ class CellReducer {
         if (n < rules_.reduction.min_face_points) return kNanF;
         return group[group.size() - static_cast<std::size_t>(wanted)];
     }
-    /// The highest point that has enough neighbours (witnesses) in the surrounding cells: their
-    /// height differs by at most the window plus the rise of a 45 deg slope over one cell.
+    /// Returns the highest point with enough witnesses in the surrounding cells; NaN = none. The
+    /// height of a witness differs by at most the window plus the rise of a 45 deg slope over one
+    /// cell.
     [[nodiscard]] float witnessed_m(const CellHeights& heights,
                                     std::span<const float> group,
                                     int wanted,
@@ -189,8 +191,8 @@ class CellReducer {
 };
 
 /// Removes ground with far fewer points than its surroundings: less than 1/5 of the upper quartile
-/// of 5 x 5 cells. The hidden area behind a nosing contains only a few points in flight from the
-/// nosing.
+/// of 5 x 5 cells. For example, the occluded area behind a nosing contains only a few points in
+/// flight from the nosing.
 void remove_thin(const grid::Layer& points, SurfaceDem& dem) {
     constexpr int kReach = 2;
     constexpr float kShare = 0.2F;
@@ -244,10 +246,10 @@ Result<SurfaceDem> surface_dem(const eval::DemGrid& grid,
     });
     if (!counted) return counted.error();
     const CellReducer reducer(rules, geometry);
-    grid::Layer points_of(geometry.nx, geometry.ny, 0.0F);  // points of the ground, and of any kind
+    grid::Layer points_of(geometry.nx, geometry.ny, 0.0F);  // ground points of each cell
     grid::Layer held(geometry.nx, geometry.ny, 0.0F);
     for (const Band& band : bands_of(points_of_row)) {
-        // One more row on both sides, for the witnesses.
+        // The witnesses need one more row on both sides.
         const std::uint32_t first = static_cast<std::uint32_t>(std::max(band.begin - 1, 0)) * nx;
         const std::uint32_t last =
             static_cast<std::uint32_t>(std::min(band.end + 1, geometry.ny)) * nx;
@@ -302,7 +304,7 @@ std::string left_out_text(const SurfaceDem& dem) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", count, what);
     };
     add(dem.cut_points, "points outside --min-height and --max-height are left out");
-    add(dem.unsupported_cells, "cells contain points but no supported surface, and are unknown");
+    add(dem.unsupported_cells, "cells are unknown: they contain points but no supported surface");
     add(dem.overhung_cells, "cells have an object that hangs over their ground");
     return text;
 }

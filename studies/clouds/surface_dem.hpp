@@ -17,11 +17,11 @@
 
 namespace surefoot::app {
 
-/// Rules that turn a cloud into ground heights: those of the live map (`elevation::reduce_cell`),
-/// for points without a variance.
+/// Rules that turn a cloud into ground heights. They are the rules of the live map
+/// (`elevation::reduce_cell`), for points without a variance.
 struct SurfaceRules {
     elevation::ReductionConfig reduction;
-    double point_sigma_m = 0.005;  ///< standard deviation of one point's height
+    double point_sigma_m = 0.005;  ///< standard deviation of one point's height [m]
     /// A gap of this height separates overhanging points from a surface.
     double min_overhead_m = 0.3;
     double lowest_z_m = -std::numeric_limits<double>::infinity();  ///< lower points are left out
@@ -31,13 +31,13 @@ struct SurfaceRules {
 /// Ground heights of a cloud; NaN = no supported surface.
 struct SurfaceDem {
     grid::Layer height_m;
-    grid::Layer clearance_m;             ///< ground to lowest overhanging points
-    std::int64_t cut_points = 0;         ///< points outside the height limits
-    std::int64_t unsupported_cells = 0;  ///< cells with points but without a supported surface
+    grid::Layer clearance_m;             ///< height from ground to lowest overhanging points [m]
+    std::int64_t cut_points = 0;         ///< number of points outside the height limits
+    std::int64_t unsupported_cells = 0;  ///< number of cells with points but no supported surface
     std::int64_t overhung_cells = 0;
 };
 
-/// Calls the function with all points of a cloud, block by block. Every call must deliver the same
+/// Calls the function with all points of a cloud, block by block. All calls must deliver the same
 /// points.
 using EachBlock =
     std::function<Status(const std::function<Status(std::span<const Eigen::Vector3d>)>&)>;
@@ -60,12 +60,12 @@ using EachBlock =
                                              const EachBlock& each_block,
                                              Executor& executor = serial());
 
-/// Rules from --min-height and --max-height. The error names both options if the limits are
-/// crossed.
+/// Returns the rules for --min-height and --max-height. The error names both options if the lower
+/// limit is not below the upper limit.
 [[nodiscard]] Result<SurfaceRules> surface_rules(std::optional<double> lowest_z_m,
                                                  std::optional<double> highest_z_m);
 
-/// Describes the points and cells that were left out; empty if there are none.
+/// Returns a text about the points and cells that were left out; empty if there are none.
 [[nodiscard]] std::string left_out_text(const SurfaceDem& dem);
 
 }  // namespace surefoot::app

@@ -21,14 +21,14 @@ using Eigen::Vector3f;
 
 /// Thickness of a slab along x, in voxels.
 constexpr std::int64_t kSlabVoxels = 64;
-constexpr std::int64_t kWritten = 1 << 16;  ///< points per call of the writer
+constexpr std::int64_t kWritten = 1 << 16;  ///< number of points per call of the writer
 
 std::int64_t slab_of(const Vector3f& p_m, double size_m) {
     const std::int64_t number = eval::voxel_number(p_m.x(), size_m);
     return number >= 0 ? number / kSlabVoxels : -((kSlabVoxels - 1 - number) / kSlabVoxels);
 }
 
-/// Reads a cloud as float points relative to one shift.
+/// Reads a cloud as float points relative to a shift that is the same for all points.
 class Source {
   public:
     static Result<Source> open(const std::string& path) {
@@ -36,7 +36,7 @@ class Source {
         if (!stream) return stream.error();
         return Source(path, std::move(stream).value());
     }
-    /// Calls `use` with the points, block by block; `use` returns a Status.
+    /// Calls `use` with the points, block by block. `use` returns a Status.
     template <typename Use>
     Status each_block(const Use& use) {
         io::ShiftedReader reader(path_, shift_m_);
@@ -59,7 +59,8 @@ class Source {
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   private:
-    /// The mean of several points has no colour, no value and no viewpoint, so these are lost.
+    /// Adds a note about properties that the output lacks. The mean of several points has no
+    /// colour, no value and no viewpoint.
     void note_losses(const io::PointCloud& block) {
         std::string lost = block.colours.empty() ? "" : "colours";
         const auto add = [&](const std::string& name) {
@@ -67,7 +68,7 @@ class Source {
         };
         for (const io::CloudScalar& scalar : block.scalars) add(scalar.name);
         if (block.T_cloud_sensor) add("viewpoint");
-        if (!lost.empty()) notes_.push_back("only positions are kept, not: " + lost);
+        if (!lost.empty()) notes_.push_back("only positions are kept; the output lacks: " + lost);
     }
     Source(std::string path, io::CloudStream stream)
         : path_(std::move(path)), stream_(std::move(stream)) {}
@@ -78,7 +79,7 @@ class Source {
     std::vector<std::string> notes_;
 };
 
-/// Number of points by slab, and their bounding box.
+/// The number of points in each slab, and the bounding box of all points.
 struct Census {
     std::map<std::int64_t, std::int64_t> by_slab;
     std::int64_t points = 0;
@@ -105,8 +106,8 @@ Result<Census> count(Source& source, const std::string& cloud, double size_m) {
     return census;
 }
 
-/// Splits the slabs into runs of at most `most` points (a run of a single slab may have more).
-/// Returns the first slab of each run.
+/// Splits the slabs into runs of at most `most` points. A run of a single slab may have more
+/// points. Returns the first slab of each run.
 std::vector<std::int64_t> runs_of(const Census& census, std::int64_t most) {
     std::vector<std::int64_t> first;
     std::int64_t in_run = 0;

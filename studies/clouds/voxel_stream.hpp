@@ -14,22 +14,22 @@ namespace surefoot::app {
 
 /// Result of thin_cloud().
 struct ThinnedCloud {
-    std::int64_t points = 0;   ///< finite input points
-    std::int64_t skipped = 0;  ///< input points that were not finite
+    std::int64_t points = 0;   ///< number of finite input points
+    std::int64_t skipped = 0;  ///< number of input points that were not finite
     std::int64_t voxels = 0;   ///< output points
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< properties of the cloud that the output lacks
+    std::vector<std::string> notes;  ///< sentences about properties that the output lacks
 };
 
-/// Usage error if the box has more voxels than can be numbered. `cloud` is named in the error.
+/// Returns a usage error if the box has more voxels than can be numbered. The error names `cloud`.
 [[nodiscard]] Status check_voxels(const geometry::PointBox& box,
                                   double size_m,
                                   const std::string& cloud);
 
-/// Writes the mean point of each voxel to `out_file`. A cloud with more than `most_in_memory`
-/// points is split into slabs along x, which are processed one after the other. The slabs lie in a
-/// temporary folder beside the output (12 bytes a point). The output is the same. Memory: 40 bytes
-/// for each point in memory, or of the fullest slab of 64 voxels along x if that is more.
+/// Writes the mean point of each voxel to `out_file`. Splits a cloud with more than
+/// `most_in_memory` points into slabs along x and processes one slab after the other; the output is
+/// the same. The slabs lie in a temporary folder beside the output (12 bytes a point). Memory: 40
+/// bytes for each point in memory, or of the fullest slab of 64 voxels along x if that is more.
 [[nodiscard]] Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                               double size_m,
                                               const std::string& out_file,

@@ -27,12 +27,12 @@
 namespace surefoot::app {
 namespace {
 
-/// A part of the report. It is computed once; its figures are stored in its folder.
+/// A part of the report. It is computed once, and its figures are stored in its folder.
 struct Part {
     std::string name;
     std::string folder;
     std::uint64_t conditions = 0;
-    int weight = 1;  ///< relative duration, for the progress display
+    int weight = 1;  ///< relative duration of the part, for the progress display
     std::function<Result<ThesisFigures>()> work;
     std::function<void(const ThesisFigures&)> keep;
 };
@@ -68,7 +68,7 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
     if (!machine) return machine.error();
     if (!*machine)
         return usage_error("--machine: give a machine file, or the name of a built-in machine");
-    // Use every second beam. This still gives a point every 5 mm within 4 m of a station, in a
+    // Uses every second beam. There is still a point every 5 mm within 4 m of a station, in a
     // quarter of the time. `sim --scan` uses all beams.
     settings->laser.step_deg *= 2.0;
     return ThesisConditions{std::move(*settings),
@@ -78,8 +78,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
                             options.out_dir};
 }
 
-/// Computes the parts that are not stored yet, as many at a time as `executor` has threads. All
-/// errors are logged and added to the results; the first one is returned.
+/// Computes the parts that are not stored yet. `executor` determines how many parts run at a time.
+/// All errors are logged and added to the results; the first error is returned.
 class Parts {
   public:
     Parts(ThesisResults& results, Executor& executor) : results_(results), executor_(executor) {}
@@ -141,8 +141,8 @@ class Parts {
     std::optional<Error> first_error_;
 };
 
-/// Hash of the objects and the lighting of a simulated scene. It detects that another version of
-/// the program generates another scene from the same seed.
+/// Returns a hash of the objects and the lighting of a simulated scene. The hash shows whether
+/// another version of the program makes another scene from the same seed.
 std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& conditions) {
     const auto script = sim::make_scene(scene, conditions.seed);
     if (!script) return 0;
@@ -173,7 +173,7 @@ std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& co
     return hash;
 }
 
-/// Hash of all conditions that the figures of a part depend on.
+/// Returns a hash of all conditions that affect the figures of a part.
 std::uint64_t hash_for(const ThesisConditions& conditions,
                        const std::string& part,
                        std::uint64_t place) {
@@ -185,7 +185,7 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
                            bool courtyard,
                            const ThesisConditions& conditions,
                            ThesisResults& results) {
-    // Each scan is serial; the scans of different scenes run in parallel.
+    // Each scan uses one thread; the scans of different scenes run in parallel.
     constexpr int kScan = 100;
     std::vector<Part> parts;
     std::set<std::string> scenes;
@@ -243,7 +243,7 @@ std::vector<Part> recordings_of(const std::vector<ThesisRun>& runs,
     return parts;
 }
 
-/// Extent of all objects of a scene, ground included, along x and y [m].
+/// Returns the extent of all objects of a scene, ground included, along x and y [m].
 Eigen::Vector2d size_of(const sim::Scene& scene) {
     Eigen::Vector2d low_m = Eigen::Vector2d::Constant(1e9);
     Eigen::Vector2d high_m = -low_m;
@@ -263,7 +263,7 @@ Status describe_datasets(const ThesisConditions& conditions,
         const auto script = sim::make_scene(dataset.scene, conditions.seed);
         if (!script) return script.error();
         const auto stations_m = stations_of(*script);
-        const sim::LaserScannerConfig full;  // full resolution, unlike the report's scans
+        const sim::LaserScannerConfig full;  // full resolution; the scans of the report are coarser
         const auto points = expected_points(script->scene, full, stations_m, executor);
         if (!points) return points.error();
         const Eigen::Vector2d size_m = size_of(script->scene);

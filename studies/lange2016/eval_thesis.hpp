@@ -5,8 +5,8 @@
 
 namespace surefoot::app {
 
-/// `surefoot eval suite --lange2016`: repeats the experiments of the reference thesis (Lange 2016).
-/// Returns the exit code.
+/// Runs `surefoot eval suite --lange2016`: repeats the experiments of the reference thesis (Lange
+/// 2016). Returns the exit code.
 int eval_thesis(const EvalSuiteOptions& options);
 
 }  // namespace surefoot::app

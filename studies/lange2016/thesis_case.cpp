@@ -25,7 +25,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Scanned distance around the path: half a map length plus a margin for the alignment.
+/// Scanned distance around the path [m]: half a map length plus a margin for the alignment.
 constexpr double kAround_m = 3.2;
 
 Result<GroundBox> box_of(const BoxText& text, const sim::NamedNumbers& numbers) {
@@ -43,7 +43,7 @@ Result<sim::ScriptedScene> script_of(const ThesisRun& run, const ThesisCondition
         run.scene, conditions.seed, sim::motion_model_of(carried_by(run.motion_model)));
 }
 
-/// Takes the measurements of the thesis from a scan or a map: `points_m` supply vertical faces,
+/// Takes the measurements of the thesis from a scan or a map. `points_m` supply vertical faces;
 /// `map` supplies the ground.
 Status measure_by_hand(const ThesisRun& run,
                        const sim::NamedNumbers& numbers,
@@ -80,8 +80,8 @@ eval::LayerStyle rating_style(const std::string& title, double safe_threshold) {
     return style;
 }
 
-/// Writes the scan and the live map side by side: the part that the live map knows, with the same
-/// colours.
+/// Writes pictures of the scan and of the live map with the same colours. They show only the part
+/// that the live map knows.
 Status write_pictures(const std::string& folder,
                       const RatedMap& truth,
                       const ComparedMap& compared,
@@ -126,7 +126,7 @@ grid::Layer lifted(const Image<float>& height_m, double by_m) {
     return out;
 }
 
-/// The live map, with heights in the world frame.
+/// Returns the live map with heights in the world frame.
 RatedMap ground_surface(const pipeline::Pipeline& pipeline, double odom_z_m) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     return {geometry,
@@ -134,9 +134,9 @@ RatedMap ground_surface(const pipeline::Pipeline& pipeline, double odom_z_m) {
             or_unknown(pipeline.rating().traversability, geometry)};
 }
 
-/// The live map as the scan and the map of the thesis represent the scene: under an overhang they
-/// contain the underside of the overhang instead of the ground. The heights are rated like all
-/// others.
+/// Returns the live map in the form of the scan and of the map of the thesis. Under an overhang
+/// these contain the underside of the overhang instead of the ground. These heights are rated like
+/// all other heights.
 RatedMap highest_surfaces(const pipeline::Pipeline& pipeline, double odom_z_m) {
     grid::Layer height_m = lifted(pipeline.map().layers().height_m.copy(), odom_z_m);
     const grid::Layer clearance_m = pipeline.map().layers().clearance_m.copy();
@@ -146,7 +146,7 @@ RatedMap highest_surfaces(const pipeline::Pipeline& pipeline, double odom_z_m) {
     return rated_map(pipeline.map().geometry(), height_m, pipeline.config().traversability);
 }
 
-/// Figures of the terrain features that the pipeline found, as `surefoot stairs` reports them.
+/// Adds figures of the terrain features that the pipeline found, as `surefoot stairs` reports them.
 void add_found(const pipeline::Pipeline& pipeline,
                const ThesisRun& run,
                const sim::NamedNumbers& numbers,
@@ -173,18 +173,18 @@ void add_found(const pipeline::Pipeline& pipeline,
     for (const stairs::Flight& one : found.flights) steps += one.steps;
     figures.set("steps_found", steps);
     if (!run.stairs || !numbers.contains("stair_x_m")) return;
-    // Distance of the nearest edge to the true position of the first one.
+    // Distance of the nearest edge from the true position of the first edge.
     double off_m = std::nan("");
     for (const stairs::Edge& edge : found.edges) {
         const Eigen::Vector2d middle_m = edge.middle_m();
-        if (std::abs(edge.along().x()) > 0.5) continue;  // only edges across the path
+        if (std::abs(edge.along().x()) > 0.5) continue;  // only edges across the path count
         const double here_m = middle_m.x() - numbers.at("stair_x_m");
         if (std::isnan(off_m) || std::abs(here_m) < std::abs(off_m)) off_m = here_m;
     }
     figures.set("drop_off_m", std::abs(off_m));
 }
 
-/// A run of the pipeline on a recording that is simulated at the same time.
+/// A run of the pipeline on a recording that is simulated during the run.
 class LiveRun {
   public:
     LiveRun(const ThesisRun& run,
@@ -369,9 +369,9 @@ Result<ThesisFigures> live_run(const ThesisRun& run,
 Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions, Executor& executor) {
     const auto script = sim::make_scene(kThesisCourtyard, conditions.seed);
     if (!script) return script.error();
-    // The whole courtyard.
+    // Half a map length that covers the whole courtyard.
     constexpr double kAll_m = 90.0;
-    constexpr double kHill_m = 3.0;  // the ground rises far from the path
+    constexpr double kHill_m = 3.0;  // higher ceiling, because the ground rises far from the path
     ScanArea area = area_around(*script, kAll_m);
     area.farthest_m = 2.0 * kAll_m;
     area.ceiling_m += kHill_m;

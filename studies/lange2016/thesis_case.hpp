@@ -16,7 +16,7 @@ namespace surefoot::app {
 
 /// Conditions that all parts of the report on the reference thesis (Lange 2016) share.
 struct ThesisConditions {
-    Settings settings;  ///< our settings; `laser` is used for the scans of the report
+    Settings settings;  ///< settings of the column "ours"; `laser` is for the scans
     Machine machine;
     std::uint64_t seed = 1;
     int max_frames = 0;  ///< frames of each recording; 0 = the whole path
@@ -37,15 +37,15 @@ struct ThesisConditions {
                                                 const ThesisConditions& conditions,
                                                 Executor& executor);
 
-/// Simulates the recording, maps it and compares the map with the scan in scan_folder(). Writes
-/// pictures to run_folder(). Thread-safe. All figures except update_hz are independent of other
-/// threads.
+/// Simulates the recording, maps it and compares the map with the scan in scan_folder().
+/// Writes pictures to run_folder(). Thread-safe. Other threads affect only the figure
+/// update_hz.
 [[nodiscard]] Result<ThesisFigures> live_run(const ThesisRun& run,
                                              ThesisColumn column,
                                              const ThesisConditions& conditions);
 
-/// The courtyard of Fig. 9.14 of the reference thesis: one scan of the whole place, rated, without
-/// a recording.
+/// The courtyard of Fig. 9.14 of the reference thesis: one rated scan of the whole place, without a
+/// recording.
 [[nodiscard]] Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions,
                                                       Executor& executor);
 

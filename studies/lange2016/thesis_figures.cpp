@@ -26,7 +26,7 @@ std::optional<double> number_of(std::string_view text) {
     return value;
 }
 
-/// Removes and returns the first line.
+/// Removes the first line of a text and returns it.
 std::string_view next_line(std::string_view& text) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
@@ -70,7 +70,7 @@ Result<std::optional<ThesisFigures>> read_figures(const std::string& folder,
     };
     if (!head.starts_with(kHead)) return broken(head);
     if (head.substr(kHead.size()) != fmt::format("{:016x}", conditions)) return Found();
-    next_line(rest);  // skip the column names
+    next_line(rest);  // skips the column names
     ThesisFigures figures;
     while (!rest.empty()) {
         const std::string_view line = next_line(rest);

@@ -17,17 +17,16 @@
 namespace surefoot::app {
 namespace {
 
-/// Height differences beyond this many times their median belong to another surface.
+/// Height differences above this multiple of their median belong to another surface.
 constexpr double kOutlier =
     4.5;  // 4.5 median absolute deviations are 3 sigma of a normal distribution
 constexpr double kLeastSigma_m = 1e-4;
-/// Cells farther off belong to an object, not to an uneven floor.
+/// Cells farther from the plane belong to an object, not to an uneven floor.
 constexpr double kOtherThing_m = 0.15;
-/// Diameter of an M3C2 cylinder in cells: it then holds about a dozen cells; five are needed.
+/// Diameter of an M3C2 cylinder in cells. Such a cylinder holds about a dozen cells; it needs five.
 constexpr double kCellsAcross = 4.0;
 
-/// Peak detection for stairs: no riser is lower than 80 mm, and the noise of a map needs bins of 10
-/// mm.
+/// Peak detection for stairs. No riser is lower than 80 mm. The noise of a map needs bins of 10 mm.
 constexpr eval::LevelConfig kStepLevels{.bin_m = 0.01, .least_step_m = 0.08};
 
 std::vector<double> sorted_sizes(const std::vector<float>& values) {
@@ -43,13 +42,14 @@ double percentile(const std::vector<double>& sorted, double fraction) {
     return sorted.empty() ? std::nan("") : eval::percentile_of_sorted(sorted, fraction);
 }
 
-/// Height and tilt that align the live heights with the truth: the plane through the height
-/// differences of their cells. Each round drops the differences farther than three sigma from the
-/// plane (a wall top that the camera never saw, a step that is off by one cell).
+/// Returns the height and tilt that align the live heights with the truth. They are the plane
+/// through the height differences of the cells. Each round drops differences farther than three
+/// sigma from the plane, for example a wall top that the camera did not see, or a step that is off
+/// by one cell.
 Pose height_and_tilt(const RatedMap& truth, const RatedMap& live) {
     struct Difference {
         Eigen::Vector3d at;  // x, y, 1
-        double rise_m;       // truth minus live
+        double rise_m;       // truth minus live height [m]
     };
     const RatedMap there = laid_onto(truth, live, Pose{});
     std::vector<Difference> all;
@@ -178,7 +178,7 @@ std::vector<Eigen::Vector3f> inside(std::span<const Eigen::Vector3f> points_m,
     return kept_m;
 }
 
-/// Mean of the known heights in a box; NaN if there are none.
+/// Returns the mean of the known heights in a box; NaN if there are none.
 double mean_height_m(const RatedMap& map, const GroundBox& box) {
     double sum_m = 0.0;
     int cells = 0;
@@ -304,7 +304,7 @@ void measure_door(std::span<const Eigen::Vector3f> points_m,
                   const RatedMap& map,
                   const Eigen::Vector2d& door_m,
                   ThesisFigures& figures) {
-    // Strips of floor as wide as a person, clear of the wall and of the door leaf.
+    // These strips of floor are as wide as a person, and clear of the wall and of the door leaf.
     constexpr double kHalf_m = 0.3;
     constexpr double kFree_m = 0.25;
     constexpr double kLong_m = 1.0;

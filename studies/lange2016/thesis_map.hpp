@@ -27,7 +27,7 @@ struct RatedMap {
                                  const grid::Layer& height_m,
                                  const traversability::TraversabilityConfig& config);
 
-/// One point at the centre of each known cell.
+/// Returns one point at the centre of each known cell.
 [[nodiscard]] std::vector<Eigen::Vector3f> cell_points_m(const RatedMap& map);
 
 /// Samples the layers of a live map at the centre of each cell of the truth.
@@ -35,13 +35,13 @@ struct RatedMap {
                                  const RatedMap& live,
                                  const Pose& T_truth_live);
 
-/// A live map aligned with the scan of its place and compared with it as in section 9.2 of the
-/// reference thesis (Lange 2016).
+/// A live map that is aligned with the scan of its place and compared with it. The comparison
+/// follows section 9.2 of the reference thesis (Lange 2016).
 struct ComparedMap {
     RatedMap live;            ///< live map on the grid of the truth
-    grid::Layer m3c2_m;       ///< live - truth along the vertical; NaN = no value
-    Image<eval::Call> calls;  ///< confusion of the ratings
-    Pose T_truth_live;        ///< found by the alignment
+    grid::Layer m3c2_m;       ///< live - truth along the vertical [m]; NaN = no value
+    Image<eval::Call> calls;  ///< live rating compared with the scan, cell by cell
+    Pose T_truth_live;        ///< pose found by the alignment
     ThesisFigures figures;
 };
 /// Aligns the live map with the scan in height and tilt, from the height differences of their
@@ -56,24 +56,24 @@ struct ComparedMap {
                                             const eval::M3c2Config& m3c2,
                                             const eval::EvalMapsConfig& maps);
 
-/// A rectangle of the ground.
+/// A rectangle on the ground.
 struct GroundBox {
     Eigen::Vector2d low_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
 };
 
 /// Measures a staircase by the histogram of heights. Sets riser_m, riser_se_m, riser_spread_m,
-/// risers, first_riser_m, going_m, going_se_m, going_spread_m; NaN if there is no staircase.
+/// risers, first_riser_m, going_m, going_se_m, going_spread_m. NaN = no staircase.
 void measure_stairs(std::span<const Eigen::Vector3f> points_m,
                     const GroundBox& box,
                     ThesisFigures& figures);
-/// Histogram of the heights of the points in the box, as SVG; empty without points.
+/// Returns the histogram of the heights of the points in the box as SVG; empty without points.
 [[nodiscard]] std::string box_heights_svg(std::span<const Eigen::Vector3f> points_m,
                                           const GroundBox& box,
                                           const std::string& title);
 
-/// Measures a door that is passed along +x. Sets door_width_m, the clear width between the jambs,
-/// and floor_step_m, the floor height behind the door minus the height in front of it. `points_m`
+/// Measures a door that is passed along +x. Sets door_width_m, the clear width between the jambs.
+/// Sets floor_step_m, the floor height behind the door minus the height in front of it. `points_m`
 /// give the width, `map` gives the floors.
 void measure_door(std::span<const Eigen::Vector3f> points_m,
                   const RatedMap& map,

@@ -25,7 +25,7 @@ class PolicySteps {
     PolicySteps(const sim::SceneTruth& truth, const Machine& machine)
         : truth_(truth), machine_(machine), steps_(truth, machine) {}
 
-    /// True if the next step begins before the frame after the one at `frame_ns`.
+    /// Returns true if the next step begins before the frame that follows the one at `frame_ns`.
     [[nodiscard]] bool due(std::int64_t frame_ns) const { return steps_.due(frame_ns); }
     /// Asks about the next step with the current map.
     void ask(const pipeline::Pipeline& pipeline, const grid::MapSnapshot& map);
@@ -34,9 +34,9 @@ class PolicySteps {
     void ask_all(std::size_t frame,
                  const pipeline::Pipeline& pipeline,
                  const grid::MapSnapshot& map);
-    /// Sets steps, steps_allowed (share of the truly safe steps), dangers, dangers_allowed. `gate`
-    /// selects the verdicts of the gate, otherwise those of the thesis query. Borderline questions
-    /// count only in `steps`.
+    /// Sets steps, steps_allowed (share of the truly safe steps), dangers and dangers_allowed.
+    /// `gate`: true = verdicts of the gate, false = verdicts of the thesis query. Borderline
+    /// questions count only in `steps`.
     void add_to(bool gate, ThesisFigures& figures) const;
 
   private:

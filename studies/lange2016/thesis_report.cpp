@@ -37,7 +37,8 @@ double figure_of(const ThesisResults& results,
     return at->second[static_cast<std::size_t>(column)].get(figure);
 }
 
-/// A figure of a column, divided by the figure of another run if the row says so.
+/// Returns a figure of a column. If the row has `divided_by`, divides the figure by that of the
+/// other run.
 double value_of(const ThesisResults& results, const ThesisRow& row, ThesisColumn column) {
     double value = std::nan("");
     if (column == ThesisColumn::ours && row.ours_figure != nullptr)
@@ -146,7 +147,7 @@ eval::ReportTable dataset_table(const std::vector<DatasetFigures>& datasets) {
     return table;
 }
 
-/// Groups in the order of the rows.
+/// Returns the groups in the order of the rows.
 std::vector<std::string> groups_of(const std::vector<FilledRow>& rows) {
     std::vector<std::string> groups;
     for (const FilledRow& filled : rows) {
@@ -201,9 +202,9 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
         "walking REX, or in a hand.",
         "Live maps are aligned to the surfaces of the scan and compared by C2C and M3C2. The scan "
         "passes through the same filters as the map.",
-        "'Thesis settings' is this program with the error model, fusion and filters of the thesis. "
-        "The camera driver, the tracker and the code of the thesis are not rebuilt: both columns "
-        "use the same depth and the same motion."};
+        "The column 'thesis settings' shows this program with the error model, fusion and filters "
+        "of the thesis. We did not rebuild the camera driver, the tracker and the code of the "
+        "thesis. Both columns use the same depth and the same motion."};
     for (const ThesisRun& run : thesis_runs()) {
         if (!results.runs.contains(run.name)) continue;
         eval::ReportSection section;

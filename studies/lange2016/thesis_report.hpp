@@ -15,7 +15,7 @@ namespace surefoot::app {
 /// A rebuilt data set, for comparison with Table 8.2 of the reference thesis (Lange 2016).
 struct DatasetFigures {
     ThesisDataset of;
-    double length_m = 0.0;  ///< extent of the ground and all objects along x
+    double length_m = 0.0;  ///< extent along x of ground and objects [m]
     double width_m = 0.0;
     int objects = 0;
     int stations = 0;
@@ -26,13 +26,13 @@ struct DatasetFigures {
 struct ThesisResults {
     std::vector<DatasetFigures> datasets;
     std::map<std::string, ThesisFigures> scans;  ///< figures by scene
-    /// By run name; array index as ThesisColumn.
+    /// Figures by run name; the array index is a ThesisColumn.
     std::map<std::string, std::array<ThesisFigures, 2>> runs;
     ThesisFigures courtyard;
     std::vector<std::string> failures;  ///< one sentence for each failed part
 };
 
-/// A row of the table with its numbers; NaN = no value.
+/// A row of the result table with its numbers; NaN = no value.
 struct FilledRow {
     ThesisRow row;
     double thesis_settings = 0.0;
@@ -42,7 +42,7 @@ struct FilledRow {
 };
 [[nodiscard]] std::vector<FilledRow> filled_rows(const ThesisResults& results, std::uint64_t seed);
 
-/// One self-contained HTML page, pictures first. Reads the pictures from the folders of the parts.
+/// Returns one self-contained HTML page, pictures first. Reads the pictures from the part folders.
 [[nodiscard]] std::string thesis_html(const ThesisResults& results,
                                       const ThesisConditions& conditions);
 [[nodiscard]] std::string thesis_json(const ThesisResults& results,

@@ -23,8 +23,8 @@ namespace {
 constexpr double kVoxel_m = 0.001;
 constexpr std::size_t kNoCell = std::numeric_limits<std::size_t>::max();
 constexpr eval::OutlierConfig kOutliers{.others = 6, .sigmas = 4.0};
-/// Height limit above the ground, as in the filter of the map: higher surfaces are above head
-/// height.
+/// Height limit above the ground [m], as in the filter of the map. Higher surfaces are above the
+/// head.
 constexpr double kCeiling_m = 2.0;
 
 bool holds(const ScanArea& area, const Eigen::Vector3d& p_m) {
@@ -37,7 +37,7 @@ double distance_m(const ScanArea& area, const Eigen::Vector3d& station_m) {
     return (at_m - at_m.cwiseMax(area.low_m).cwiseMin(area.high_m)).norm();
 }
 
-/// Stations near enough to the area; the nearest one if none is near enough.
+/// Returns the stations that are near enough to the area, or the nearest station if there are none.
 std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m,
                                        const ScanArea& area) {
     std::vector<std::size_t> near;
@@ -50,7 +50,7 @@ std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m
     return near;
 }
 
-/// The cells of the area, on the lattice that all maps of this resolution share.
+/// Returns the cells of the area, on the lattice that all maps of this resolution share.
 grid::GridGeometry cells_of(const ScanArea& area, double resolution_m) {
     const Eigen::Vector2d first = (area.low_m / resolution_m).array().floor();
     const Eigen::Vector2d end = (area.high_m / resolution_m).array().ceil();
@@ -69,13 +69,13 @@ std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> point
     return points_m;
 }
 
-/// Highest supported surface of a cell: the highest point with enough other points closely below
-/// it. Fewer than three points, which occur far from a station, must all agree. NaN if no points
-/// agree. Sorts `z_m`.
+/// Returns the highest supported surface of a cell: the highest point with enough other points
+/// closely below it. Far from a station a cell may have fewer than three points; then all must
+/// agree. NaN if no points agree. Sorts `z_m`.
 float supported_height_m(std::span<float> z_m) {
     constexpr float kClose_m = 0.02F;
     constexpr std::size_t kFewest = 3;
-    constexpr std::size_t kShare = 50;  // the surface needs one in 50 points of the cell
+    constexpr std::size_t kShare = 50;  // the surface needs at least one in 50 points of the cell
     if (z_m.empty()) return std::nanf("");
     std::sort(z_m.begin(), z_m.end(), std::greater<>());
     const std::size_t enough = std::min(std::max(kFewest, z_m.size() / kShare), z_m.size());

@@ -13,28 +13,28 @@
 
 namespace surefoot::app {
 
-/// Part of a place that is scanned.
+/// Area of a place to scan.
 struct ScanArea {
     Eigen::Vector2d low_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
-    double ceiling_m = 0.0;    ///< higher points are left out, as by the filter of the map
-    double farthest_m = 15.0;  ///< stations farther from the area are left out
+    double ceiling_m = 0.0;    ///< points above it are left out, as by the filter of the map
+    double farthest_m = 15.0;  ///< largest distance of a used station from the area
 };
-/// Area that the map of a run may cover: everything within half a map length of the path.
+/// Returns the area that the map of a run may cover: points within half a map length of the path.
 [[nodiscard]] ScanArea area_around(const sim::ScriptedScene& script, double half_map_m);
 
 /// Laser scan of a place, processed as in chapter 8 of the reference thesis (Lange 2016). Steps:
-/// remove stray points of each station, register stations, thin to 1 mm, remove outliers (7 points
-/// including the point itself, 4 sigma), compute heights on a grid.
+/// remove stray points of each station; register stations; thin to 1 mm; remove outliers (7 points
+/// including the point itself, 4 sigma); compute heights on a grid.
 struct ScannedPlace {
-    std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in world coordinates
+    std::vector<Eigen::Vector3f> points_m;  ///< points without outliers, in world coordinates
     grid::GridGeometry geometry;
     grid::Layer height_m;  ///< highest supported surface of each cell
     int stations = 0;
-    std::int64_t scanned = 0;  ///< points in the area before thinning, without stray points
+    std::int64_t scanned = 0;  ///< points in the area before thinning, stray points excluded
 };
-/// Scans the area. Errors: an invalid scanner configuration; no point in the area; interrupted by
-/// the user.
+/// Scans the area. Returns an error if the scanner configuration is not valid, if the area contains
+/// no point, or if the user interrupts.
 [[nodiscard]] Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
                                               const sim::LaserScannerConfig& config,
                                               std::uint64_t seed,

@@ -27,7 +27,8 @@ bool is_height(std::string_view name) {
            name == "upper_bound";
 }
 
-/// 1 = safe, 0 = proven unsafe, 0.5 = undecided or unreachable, NaN = unknown.
+/// Returns for each cell: 1 = safe, 0 = proven unsafe, 0.5 = undecided or unreachable, NaN =
+/// unknown.
 grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     using traversability::Foothold;
     const Image<Foothold> holds = pipeline.footholds();
@@ -41,7 +42,7 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     return layer;
 }
 
-/// Confidence of the ratings.
+/// Returns the confidence of the ratings.
 traversability::ConfidenceLayers rating_confidence(const pipeline::Pipeline& pipeline) {
     const auto& map = pipeline.map().layers();
     const grid::Layer surface_m = pipeline.surface_m();

@@ -18,18 +18,18 @@ inline constexpr std::array kLayerNames{
     "step",          "roughness",      "lower_bound", "upper_bound",   "rating_confidence",
     "smallest_step", "not_resolvable", "reach_step",  "traversability"};
 
-/// A layer and its name in files.
+/// A layer and its name in files and pictures.
 struct NamedLayer {
     const char* name;
     grid::Layer values;
 };
 
-/// All layers of the map and of its rating, with the height bounds, in the order of kLayerNames. A
-/// layer that was never computed has only unknown cells.
+/// Returns all layers of the map and of its rating, with the height bounds, in the order of
+/// kLayerNames. A layer that was not computed has only unknown cells.
 [[nodiscard]] std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline);
 
-/// PNG that shows all layers, `columns` side by side. All height layers use the value range of the
-/// elevation, so that their colours can be compared.
+/// Returns a PNG that shows all layers, with `columns` layers side by side. All height layers use
+/// the value range of the elevation, so that their colours can be compared.
 [[nodiscard]] std::vector<std::uint8_t> layer_sheet_png(const grid::GridGeometry& geometry,
                                                         std::span<const NamedLayer> layers,
                                                         double safe_threshold,

@@ -64,7 +64,7 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     return map;
 }
 
-/// Heights of the known cells around the query's pose [0.1 mm], sorted.
+/// Returns the heights of the known cells around the pose of the query [0.1 mm], sorted.
 std::vector<std::int64_t> heights_around(const gate::Query& query,
                                          const grid::MapSnapshot& map,
                                          std::int64_t radius) {
@@ -86,7 +86,7 @@ std::vector<std::int64_t> heights_around(const gate::Query& query,
     return heights;
 }
 
-/// Farthest corner of the standing feet from base_link [0.1 mm].
+/// Returns the distance of the farthest corner of the standing feet from base_link [0.1 mm].
 double reach_of(const Machine& machine) {
     double reach = 0.0;
     for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
@@ -128,7 +128,8 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     // in range: at most limit_m, or what the feet of a machine reach
     area.radius_tenth_mm = static_cast<std::int32_t>(
         (radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
-    // Lower quartile: the machine stands on the lower ground around it, not on furniture beside it.
+    // Takes the lower quartile, because the machine stands on the lower ground around it and not on
+    // furniture beside it.
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty())
         area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);

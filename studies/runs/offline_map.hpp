@@ -13,26 +13,26 @@
 
 namespace surefoot::app {
 
-/// A map from a folder, and the assumptions that were necessary to use it.
+/// A map from a folder, and the assumptions that its use needs.
 struct OfflineMap {
     std::unique_ptr<grid::MapSnapshot> snapshot;
     std::vector<std::string> assumed;
 };
 
-/// Reads map.snapshot of a run. If there is no such file, reads elevation.asc with variance.asc.
+/// Reads map.snapshot of a run. Without this file, reads elevation.asc and variance.asc.
 [[nodiscard]] Result<OfflineMap> load_offline_map(const std::string& folder);
 
 /// Makes an operator attestation for the ground around base_link, at the height of the known cells
-/// there. A negative radius means: as far as the standing feet reach. Adds a sentence to `assumed`.
-/// Usage error if the radius exceeds the limit of the machine file.
+/// there. A negative radius selects the reach of the standing feet. Adds a sentence to `assumed`.
+/// Returns a usage error if the radius exceeds the limit of the machine file.
 [[nodiscard]] Result<gate::AttestedArea> attest_start(const Machine& machine,
                                                       const gate::Query& query,
                                                       const grid::MapSnapshot& map,
                                                       double radius_m,
                                                       std::vector<std::string>& assumed);
 
-/// Inputs of the gate besides map and query when it runs offline. The gate state is `ready`. The
-/// time is the latest stamp of the map, so an old depth frame still counts as old.
+/// Returns the inputs of the gate besides map and query when the gate runs offline. The gate state
+/// is `ready`. The time is the latest stamp of the map, so an old depth frame still counts as old.
 struct OfflineMoment {
     gate::GateHealth health{gate::GateState::ready, {}};
     std::int64_t now_ns = 0;

@@ -10,7 +10,7 @@
 namespace surefoot::app {
 
 Result<PlaceSession> PlaceSession::open(const std::string& file) {
-    // Report a wrong path before the run, not after it.
+    // Reports a wrong path before the run, not after it.
     const std::string folder = io::folder_of(file);
     if (!io::is_folder(folder))
         return usage_error(

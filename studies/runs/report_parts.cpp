@@ -68,7 +68,7 @@ Json figures_json(const eval::ErrorFigures& e, const std::string& unit) {
             {"count", e.count}};
 }
 
-/// Errors [m] per bin; the limits of the bins are in `key_unit`.
+/// Returns the errors [m] per bin. The limits of the bins have the unit of `key_unit`.
 Json bins_json(const std::vector<eval::ErrorBin>& bins, const std::string& key_unit) {
     Json list = Json::array();
     for (const eval::ErrorBin& bin : bins) {
@@ -86,7 +86,7 @@ Json sigma_json(const eval::SigmaCoverage& s) {
             {"count", s.count}};
 }
 
-/// x y z qx qy qz qw
+/// Returns the list x y z qx qy qz qw.
 Json pose_json(const Pose& T) {
     const Eigen::Vector3d& t = T.translation_m;
     const Eigen::Quaterniond& q = T.rotation;

@@ -21,11 +21,11 @@ namespace surefoot::app {
 [[nodiscard]] gate_process::Json traversability_json(const eval::TraversabilityErrors& t);
 [[nodiscard]] gate_process::Json errors_json(const eval::TrajectoryErrors& e);
 [[nodiscard]] gate_process::Json figures_json(const eval::ErrorFigures& e, const std::string& unit);
-/// Errors [m] per bin; the limits of the bins are in `key_unit`.
+/// Returns the errors [m] per bin. The limits of the bins have the unit of `key_unit`.
 [[nodiscard]] gate_process::Json bins_json(const std::vector<eval::ErrorBin>& bins,
                                            const std::string& key_unit);
 [[nodiscard]] gate_process::Json sigma_json(const eval::SigmaCoverage& s);
-/// x y z qx qy qz qw
+/// Returns the list x y z qx qy qz qw.
 [[nodiscard]] gate_process::Json pose_json(const Pose& T);
 [[nodiscard]] gate_process::Json camera_json(const camera::RectifiedRig& rig);
 [[nodiscard]] gate_process::Json maps_object(const eval::MapComparison& result);

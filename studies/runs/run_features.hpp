@@ -9,9 +9,9 @@ namespace surefoot::app {
 
 /// Terrain features of a run (edges, drops, kerbs, sills, flights, doors), split by confirmation.
 struct RunFeatures {
-    /// Found by two observations or more.
+    /// Features that two or more observations found.
     stairs::TerrainFeatures confirmed;
-    /// Found by one observation, or only in the final map (0 observations).
+    /// Features that one observation found, or only the final map (0 observations).
     stairs::TerrainFeatures unconfirmed;
 };
 
@@ -24,7 +24,7 @@ struct RunFeatures {
 /// Splits the tracked features without a comparison, for runs whose final map cannot be read.
 [[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures tracked);
 
-/// "1 flight, 2 drops, ...; 3 edges; 1 drop seen once, not confirmed".
+/// Returns a text such as "1 flight, 2 drops; 3 edges; 1 drop seen once, not confirmed".
 [[nodiscard]] std::string features_count_text(const RunFeatures& features);
 
 }  // namespace surefoot::app

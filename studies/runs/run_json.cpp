@@ -20,7 +20,8 @@ using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
 
-/// The `count` numbers of a list; nullopt if the list is missing or has another size or content.
+/// Returns the `count` numbers of a list; nullopt if the list is missing or has another size or
+/// content.
 std::optional<std::vector<double>> numbers_of(const Json& object,
                                               const char* name,
                                               std::size_t count) {
@@ -98,7 +99,7 @@ Json self_calibration_json(const std::optional<stereo::RigSelfCalibration>& self
 
 Json place_json(const PlaceRecord& place) {
     Json refusals = Json::object();
-    for (int i = 1; i < place_recognition::kRefusals; ++i)  // index 0 is Refusal::none
+    for (int i = 1; i < place_recognition::kRefusals; ++i)  // skips index 0, which is Refusal::none
         refusals[to_string(static_cast<place_recognition::Refusal>(i))] =
             place.refusals[static_cast<std::size_t>(i)];
     const std::string& reason = place.left_as_it_was;
@@ -113,7 +114,8 @@ Json place_json(const PlaceRecord& place) {
             {"left_as_it_was", reason.empty() ? Json(nullptr) : Json(reason)}};
 }
 
-/// Why a run is incomplete: it ended early, or its results could not be written; else null.
+/// Returns why a run is incomplete: it ended early, or its results could not be written. Null = it
+/// is complete.
 Json error_json(const RunRecord& record, const Status& written) {
     if (record.error) return record.error->message;
     return written ? Json(nullptr) : Json(written.error().message);

@@ -20,12 +20,12 @@ namespace surefoot::app {
 /// The camera of a run, as report.json describes it.
 struct ReportCamera {
     eval::PinholeView view;
-    Pose T_body_camera;  ///< rectified left optical frame in base_link
+    Pose T_body_camera;  ///< pose of the rectified left optical frame in base_link
 };
-/// Standard deviation of the vertical in a report.json: NaN if the run did not know it or if the
-/// report is not valid JSON, 0 if the report has no such key (older versions).
+/// Standard deviation of the vertical [rad] in a report.json. NaN = the run did not know it, or the
+/// report is not valid JSON. 0 = the report has no such key (older versions).
 [[nodiscard]] double parse_report_tilt_sigma_rad(const std::string& report_json);
-/// The camera of a report.json; nullopt if it is missing or incomplete (an older or damaged file).
+/// Returns the camera of a report.json; nullopt if it is missing or incomplete (old or damaged).
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
 /// Returns the content of report_json without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record,

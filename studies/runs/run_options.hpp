@@ -15,7 +15,7 @@ struct RunOptions : SourceOptions {
     int depth_every = 1;
     bool all_layers = false;
     std::string save_map;  ///< file for the whole map; empty = not saved
-    std::string place;     ///< place database; empty = no place recognition
+    std::string place;     ///< file of the place database; empty = no place recognition
 };
 
 }  // namespace surefoot::app

@@ -34,7 +34,7 @@
 namespace surefoot::app {
 namespace {
 
-/// One point per known cell with its variance and rating.
+/// Returns one point for each known cell with its variance and rating.
 io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
@@ -58,7 +58,7 @@ io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     return cloud;
 }
 
-/// Values that are not settings but determine the result, as a comment above the settings.
+/// Returns values that are not settings but affect the result, as a comment above the settings.
 std::string command_line(const RunOptions& options) {
     std::string line = fmt::format("# surefoot {}: run {}", SUREFOOT_VERSION, options.source);
     const auto add = [&](const char* option, const std::string& value) {
@@ -76,7 +76,7 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
-/// All layers except the three that every run writes.
+/// Writes all layers except the three that every run writes.
 void write_all_layers(const std::string& out,
                       const grid::GridGeometry& geometry,
                       std::span<const NamedLayer> layers,
@@ -88,9 +88,9 @@ void write_all_layers(const std::string& out,
     }
 }
 
-/// Horizontal distance from base_link to the nearest trusted pixel of the last frame with depth
-/// [m]. The nearest percent of the pixels is ignored as possible outliers. Empty if there is no
-/// such frame.
+/// Returns the horizontal distance from base_link to the nearest trusted pixel of the last frame
+/// with depth [m]. Ignores the nearest percent of the pixels as possible outliers. Empty if there
+/// is no such frame.
 std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     constexpr double kChance = 0.01;
     const DepthImage& depth = pipeline.depth();
@@ -119,8 +119,8 @@ std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pi
     return *nearest;
 }
 
-/// If all visible points lie outside the map: a sentence with their distance and the map length
-/// that would reach them.
+/// If all visible points lie outside the map, returns a sentence with their distance and the map
+/// length that would reach them.
 std::optional<std::string> beyond_the_map(const RunRecord& record,
                                           const pipeline::Pipeline& pipeline) {
     const double length_m = pipeline.config().elevation.length_m;
@@ -158,8 +158,8 @@ grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geome
     return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
 }
 
-/// Compares the tracked features with those of the written map files, which `surefoot stairs` on
-/// the folder reads too.
+/// Compares the tracked features with those in the written map files. `surefoot stairs` on the
+/// folder reads the same files.
 RunFeatures run_features(const RunOptions& options,
                          const Settings& settings,
                          const pipeline::Pipeline& pipeline) {
@@ -262,7 +262,8 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
         });
     if (worst.first == 0) {
         return fmt::format(
-            "none of the {} depth points was rejected, but no cell got enough of them", f.points);
+            "none of the {} depth points was rejected, but no cell received enough points",
+            f.points);
     }
     return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
 }
@@ -301,7 +302,7 @@ Percentiles frame_percentiles(const RunRecord& record) {
 double peak_memory_mb() {
     rusage usage = {};
     getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports this value in kB
 }
 
 std::string modelled_note(const camera::SourceInfo& source) {
@@ -340,9 +341,9 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (const auto& self_calibration = pipeline.self_calibration()) {
         text += fmt::format(
             "self-calibration corrects the right camera by {:+.3f} deg about the line of sight, "
-            "{:+.3f} deg up and down and {:+.3f} % of the focal length: corresponding rows "
-            "differed by {:.2f} px, now by {:.2f} px (median); self_calibration.enabled=false "
-            "turns it off\n",
+            "{:+.3f} deg up and down and {:+.3f} % of the focal length. Median difference of "
+            "corresponding rows: {:.2f} px without the correction, {:.2f} px with it. To switch "
+            "self-calibration off, set self_calibration.enabled=false\n",
             self_calibration->camera.roll_rad * 180.0 / std::numbers::pi,
             self_calibration->camera.pitch_rad * 180.0 / std::numbers::pi,
             100.0 * self_calibration->camera.focal_share,
@@ -362,9 +363,10 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
     if (record.truth) {
         const TruthFigures& t = *record.truth;
         text += fmt::format(
-            "compared with the truth, without alignment: elevation median |error| {:.1f} mm, 90 % "
-            "within {:.1f} mm; away from edges {:.2f} % above 50 mm; {:.1f} % of the cells visible "
-            "within 2.5 m known; trajectory {:.1f} mm rmse; {:.1f} % of depths within 3 sigma\n",
+            "compared with the truth, without alignment: median |height error| {:.1f} mm, 90th "
+            "percentile {:.1f} mm; {:.2f} % of the height errors away from edges are above 50 mm; "
+            "{:.1f} % of the cells visible within 2.5 m are known; trajectory error {:.1f} mm "
+            "rmse; {:.1f} % of the depths are within 3 sigma\n",
             1e3 * t.maps.elevation.median_abs_m,
             1e3 * t.maps.elevation.p90_abs_m,
             100.0 * t.maps.elevation_away_from_edges.share_over_50mm,

@@ -21,17 +21,17 @@ namespace surefoot::app {
 /// Returns a copy of the layer, or a layer of unknown cells if the layer is empty.
 [[nodiscard]] grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry);
 
-/// Summary of a run for the terminal.
+/// Returns a summary of a run for the terminal.
 [[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 
-/// Note about results that the simulator modelled instead of computing them from images; empty if
-/// there are none.
+/// Returns a note about results that the simulator modelled instead of computing them from images.
+/// Empty if there are none.
 [[nodiscard]] std::string modelled_note(const camera::SourceInfo& source);
 
-/// One line about skipped broken frames; empty if there are none.
+/// Returns one line about skipped broken frames; empty if there are none.
 [[nodiscard]] std::string broken_text(const camera::BrokenFrames& broken);
 
-/// One sentence with the reason why the map has no known cell; empty if it has known cells.
+/// Returns one sentence with the reason for an empty map; empty if the map has known cells.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,
                                            const pipeline::Pipeline& pipeline);
 
@@ -42,12 +42,12 @@ struct Percentiles {
     std::size_t samples = 0;
 };
 [[nodiscard]] Percentiles percentiles(std::vector<double> values);
-/// Time of one stage [ms]. Counts full frames only, except for odometry, which runs on every frame.
+/// Returns the time of one stage [ms] over full frames only. Odometry counts on every frame.
 [[nodiscard]] Percentiles stage_percentiles(const RunRecord& record, Stage stage);
-/// Time of all stages together [ms], over the frames with full processing.
+/// Returns the time of all stages together [ms], over the frames with full processing.
 [[nodiscard]] Percentiles frame_percentiles(const RunRecord& record);
 
-/// Peak resident memory of this process [MB].
+/// Returns the peak resident memory of this process [MB].
 [[nodiscard]] double peak_memory_mb();
 
 }  // namespace surefoot::app

@@ -95,7 +95,7 @@ void add_truth(const RunRecord& record,
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
                                "mm",
                                "compared with the highest true surface of the cell"});
-    content.figures.push_back({"Elevation, 90 % within",
+    content.figures.push_back({"Elevation, 90th percentile of |error|",
                                fmt::format("{:.1f}", 1e3 * t.maps.elevation.p90_abs_m),
                                "mm",
                                ""});
@@ -116,7 +116,7 @@ void add_truth(const RunRecord& record,
         {"Depths within 3 sigma", fmt::format("{:.1f}", 100.0 * t.depth.within_3_sigma), "%", ""});
 }
 
-/// Edges and stairs drawn over the heights, with their measures.
+/// Returns the edges and stairs drawn over the heights, with their measures.
 eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
                                    const std::vector<std::uint8_t>& png,
                                    const std::vector<std::uint8_t>& classes_png) {
@@ -143,7 +143,8 @@ eval::ReportTable configuration_table(const Settings& settings) {
     return table;
 }
 
-/// "mirror suspected at 0.45 m, bearing 3 deg to the left", from base_link at the last frame.
+/// Returns a text such as "mirror suspected at 0.45 m, bearing 3 deg to the left", seen from
+/// base_link at the last frame.
 std::string pane_text(const specular::SuspectedPane& pane,
                       double mirror_correlation,
                       const Pose& T_odom_body) {

@@ -6,8 +6,8 @@
 
 namespace surefoot::app {
 
-/// Overlays for the map pictures of a run: the path, the final pose of the body and, with a machine
-/// file, its feet.
+/// Returns the overlays for the map pictures of a run: the path, the final pose of the body, and
+/// the feet if there is a machine file.
 [[nodiscard]] eval::Overlays overlays_of(const std::optional<io::MachineFile>& machine,
                                          const RunRecord& record);
 

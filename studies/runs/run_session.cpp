@@ -42,7 +42,7 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
     try {
         process_all(label, after_frame);
     } catch (const std::exception& error) {
-        // A library may throw, for example when memory is exhausted. Keep the results so far.
+        // A library may throw, for example when memory is exhausted. The results so far are kept.
         record_.error = input_error(fmt::format("{}: after {} frames: {}; the results are kept",
                                                 record_.source.path,
                                                 record_.frames.size(),
@@ -87,7 +87,7 @@ std::optional<StereoFrame> RunSession::next_frame() {
         record_.error = frame.error();
         return std::nullopt;
     }
-    // The stream of a live camera also ends when the user interrupts it while it waits.
+    // A user interrupt while a live camera waits also ends the stream.
     if (!frame->has_value() && interrupted()) {
         record_.error = Error{ErrorCode::interrupted,
                               "interrupted by the user; the results up to here are kept"};
@@ -100,7 +100,8 @@ void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
     if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
-    if (const Status cameras = cameras_.check(pipeline_, report, quiet_); !cameras && !record_.error)
+    if (const Status cameras = cameras_.check(pipeline_, report, quiet_);
+        !cameras && !record_.error)
         record_.error = cameras.error();
     record_.fusion += report.fusion;
     record_.frame_status += report.frame_status;

@@ -22,27 +22,27 @@ struct RunRecord {
     camera::SourceInfo source;
     camera::StereoRig rig;
     std::vector<FrameReport> frames;
-    FusionCounts fusion;             ///< summed over all frames
-    FrameStatusCounts frame_status;  ///< summed over all frames
+    FusionCounts fusion;             ///< sums over all frames
+    FrameStatusCounts frame_status;  ///< sums over all frames
     /// Frames skipped before the first of `frames`, see pipeline/start.hpp.
     int waited_frames = 0;
     std::optional<Error> error;  ///< reason why the run ended early
     GreyImage last_left;         ///< last rectified left image, for the report
     DepthImage last_depth;
-    std::optional<TruthFigures> truth;  ///< simulated sources only
-    std::optional<PlaceRecord> place;   ///< `run --place` only
+    std::optional<TruthFigures> truth;  ///< set only for simulated sources
+    std::optional<PlaceRecord> place;   ///< set only with `run --place`
     double wall_s = 0.0;
 
     [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }
 };
 
-/// Poses in odom of a frame that is fixed to the body. The default is base_link itself.
+/// Returns the poses in odom of a frame fixed to the body, by default of base_link itself.
 [[nodiscard]] Trajectory trajectory_of(std::span<const FrameReport> frames,
                                        const Pose& T_body_fixed = Pose{});
 
 /// Runs a pipeline on a source. Buffers the first frames for the alignment, then processes every
 /// frame. Stops at the first error of the source, when the cameras are swapped, or when the user
-/// interrupts. The results up to then stay in `record()` and in the map of the pipeline.
+/// interrupts. Earlier results stay in `record()` and in the map of the pipeline.
 class RunSession {
   public:
     /// `rig`: the rig of the source with its mount, as the pipeline uses it. `depth_every`: depth
@@ -52,10 +52,10 @@ class RunSession {
                const camera::StereoRig& rig,
                int depth_every,
                const eval::EvalMapsConfig& maps);
-    /// Called after every processed frame, before the pipeline sees the next frame.
+    /// Function that is called after every processed frame, before the pipeline sees the next one.
     using AfterFrame = std::function<void(const FrameReport&)>;
-    /// Returns when the source ends, fails or is interrupted. Shows progress under `label`; an
-    /// empty label shows nothing.
+    /// Processes frames until the source ends or fails, or the user interrupts. Shows progress
+    /// under `label`; an empty label shows nothing.
     void drive(const std::string& label = "run", const AfterFrame& after_frame = {});
     [[nodiscard]] RunRecord& record() noexcept { return record_; }
 

@@ -34,7 +34,7 @@ sim::Lattice lattice_of(const grid::GridGeometry& geometry) {
     return {geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
 }
 
-/// The rectified left camera along the run.
+/// Returns the rectified left camera along the run.
 eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Trajectory& bodies) {
     const camera::RectifiedRig& rig = pipeline.rig();
     eval::CameraTrack track;
@@ -45,10 +45,10 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
-/// Resamples the exact depth of a raw left image without distortion for the rectified
-/// camera. That camera is slightly rotated if the rig differs from the rig of the scene. Depth
-/// is along the optical axis of the rectified camera, taken from the nearest raw pixel. Empty for
-/// a lens with distortion.
+/// Resamples the exact depth of a raw left image without distortion for the rectified camera. This
+/// camera is slightly rotated if the rig differs from the rig of the scene. The depth is along the
+/// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for a lens with
+/// distortion.
 Image<float> seen_by(const camera::RectifiedRig& rig,
                      const camera::StereoRig& raw_rig,
                      const Image<float>& raw_m) {
@@ -75,8 +75,8 @@ Image<float> seen_by(const camera::RectifiedRig& rig,
 }
 
 /// Removes the poses before `first_ns`, the time of the first processed frame. Returns false if the
-/// body moved before: then odom starts elsewhere than the world, and a comparison without alignment
-/// is impossible.
+/// body moved before this time: odom then does not start at the origin of the world, and a
+/// comparison without alignment is impossible.
 bool starts_at(std::vector<StampedPose>& trajectory, std::int64_t first_ns) {
     const Pose T_world_first = trajectory.front().T_world_body;
     std::erase_if(trajectory, [&](const StampedPose& pose) { return pose.time_ns < first_ns; });

@@ -13,31 +13,31 @@
 
 namespace surefoot::app {
 
-/// Reported depth against exact depth. Counts only pixels with a low outlier probability.
+/// Errors of the reported depth. Counts only pixels with a low outlier probability.
 struct DepthFigures {
     std::int64_t pixels = 0;
-    double within_3_sigma = 0.0;  ///< share of |error| <= 3 sigma_z
+    double within_3_sigma = 0.0;  ///< share of pixels with |error| <= 3 sigma_z
     double within_1_sigma = 0.0;
-    double median_abs_error_px = 0.0;  ///< error of the disparity
-    double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
-    double sigma_at_2_m_m = 0.0;       ///< mean reported sigma_z at 1.9-2.1 m
-    double outlier_share = 0.0;        ///< pixels with an outlier probability above one half
+    double median_abs_error_px = 0.0;  ///< median |disparity error|
+    double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m depth
+    double sigma_at_2_m_m = 0.0;       ///< mean reported sigma_z at 1.9-2.1 m depth
+    double outlier_share = 0.0;        ///< share of pixels with an outlier probability above 0.5
 };
 
-/// Errors of a simulated run. Nothing is aligned before the comparison.
+/// Errors of a simulated run. No result is aligned with the truth before the comparison.
 struct TruthFigures {
     eval::MapComparison maps;
     /// Share of known cells among the cells that both cameras saw within 2.5 m.
     double coverage_within_2_5_m = 0.0;
-    eval::TraversabilityErrors traversability;  ///< errors over the same cells
-    eval::TrajectoryErrors trajectory;          ///< errors without alignment
+    eval::TraversabilityErrors traversability;  ///< rating errors over the same cells
+    eval::TrajectoryErrors trajectory;          ///< path errors without alignment
     DepthFigures depth;
     Trajectory truth_trajectory;
 };
 
-/// Height of the origin of odom in the world [m]. If the ground was found, odom starts on the
-/// ground, which is z = 0 in the world. Otherwise odom starts at the first body pose, and the true
-/// height of that pose gives the offset.
+/// Returns the height of the origin of odom in the world [m]. If the ground was found, odom starts
+/// on the ground, which is z = 0 in the world. Otherwise odom starts at the first body pose, and
+/// the true height of that pose gives the offset.
 [[nodiscard]] double odom_height_m(const pipeline::Pipeline& pipeline,
                                    const sim::SceneTruth& truth,
                                    const std::vector<FrameReport>& frames);
@@ -51,7 +51,7 @@ class SimTruth {
     void remember_depth(const StereoFrame& frame);
     /// Adds the depth errors of a frame that the pipeline has just processed.
     void compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline);
-    /// Empty if the source is not simulated, or if the body moved before odom was placed.
+    /// Returns the errors. Empty for a real source, or if the body moved before odom was placed.
     [[nodiscard]] std::optional<TruthFigures> figures(const pipeline::Pipeline& pipeline,
                                                       const std::vector<FrameReport>& frames,
                                                       const eval::EvalMapsConfig& config) const;
@@ -62,7 +62,7 @@ class SimTruth {
         std::int64_t count = 0;
     };
     const sim::SceneSource* scene_ = nullptr;
-    std::deque<std::pair<int, Image<float>>> depths_;  ///< frame index, exact depth
+    std::deque<std::pair<int, Image<float>>> depths_;  ///< pairs of frame index and exact depth
     std::int64_t compared_ = 0;
     std::int64_t outliers_ = 0;
     std::int64_t within_3_sigma_ = 0;

@@ -50,7 +50,7 @@ class ListReader {
         return true;
     }
 
-    /// NaN if the member is missing.
+    /// Returns NaN if the member is missing.
     double number(const Json& object, const char* name) {
         if (!object.contains(name) || object[name].is_null())
             return std::numeric_limits<double>::quiet_NaN();
@@ -236,7 +236,7 @@ Json log10_of(double log_ratio) {
     return number(log_ratio / std::numbers::ln10);
 }
 
-/// The ratio of a flight is that of its least certain step.
+/// Returns the log ratio of the least certain step, which represents the flight.
 double least_log_ratio(const stairs::Flight& flight) {
     double least = std::numeric_limits<double>::quiet_NaN();
     for (const stairs::Edge& edge : flight.edges)
@@ -269,7 +269,7 @@ void add_marks(const std::vector<Feature>& features, bool gravity_assumed, Json&
     }
 }
 
-/// Pages have the lists by the same names, without the marks.
+/// Returns the lists with marks. The web page gets the same lists without the marks.
 Json marked_lists(const stairs::TerrainFeatures& features, bool gravity_assumed) {
     Json json = page::feature_lists(features);
     add_marks(features.flights, gravity_assumed, json["flights"]);

@@ -79,7 +79,7 @@ Row line_row(const char* what, const stairs::LineFeature& line) {
         "",
         fmt::format("{:.2f} m", line.length_m),
         place_text(line.pose),
-        line.bottom_seen ? "" : "the camera did not see its bottom"};
+        line.bottom_seen ? "" : "the camera did not see the lower ground"};
 }
 
 Row door_row(const stairs::Door& door) {
@@ -92,7 +92,7 @@ Row door_row(const stairs::Door& door) {
         fmt::format("sill {}, {}",
                     length_text(door.sill_m, door.sill_sigma_m),
                     std::isfinite(door.clearance_m) ? fmt::format("{:.2f} m high", door.clearance_m)
-                                                    : "no ceiling above it seen")};
+                                                    : "no ceiling seen above the door")};
 }
 
 std::vector<Row> rows_of(const stairs::TerrainFeatures& features) {

@@ -8,13 +8,13 @@
 
 namespace surefoot::app {
 
-/// "2 flights, 1 drop, no kerb, no sill, no door; 9 edges".
+/// Returns a text such as "2 flights, 1 drop, no kerb, no sill, no door; 9 edges".
 [[nodiscard]] std::string features_count_text(const stairs::TerrainFeatures& features);
 
-/// One line for each flight, drop, kerb, sill and door.
+/// Returns one line for each flight, drop, kerb, sill and door.
 [[nodiscard]] std::string features_text(const stairs::TerrainFeatures& features);
 
-/// Same features as a table for a report; no rows if there are no features.
+/// Returns the same features as a table for a report; no rows without features.
 [[nodiscard]] eval::ReportTable features_table(const stairs::TerrainFeatures& features);
 
 }  // namespace surefoot::app

@@ -49,7 +49,7 @@ Result<TerrainMap> from_image(const TerrainRequest& request) {
     return map;
 }
 
-/// The highest supported surface of each cell.
+/// Reads a cloud. The ground of each cell is its highest supported surface.
 Result<TerrainMap> from_cloud(const TerrainRequest& request) {
     const auto cloud = io::read_cloud(request.map);
     if (!cloud) return cloud.error();
@@ -101,7 +101,7 @@ Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry
     return std::move(dem->values);
 }
 
-/// Number of observations of each cell; 0 for unknown cells.
+/// Returns the number of observations of each cell; 0 for unknown cells.
 Image<std::uint32_t> observations_of(const grid::Layer& count) {
     constexpr float kMost = 1e9F;
     Image<std::uint32_t> observations(count.width(), count.height(), 0);
@@ -213,7 +213,7 @@ Status check_cells(const std::string& file, const TerrainMap& map) {
                     map.geometry.ny));
 }
 
-/// The known cell nearest to the middle of the border with the smallest x.
+/// Returns the known cell nearest to the middle of the border with the smallest x.
 Vector2d nearest_to_border(const TerrainMap& map) {
     const grid::GridGeometry& g = map.geometry;
     const Vector2d middle_m =
@@ -250,8 +250,7 @@ Status stand_as_given(const std::string& from, TerrainMap& map) {
                     g.origin_m.y() + g.ny * g.resolution_m));
 }
 
-/// Default standing position: base_link of the run, otherwise the origin, otherwise the
-/// near border.
+/// Sets the default standing position: base_link of the run, else the origin, else the near border.
 void stand_somewhere(TerrainMap& map) {
     if (map.T_odom_body) {
         map.stance_m = map.T_odom_body->translation_m.head<2>();
@@ -294,7 +293,8 @@ stairs::Terrain TerrainMap::terrain() const {
 Result<TerrainMap> load_terrain(const TerrainRequest& request) {
     auto map = load_map(request);
     if (!map) return map.error();
-    // Clouds also have marks for "no data"; the readers of grids have already removed theirs.
+    // Clouds also have marks for "no data". The readers of grids have already removed the marks of
+    // grids.
     for (std::string& note : io::drop_impossible_heights(map->height_m))
         map->assumed.push_back(std::move(note));
     if (auto status = check_cells(request.map, *map); !status) return status.error();

@@ -14,35 +14,35 @@
 
 namespace surefoot::app {
 
-/// The height map to load, and its source.
+/// The height map to load and the options of its file type.
 struct TerrainRequest {
-    std::string map;  ///< .asc, .png, a cloud, or the folder of a run
-    /// Standing position "x,y" [m]; empty = chosen from the map, see load_terrain().
+    std::string map;  ///< file .asc, .png or a cloud, or the folder of a run
+    /// Standing position "x,y" [m]; empty = load_terrain() chooses it from the map.
     std::string from;
-    double scale_m_per_px = 0.0;       ///< PNG: metres per pixel
-    double height_m = 0.0;             ///< PNG: height of the brightest value
-    double resolution_m = 0.025;       ///< cell size for a cloud
-    std::optional<double> lowest_z_m;  ///< lowest z of the points of a cloud
+    double scale_m_per_px = 0.0;       ///< PNG: size of a pixel [m]
+    double height_m = 0.0;             ///< PNG: height of the brightest value [m]
+    double resolution_m = 0.025;       ///< cloud: cell size [m]
+    std::optional<double> lowest_z_m;  ///< cloud: lower points are ignored
     std::optional<double> highest_z_m;
 };
 
 /// The heights of a file or folder, the other known layers, the standing position, and the
-/// assumptions that were necessary.
+/// assumptions that the data needed.
 struct TerrainMap {
     grid::GridGeometry geometry;
     grid::Layer height_m;
-    grid::Layer height_var_m2;  ///< empty = unknown, as for the following layers
+    grid::Layer height_var_m2;  ///< this and the following layers: empty = unknown
     grid::Layer free_above_m;
     grid::Layer clearance_m;
     grid::Layer density_ratio;
     Image<std::uint32_t> observations;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     std::optional<Pose> T_odom_body;  ///< pose of the machine, if known
-    /// From the run that made the map; grids, images and clouds do not store it.
+    /// Gravity source of the run that made the map; grids, images and clouds do not store it.
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     std::vector<std::string> assumed;
 
-    /// Views of the layers; the map must outlive them.
+    /// Returns views of the layers; the map must outlive them.
     [[nodiscard]] stairs::Terrain terrain() const;
 };
 

@@ -9,7 +9,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Copies the next frame; false at the end of the source.
+/// Copies the next frame. Returns false at the end of the source.
 Result<bool> copy_one(camera::FrameSource& source,
                       io::Recorder& recorder,
                       const std::function<Status(const StereoFrame&)>& after_frame) {

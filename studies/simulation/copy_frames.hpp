@@ -10,11 +10,11 @@
 
 namespace surefoot::app {
 
-/// Result of copying: how many frames were copied, and the error that ended the copy early.
+/// Result of copying: the number of frames copied, and the error that ended the copy early.
 struct Copied {
     int frames = 0;
-    camera::BrokenFrames broken = {};  ///< frames that the source skipped
-    std::optional<Error> error;  ///< from source, recorder or `after_frame`, or a user interrupt
+    camera::BrokenFrames broken = {};  ///< frames that the source skipped as broken
+    std::optional<Error> error;  ///< error of source, recorder or `after_frame`, or user interrupt
 };
 
 /// Creates a recording for the frames of `source`. A source without images is a usage error.

@@ -127,7 +127,7 @@ Status write_scan(const SimOptions& options,
     return {};
 }
 
-/// Bytes of one point in the file: x, y, z, station, mixed as floats.
+/// Bytes of one point in the file: x, y, z, station and mixed flag, each a float.
 constexpr std::int64_t kBytesPerPoint = 5 * sizeof(float);
 
 }  // namespace
@@ -202,7 +202,7 @@ int scan(const SimOptions& options) {
                          size.points,
                          std::ceil(1e-6 * size.bytes)));
     const auto free_bytes = io::free_bytes(io::folder_of(options.scan_file));
-    if (free_bytes) {  // unknown on some file systems: a full disk then shows when writing
+    if (free_bytes) {  // no value on some file systems: then only writing detects a full disk
         if (auto status = check_room(options.scan_file, size, static_cast<double>(*free_bytes));
             !status)
             return report(status.error());

@@ -16,12 +16,12 @@
 
 namespace surefoot::app {
 
-/// Positions of the scanner in the world [m]: those of the scene file, or one position above the
-/// start of the path.
+/// Returns the positions of the scanner in the world [m]. They are those of the scene file, or one
+/// position above the start of the path.
 [[nodiscard]] std::vector<Eigen::Vector3d> stations_of(const sim::ScriptedScene& script);
 
-/// Expected number of points of all stations together. The share of beams that return is measured
-/// with a coarse scan from each station.
+/// Returns the expected number of points of all stations together. A coarse scan from each station
+/// measures the share of beams that return.
 [[nodiscard]] Result<double> expected_points(const sim::Scene& scene,
                                              const sim::LaserScannerConfig& config,
                                              std::span<const Eigen::Vector3d> stations_m,
@@ -33,22 +33,22 @@ struct ScanSize {
     double bytes = 0.0;
 };
 
-/// Input error if the scan does not fit on the disk. `free_bytes` is the free space.
+/// Returns an input error if the scan needs more space on the disk than `free_bytes`.
 [[nodiscard]] Status check_room(const std::string& file, const ScanSize& size, double free_bytes);
 
-/// Progress of a scan, and the reason why it ended early.
+/// Progress of a scan, and the error that ended it early.
 struct Scanned {
     std::string file;
-    int stations = 0;  ///< stations that were started
+    int stations = 0;  ///< number of started stations
     std::int64_t points = 0;
-    int tiles = 0;  ///< tile files; 0 = one cloud file
+    int tiles = 0;  ///< number of tile files; 0 = one cloud file
     std::optional<Error> error;
 };
 
-/// The result as JSON, see docs/reference/json.md.
+/// Returns the result as JSON, see docs/reference/json.md.
 [[nodiscard]] std::string scan_json(const Scanned& scanned);
 
-/// `surefoot sim --scan`: writes terrestrial laser scans of a scene. Returns the exit code.
+/// Runs `surefoot sim --scan`: writes laser scans of a scene. Returns the exit code.
 int scan(const SimOptions& options);
 
 }  // namespace surefoot::app

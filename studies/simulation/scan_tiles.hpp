@@ -14,12 +14,12 @@
 
 namespace surefoot::app {
 
-/// Origin of a scan, for the index file.
+/// Scene, seed and stations of a scan, for the index file.
 struct ScanOrigin {
     std::string scene;
     std::uint64_t seed = 0;
     std::vector<Eigen::Vector3d> stations_m;
-    bool complete = true;  ///< false = the scan was interrupted
+    bool complete = true;  ///< false = the user interrupted the scan
 };
 
 /// Writes a scan as a folder of square tiles. "tile_X_Y.ply" holds the points with x from X to X +

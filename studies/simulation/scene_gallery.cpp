@@ -18,7 +18,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Lattice of the ground and objects around the paths of the scenes.
+/// Returns the lattice of the ground and objects around the paths of the scenes.
 sim::Lattice surroundings() {
     return {{-1.0, -2.5}, 280, 200, 0.025};
 }
@@ -28,10 +28,10 @@ Status write_png(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// Time of a characteristic view: half-way along the path or, for a walk, before the machine first
-/// turns away from its target.
+/// Returns the time of a characteristic view. It is half-way along the path. For a walk, it is just
+/// before the machine first turns away from its target.
 double telling_time_s(const sim::ScriptedScene& script) {
-    constexpr int kFirstTurn = 25;  // joystick codes 25 and 26
+    constexpr int kFirstTurn = 25;  // joystick codes 25 and 26 are turns
     for (const sim::StepEvent& step : script.steps) {
         if (step.command >= kFirstTurn) return step.start_s;
     }
@@ -62,7 +62,7 @@ Status write_view(const std::string& path,
     return write_png(path, eval::render_camera_image(last, {info.name, info.description}));
 }
 
-/// The colour range covers the ground, not the walls around it.
+/// Returns the colour range, which covers the ground but not the walls around it.
 eval::ValueRange ground_range(const grid::Layer& heights_m, const Image<sim::Label>& labels) {
     eval::ValueRange range{-0.05, 0.05};
     for (std::size_t i = 0; i < heights_m.size(); ++i) {

@@ -13,7 +13,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A comment line with the hash of a file that the call names; empty for a built-in name.
+/// Returns a comment line with the hash of a file that the call names. Empty for a built-in name.
 Result<std::string> file_line(const std::string& path) {
     if (!io::is_file(path)) return std::string();
     const auto bytes = io::read_file(path, io::limits::kSettingsBytes);

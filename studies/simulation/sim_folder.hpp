@@ -9,12 +9,12 @@
 
 namespace surefoot::app {
 
-/// Content of the `config.yaml` beside a simulated recording. It holds everything that determines
-/// the bytes of the recording: program version, call, hashes of the files that the call names, all
-/// settings.
+/// Returns the content of the `config.yaml` beside a simulated recording. The file holds every
+/// input that affects the recording: program version, call, hashes of the files that the call
+/// names, all settings.
 [[nodiscard]] Result<std::string> sim_config(const SimOptions& options, const Settings& settings);
 
-/// Whether an existing recording in a folder may be continued.
+/// Result of comparing the configuration of a folder with that of this call.
 struct SimFolder {
     io::Recorder::Existing existing = io::Recorder::Existing::refuse;
     /// Sentence with the first difference between the two configurations; empty = no difference.

@@ -21,7 +21,7 @@ struct SimOptions {
     double rate_hz = 0.0;
     std::string scan_file;
     std::vector<std::string> stations;  ///< positions of the laser scanner, each "x,y,z" [m]
-    double tile_m = 0.0;                ///< side of the square tiles of a scan; 0 = one file
+    double tile_m = 0.0;                ///< side of the square tiles of a scan [m]; 0 = one file
     std::string tile_format = "ply";
 };
 

@@ -12,11 +12,11 @@
 namespace surefoot::app {
 namespace {
 
-/// Wrong verdicts of a group of cases.
+/// Sums over a group of cases, with their wrong verdicts.
 struct Pool {
     int cases = 0;
-    double safe = 0.0;     ///< clear-cut safe movements
-    double allowed = 0.0;  ///< ... of these allowed
+    double safe = 0.0;     ///< number of clear-cut safe movements
+    double allowed = 0.0;  ///< number of these movements that the gate allowed
     VerdictTallies tallies;
 
     void add(const SuiteResult& result) {
@@ -58,8 +58,8 @@ eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
         const std::string name = by == TallyKey::proof ? words_of(tally.name) : tally.name;
         const std::string text =
             by == TallyKey::danger
-                ? fmt::format("{} ({} as the only one)", tally.named, tally.alone)
-                : fmt::format("{}, as the only one {}",
+                ? fmt::format("{} ({} as the only danger)", tally.named, tally.alone)
+                : fmt::format("named in {}, named alone in {}",
                               percent(tally.named, pool.safe),
                               percent(tally.alone, pool.safe));
         bars.bars.push_back({name, static_cast<double>(tally.named), text});
@@ -84,8 +84,8 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
     std::vector<eval::ReportBars> all;
     for (const auto& [noise, pool] : by_noise) {
         const std::string at = fmt::format("noise {}", times(noise));
-        all.push_back(
-            bars_of(pool, TallyKey::reason, "Why clearly safe movements were refused, " + at));
+        all.push_back(bars_of(
+            pool, TallyKey::reason, "Reasons of the refusals of clearly safe movements, " + at));
         all.push_back(
             bars_of(pool, TallyKey::proof, "Missing proofs of clearly safe movements, " + at));
         all.push_back(bars_of(pool, TallyKey::danger, "Missed hazards, " + at));
@@ -106,7 +106,7 @@ eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
     }
     std::sort(reasons.begin(), reasons.end());
     eval::ReportTable table;
-    table.title = "Why clearly safe movements were refused";
+    table.title = "Reasons of the refusals of clearly safe movements";
     table.hint =
         "Share of the clearly safe movements at the end of the path whose verdict names this "
         "reason. A verdict can name several reasons.";

@@ -9,19 +9,19 @@
 
 namespace surefoot::app {
 
-/// Share of the clear-cut safe movements that the gate allowed, over all cases; NaN without such
-/// movements.
+/// Returns the share of the clear-cut safe movements that the gate allowed, over all cases. NaN =
+/// there are no such movements.
 [[nodiscard]] double allowed_share(std::span<const SuiteResult> results);
 
-/// Bar charts for every noise level: reasons for refusing clear-cut safe movements, proofs that
-/// failed for them, and missed hazards.
+/// Returns three bar charts for every noise level: the reasons for refusing clear-cut safe
+/// movements, the proofs that failed for them, and the missed hazards.
 [[nodiscard]] std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results);
-/// Reasons of the refusals by scene.
+/// Returns the reasons of the refusals by scene.
 [[nodiscard]] eval::ReportTable refusal_table(std::span<const SuiteResult> results);
 
-/// Each step that a walking user requested, with the verdict and the truth.
+/// Returns each step that a walking user requested, with the verdict and the truth.
 [[nodiscard]] eval::ReportTable step_table(std::span<const SuiteResult> results);
-/// Verdicts about the clear-cut safe steps of walking users.
+/// Returns the verdicts about the clear-cut safe steps of walking users.
 [[nodiscard]] eval::ReportBars step_bars(std::span<const SuiteResult> results);
 
 }  // namespace surefoot::app

@@ -69,8 +69,8 @@ TEST(SuiteAnswers, SharesArePooledOverTheQuestionsNotOverTheCases) {
     const auto of_reason =
         std::find_if(bars.begin(), bars.end(), [](const auto& b) { return !b.bars.empty(); });
     ASSERT_NE(of_reason, bars.end());
-    EXPECT_EQ(of_reason->bars[0].text, "40.0 %, as the only one 20.0 %");
-    EXPECT_EQ(bars.back().bars[0].text, "2 (1 as the only one)");
+    EXPECT_EQ(of_reason->bars[0].text, "named in 40.0 %, named alone in 20.0 %");
+    EXPECT_EQ(bars.back().bars[0].text, "2 (1 as the only danger)");
 }
 
 }  // namespace

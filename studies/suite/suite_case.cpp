@@ -23,7 +23,7 @@ double share(int part, int whole) {
     return whole > 0 ? static_cast<double>(part) / whole : std::nan("");
 }
 
-/// A count that is NaN if no question was asked.
+/// Returns a count, or NaN if no question was asked.
 double among(int part, std::size_t whole) {
     return whole > 0 ? static_cast<double>(part) : std::nan("");
 }
@@ -79,7 +79,7 @@ std::vector<std::uint8_t> thumbnail_of(const RunRecord& record,
         pipeline.map().geometry(), record.truth->maps.calls, overlays));
 }
 
-/// A simulated run of the pipeline, with the questions to the gate on the way.
+/// A simulated run of the pipeline that asks the gate along the path.
 class CaseRun {
   public:
     CaseRun(const SuiteConditions& conditions,
@@ -160,16 +160,24 @@ std::string SuiteCase::name() const {
 const std::vector<SuiteFigure>& suite_figures() {
     using enum FigureKind;
     static const std::vector<SuiteFigure> all = {
-        {"frames", "Motion", count, false, "frames that were processed"},
-        {"healthy", "Motion", share, false, "frames with odometry OK"},
-        {"ate_rmse_m", "Motion", length_m, true, "trajectory error, not aligned"},
-        {"drift_percent", "Motion", percent, true, "drift along the path"},
+        {"frames", "Motion", count, false, "number of processed frames"},
+        {"healthy", "Motion", share, false, "share of the frames with odometry OK"},
+        {"ate_rmse_m", "Motion", length_m, true, "trajectory error (rmse) without alignment"},
+        {"drift_percent", "Motion", percent, true, "drift in percent of the path length"},
         {"height_median_m", "Heights", length_m, true, "median |height error|"},
         {"height_p90_m", "Heights", length_m, true, "90th percentile of |height error|"},
-        {"share_over_50mm", "Heights", share, true, "off by more than 50 mm, away from edges"},
-        {"height_1_sigma", "Heights", share, false, "within 1 sigma of the map"},
-        {"height_2_sigma", "Heights", share, false, "within 2 sigma"},
-        {"height_3_sigma", "Heights", share, false, "within 3 sigma"},
+        {"share_over_50mm",
+         "Heights",
+         share,
+         true,
+         "share of the heights away from edges with an error above 50 mm"},
+        {"height_1_sigma",
+         "Heights",
+         share,
+         false,
+         "share of the height errors within 1 sigma of the map"},
+        {"height_2_sigma", "Heights", share, false, "share of the height errors within 2 sigma"},
+        {"height_3_sigma", "Heights", share, false, "share of the height errors within 3 sigma"},
         {"edges_p99_m",
          "Ground",
          length_m,
@@ -181,10 +189,10 @@ const std::vector<SuiteFigure>& suite_figures() {
          share,
          false,
          "known share of the ground that both cameras saw within 2.5 m"},
-        {"false_safe", "Ground", share, true, "truly unsafe cells called safe"},
-        {"false_unsafe", "Ground", share, true, "truly safe cells called unsafe"},
-        {"depth_1_sigma", "Depth", share, false, "depths within 1 sigma"},
-        {"depth_3_sigma", "Depth", share, false, "depths within 3 sigma"},
+        {"false_safe", "Ground", share, true, "share of the truly unsafe cells called safe"},
+        {"false_unsafe", "Ground", share, true, "share of the truly safe cells called unsafe"},
+        {"depth_1_sigma", "Depth", share, false, "share of the depths within 1 sigma"},
+        {"depth_3_sigma", "Depth", share, false, "share of the depths within 3 sigma"},
         {"disparity_error_px", "Depth", pixels, true, "median |disparity error|"},
         {"depth_auc",
          "Depth",
@@ -202,7 +210,7 @@ const std::vector<SuiteFigure>& suite_figures() {
          "Gate",
          count,
          true,
-         "dangerous by less than the margin of the oracle, and allowed"},
+         "allowed movements that are dangerous by less than the margin of the oracle"},
         {"allowed", "Gate", share, false, "allowed share of the clearly safe movements"},
         {"steps", "Gate", count, false, "steps that the walking user requested"},
         {"steps_missed", "Gate", count, true, "clearly dangerous steps that the gate allowed"},
@@ -210,7 +218,7 @@ const std::vector<SuiteFigure>& suite_figures() {
          "Gate",
          count,
          true,
-         "dangerous by less than the margin of the oracle, and allowed"},
+         "allowed steps that are dangerous by less than the margin of the oracle"},
         {"steps_allowed", "Gate", share, false, "allowed share of the clearly safe steps"},
     };
     return all;

@@ -15,37 +15,37 @@
 
 namespace surefoot::app {
 
-/// One run of the suite: a scene, varied by its seed, with a multiple of the nominal camera noise.
+/// One run of the suite: a scene, its seed, and a multiple of the nominal camera noise.
 struct SuiteCase {
     std::string scene;
     std::uint64_t seed = 1;
     double noise = 1.0;                    ///< factor on the camera's noise amplitudes
-    int max_frames = 0;                    ///< 0 = the whole path
-    double rate_hz = 10.0;                 ///< frame rate of the camera
+    int max_frames = 0;                    ///< number of frames; 0 = the whole path
+    double rate_hz = 10.0;                 ///< frame rate of the camera [Hz]
     std::string motion_model = "trolley";  ///< motion model, one of sim::kMotionModelNames
 
-    /// Unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
+    /// Returns the unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
     [[nodiscard]] std::string name() const;
     friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
 };
 
-/// Reads one of sim::kCarriedByNames.
+/// Returns the motion model with this name, one of sim::kCarriedByNames.
 [[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
 
-/// Pipeline settings for a scene. The height of base_link above its ground comes from the truth,
-/// because the construction of each motion model fixes it. The trolley is 4 cm lower than the
-/// walking machine.
+/// Returns the pipeline settings for a scene. The height of base_link above its ground comes from
+/// the truth, because the construction of each motion model fixes this height. The trolley is 4 cm
+/// lower than the walking machine.
 [[nodiscard]] pipeline::PipelineConfig config_on(const sim::SceneTruth& truth,
                                                  const Settings& settings);
 
-/// Unit in which reports show a figure. Files hold SI units and shares of 1.
+/// Unit in which reports show a figure. Files hold SI units, and shares as fractions of 1.
 enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
 
 /// A figure that every case measures. `SuiteResult::figures` has the same order. `lower_is_better`
-/// defines the worst case of a figure.
+/// decides which case is the worst.
 struct SuiteFigure {
     const char* name;
-    const char* group;  ///< figures of one group share a table
+    const char* group;  ///< table of the report that contains this figure
     FigureKind kind;
     bool lower_is_better;
     const char* meaning;
@@ -55,18 +55,18 @@ struct SuiteFigure {
 /// Result of one case.
 struct SuiteResult {
     SuiteCase which;
-    std::vector<double> figures;   ///< one per suite_figures(); NaN = not measured
+    std::vector<double> figures;   ///< one value for each of suite_figures(); NaN = not measured
     std::vector<SuiteBin> bins;    ///< map errors by range and image column
-    std::vector<SuiteStep> steps;  ///< requested steps; walking machines only
+    std::vector<SuiteStep> steps;  ///< requested steps, only for walking machines
     VerdictTallies tallies;        ///< wrong verdicts at the end of the path
-    /// Confusion map as PNG; empty if no cell is known or the case was read from a file.
+    /// Confusion map as PNG. Empty = no cell is known, or the case was read from a file.
     std::vector<std::uint8_t> thumbnail;
 
-    /// The figure with that name.
+    /// Returns the figure with that name.
     [[nodiscard]] double figure(std::string_view name) const;
 };
 
-/// Total order of the cases, the worse first: by missed hazards, then unsafe cells rated safe, then
+/// Whether case a is worse than case b: by missed hazards, then unsafe cells rated safe, then
 /// height errors, then name.
 [[nodiscard]] bool is_worse(const SuiteResult& a, const SuiteResult& b);
 
@@ -74,7 +74,7 @@ struct SuiteResult {
 struct SuiteConditions {
     Settings settings;
     Machine machine;
-    double reach_m = 0.8;  ///< radius around the last pose in which the gate is asked
+    double reach_m = 0.8;  ///< largest distance from the last pose in a question [m]
 };
 
 /// Simulates the case, runs the whole pipeline and compares the results with the truth, without

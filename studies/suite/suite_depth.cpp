@@ -11,9 +11,9 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kEvery = 5;  ///< neighbouring frames show nearly the same view
+constexpr int kEvery = 5;  ///< uses every n-th frame; neighbouring frames look nearly the same
 
-/// Estimate minus truth [px]; NaN where either is unknown.
+/// Returns estimated minus true disparity [px]. NaN = one of the two is unknown.
 std::vector<float> disparity_errors(const Image<float>& truth_m,
                                     const pipeline::Pipeline& pipeline) {
     const Image<float>& disparity_px = pipeline.depth().disparity_px;
@@ -38,7 +38,8 @@ void DepthOrder::after_frame(const FrameReport& frame,
     const bool wanted = straight && seen_ % kEvery == 0 && frame.work == Work::full;
     const Image<float>& truth_m = source.last_depth_m();
     const DepthImage& depth = pipeline.depth();
-    // In a raw image the true depth belongs to other pixels than the rectified disparity.
+    // Skips raw images, because their true depth belongs to other pixels than the rectified
+    // disparity.
     if (!wanted || !source.rig().rectified || depth.disparity_px.size() != truth_m.size()) return;
     const auto errors_px = disparity_errors(truth_m, pipeline);
     const double auc =

@@ -7,16 +7,16 @@
 
 namespace surefoot::app {
 
-/// Measures how well the matcher's sigma ranks the disparity errors: the mean sparsification area
-/// (eval::Sparsification::auc) of single frames.
+/// Measures how well the sigma of the matcher ranks the disparity errors. The measure is the mean
+/// sparsification area (eval::Sparsification::auc) of single frames.
 class DepthOrder {
   public:
     /// Evaluates every fifth frame. Skips the frames that were buffered for the alignment, because
-    /// the source no longer has their true depth.
+    /// the source has no true depth for them any more.
     void after_frame(const FrameReport& frame,
                      const sim::SceneSource& source,
                      const pipeline::Pipeline& pipeline);
-    /// Mean area; NaN if no frame was evaluated.
+    /// Returns the mean area; NaN if no frame was evaluated.
     [[nodiscard]] double auc() const;
 
   private:

@@ -16,6 +16,7 @@ namespace {
 using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
+
 Json suite_figures_json(const std::vector<double>& figures) {
     Json object = Json::object();
     for (std::size_t i = 0; i < figures.size(); ++i)

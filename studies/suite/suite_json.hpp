@@ -10,7 +10,7 @@
 // written as null.
 namespace surefoot::app {
 
-/// `results`: in the order that `sorted` returns.
+/// `results` must be in the order that `sorted` returns.
 [[nodiscard]] std::string suite_json(std::span<const SuiteResult> results);
 
 }  // namespace surefoot::app

@@ -10,19 +10,19 @@ namespace surefoot::app {
 
 /// Options of `surefoot eval suite`.
 struct EvalSuiteOptions {
-    CommonOptions common;  ///< `seed` is the first seed of the suite
+    CommonOptions common;  ///< `seed` is the first seed of the cases
     std::string out_dir;
     std::string machine = "rex";
-    std::string camera = "zed";       ///< one of sim::kCameraProfileNames
+    std::string camera = "zed";       ///< camera profile, one of sim::kCameraProfileNames
     std::vector<std::string> scenes;  ///< empty = all
-    /// Motion models: names of sim::kCarriedByNames.
+    /// Motion models of the cases, each one of sim::kCarriedByNames.
     std::vector<std::string> motion_models = {"scene"};
-    int seeds = 1;                           ///< variants of each scene
+    int seeds = 1;                           ///< number of seeds for each scene
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera
     bool quick = false;
-    int frames = 0;        ///< frames of each case; 0 = the whole path
-    double reach_m = 0.8;  ///< radius around the last pose in which the gate is asked
-    bool thesis = false;   ///< run the experiments of the reference thesis (Lange 2016) instead
+    int frames = 0;        ///< largest number of frames of each case; 0 = the whole path
+    double reach_m = 0.8;  ///< largest distance from the last pose in a question [m]
+    bool thesis = false;   ///< true: run the experiments of the reference thesis (Lange 2016)
     std::vector<std::string> runs;  ///< names of thesis experiments; empty = all
 };
 

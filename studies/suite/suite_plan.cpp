@@ -16,14 +16,15 @@
 namespace surefoot::app {
 namespace {
 
-/// The quick suite has a few short cases of every kind, for every change of the code.
+/// The quick suite has a few short cases of every kind. It runs after every change of the code.
 constexpr double kQuickTime_s = 2.0;
-constexpr double kQuickWalk_s = 21.0;   ///< two steps, up to the stance before the third
-constexpr double kQuickDrive_s = 10.0;  ///< whole path of a trolley
-/// The scenes of the quick suite. In the first seconds the trolley sees only ground ahead of it,
-/// and the gate refuses every movement because the ground below is unknown. Therefore the floor and
-/// the platform run to the end of the path: there the gate can allow movements, and can refuse an
-/// edge for a better reason. The scene files keep these paths within the time.
+constexpr double kQuickWalk_s = 21.0;   ///< two steps, up to the stance before the third step
+constexpr double kQuickDrive_s = 10.0;  ///< duration of the whole path of a trolley
+/// The scenes of the quick suite. In the first seconds the trolley sees only ground ahead of it.
+/// The gate then refuses every movement, because the ground under the feet is unknown. So the
+/// scenes floor and platform_edge run to the end of the path: there the gate can allow movements,
+/// and can refuse an edge for a better reason. The scene files keep these paths within
+/// kQuickDrive_s.
 struct QuickScene {
     const char* name;
     double time_s;
@@ -80,8 +81,8 @@ Status check_name(const std::string& name) {
                     likely.empty() ? ";" : likely));
 }
 
-/// Adds the scene once for each motion model that can follow its path. Two names for the same
-/// motion model count once.
+/// Adds the scene once for each motion model that can follow its path. Two names of the same motion
+/// model count once.
 Status add_motion_models(const std::string& name,
                          const EvalSuiteOptions& options,
                          std::vector<SuiteScene>& scenes) {
@@ -130,7 +131,7 @@ Status check_noise(const std::vector<double>& factors) {
     return {};
 }
 
-/// Duration of a scene in the quick suite.
+/// Returns the duration of a scene in the quick suite.
 double quick_time_s(const SuiteScene& scene) {
     for (const QuickScene& quick : kQuickScenes) {
         if (scene.name == quick.name) return std::min(quick.time_s, scene.duration_s);
@@ -156,7 +157,7 @@ PlannedCase planned(const SuiteScene& scene,
                                          : settings.sim.frames;
     if (limit > 0) {
         plan.which.max_frames = limit;
-        plan.frames = limit;  // the limit may exceed the path; the camera then stands still
+        plan.frames = limit;  // The limit may exceed the path; the camera then stands still.
     }
     return plan;
 }

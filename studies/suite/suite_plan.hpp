@@ -10,7 +10,7 @@
 
 namespace surefoot::app {
 
-/// A case to run, and its approximate number of frames as a measure of its run time.
+/// A case to run, and its approximate number of frames, which estimates the run time.
 struct PlannedCase {
     SuiteCase which;
     int frames = 0;
@@ -20,8 +20,8 @@ struct PlannedCase {
 /// interrupted suite has covered every scene. Within a seed long cases run first, so that threads
 /// finish at about the same time. Impossible selections are usage errors.
 ///
-/// A walking machine takes 10 s a step and moves little from frame to frame. Its camera therefore
-/// runs at 4 Hz at most, and the quick suite covers only its first steps.
+/// A walking machine takes 10 s for a step and moves little from frame to frame. Its camera
+/// therefore runs at 4 Hz at most, and the quick suite covers only its first steps.
 [[nodiscard]] Result<std::vector<PlannedCase>> plan_suite(const EvalSuiteOptions& options,
                                                           const Settings& settings);
 

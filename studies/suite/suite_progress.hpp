@@ -6,8 +6,8 @@
 
 namespace surefoot::app {
 
-/// Shows the progress and the remaining time of a suite on stderr: one updated line on a terminal,
-/// otherwise one line per finished case. Not thread-safe.
+/// Shows the progress and the remaining time of a suite on stderr. A terminal gets one updated
+/// line, other outputs one line for each finished case. Not thread-safe.
 class SuiteProgress {
   public:
     SuiteProgress(std::size_t cases, std::int64_t frames);
@@ -29,8 +29,8 @@ class SuiteProgress {
     std::int64_t done_frames_ = 0;
 };
 
-/// Remaining time, such as "about 2 h 5 min left", estimated from the number of frames; empty
-/// before any frame is done.
+/// Returns the remaining time, for example "about 2 h 5 min left". The number of frames gives the
+/// estimate. Empty before any frame is done.
 [[nodiscard]] std::string time_left(std::int64_t done_frames,
                                     std::int64_t frames,
                                     double elapsed_s);

@@ -53,7 +53,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// Median over the cases of a row, and their worst case if there are several.
+/// Returns the median over the cases of a row, and the worst case if there are several cases.
 std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
     const FigureKind kind = suite_figures()[figure].kind;
     const std::string median = shown(kind, row.median[figure]);
@@ -63,7 +63,7 @@ std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
 
 // ---- the sums -----------------------------------------------------------------------------------
 
-/// Sum of a counting figure over all cases.
+/// Returns the sum of a counted figure over all cases.
 double sum_of(std::span<const SuiteResult> results, std::string_view name) {
     double sum = 0.0;
     for (const SuiteResult& result : results) {
@@ -79,9 +79,10 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
         {"Hazards missed by the gate",
          fmt::format("{:.0f}", missed),
          "",
-         fmt::format("of {:.0f} clear-cut questions; {:.0f} more within the margin of the oracle",
-                     sum_of(results, "questions"),
-                     sum_of(results, "borderline_missed"))});
+         fmt::format(
+             "of {:.0f} clear-cut questions; {:.0f} more hazards within the margin of the oracle",
+             sum_of(results, "questions"),
+             sum_of(results, "borderline_missed"))});
     const double allowed = allowed_share(results);
     for (const NoiseBins& level : pooled_by_noise(results)) {
         std::vector<SuiteResult> of_level;
@@ -93,7 +94,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
             {fmt::format("Clearly safe movements allowed, noise {}", times(level.noise)),
              shown(FigureKind::share, allowed_share(of_level)),
              "",
-             fmt::format("of {:.0f}; the reasons of the refusals are listed below",
+             fmt::format("of {:.0f} movements; the reasons of the refusals are listed below",
                          sum_of(of_level, "safe_questions"))});
     }
     if (allowed == 0.0) {
@@ -117,7 +118,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
         content.figures.push_back({fmt::format("Height errors, noise {}", times(level.noise)),
                                    fmt::format("{:.1f}", kMillimetres * all.percentile(0.5)),
                                    "mm",
-                                   fmt::format("median; 90 % within {:.0f} mm; {} cases",
+                                   fmt::format("median; 90 % are smaller than {:.0f} mm; {} cases",
                                                kMillimetres * all.percentile(0.9),
                                                level.cases)});
     }
@@ -163,7 +164,7 @@ struct BinView {
     BinKey key;
     const char* title;
     const char* x_label;
-    double tail;  ///< upper percentile shown beside the median, as a fraction
+    double tail;  ///< percentile (0 to 1) that the plot shows besides the median
     const char* tail_label;
 };
 constexpr BinView kBinViews[] = {
@@ -191,11 +192,11 @@ std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fe
     }
     return bins;
 }
-/// Fewest errors of a bin in a plot, because percentiles of fewer errors mean little. The tables
-/// show all bins.
+/// Smallest number of errors in a bin of a plot, because percentiles of fewer errors mean little.
+/// The tables show all bins.
 constexpr std::int64_t kFewestCells = 100;
 
-/// Largest value over all noise levels, so that their plots share one scale.
+/// Returns the largest value over all noise levels, so that their plots share one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {
@@ -221,7 +222,8 @@ eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double hi
     };
     for (const SuiteBin& bin : bins) {
         const double none = std::nan("");
-        if (bin.from > plot.edges.back()) append(bin.from, none, none);  // bins without any error
+        if (bin.from > plot.edges.back())
+            append(bin.from, none, none);  // gap in the plot: bins without any error
         append(bin.to,
                kMillimetres * bin.errors.percentile(0.5),
                kMillimetres * bin.errors.percentile(view.tail));
@@ -295,7 +297,7 @@ eval::ReportTable case_table(std::span<const SuiteResult> results) {
     return table;
 }
 
-/// The worst case of each scene, the worst scene first.
+/// Adds the worst case of each scene, the worst scene first.
 void add_thumbnails(std::span<const SuiteResult> results,
                     const std::string& folder,
                     eval::ReportContent& content) {
@@ -317,8 +319,8 @@ void add_thumbnails(std::span<const SuiteResult> results,
         if (!png) continue;
         content.thumbnails.push_back(
             {fmt::format(
-                 "{}, seed {}, noise {}: {} of the unsafe cells called safe, {} of the safe "
-                 "cells called unsafe; {:.0f} hazards missed",
+                 "{}, seed {}, noise {}: {} of the truly unsafe cells called safe, {} of the truly "
+                 "safe cells called unsafe; {:.0f} hazards missed",
                  result->which.scene,
                  result->which.seed,
                  times(result->which.noise),

@@ -8,9 +8,9 @@
 
 namespace surefoot::app {
 
-/// One self-contained HTML page: totals, errors by distance and image column, the verdict for each
-/// step, a picture of the worst case of every scene (read from `folder`, see thumbnail_file()), and
-/// the figures of every scene and case. `results` must be in the order of `sorted`.
+/// Returns one self-contained HTML page: totals, errors by distance and image column, the verdict
+/// for each step, and the figures of every scene and case. Also shows the worst case of every scene
+/// as a picture from `folder`, see thumbnail_file(). `results` must be in the order of `sorted`.
 [[nodiscard]] std::string suite_html(std::span<const SuiteResult> results,
                                      const std::string& folder);
 

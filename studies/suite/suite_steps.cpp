@@ -15,8 +15,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Radius around a stance within which the ground is level and at the height of the stance: the
-/// area that an operator could attest.
+/// Returns the radius around a stance within which the ground is level and at the height of the
+/// stance. An operator could attest this area.
 double level_radius_m(const sim::Scene& scene, const Eigen::Vector3d& body_m, double limit_m) {
     constexpr double kSpacing_m = 0.02;
     constexpr double kLevel_m = 0.01;  // half of the smallest kerb that a foot may meet

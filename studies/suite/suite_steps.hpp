@@ -15,16 +15,16 @@
 
 namespace surefoot::app {
 
-/// A step that the user of a walking machine requested: the truth, and the verdict of the gate with
-/// the map and the pose of that moment.
+/// A step that the user of a walking machine requested. Holds the truth, and the verdict that the
+/// gate gave with the map and the pose of that moment.
 struct SuiteStep {
-    int number = 0;  ///< 1 = first step of the path
+    int number = 0;  ///< number of the step on the path, from 1
     double time_s = 0.0;
     int command = 0;
     bool safe = false;       ///< true answer
-    bool clear_cut = false;  ///< the answer holds by more than the margin, see sim::SafetyMargin
-    std::string dangers;     ///< joined by '|'; empty when safe
-    std::string decision;    ///< "OK", "NOT_TRAVERSABLE", "ERROR"
+    bool clear_cut = false;  ///< the truth holds by more than sim::SafetyMargin
+    std::string dangers;     ///< dangers of the step, joined by '|'; empty if safe
+    std::string decision;    ///< "OK", "NOT_TRAVERSABLE" or "ERROR"
     std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
 
     [[nodiscard]] bool allowed() const { return decision == "OK"; }
@@ -34,15 +34,15 @@ struct SuiteStep {
 [[nodiscard]] VerdictCounts count_verdicts(std::span<const SuiteStep> steps);
 
 /// Asks the gate and the safety oracle before each step of a walking machine. An operator
-/// attestation covers the start: the largest area around it that is truly level (within 10 mm) and
-/// that the machine file allows. When the machine leaves that area, the attestation ends for good.
+/// attestation covers the largest truly level area (within 10 mm) around the start that the machine
+/// file allows. The attestation ends for good when the machine leaves that area.
 class StepQuestions {
   public:
     /// `truth` and `machine` must outlive this object.
     StepQuestions(const sim::SceneTruth& truth, const Machine& machine)
         : truth_(truth), machine_(machine) {}
 
-    /// True if the next step begins before the frame after the one at `frame_ns`.
+    /// Returns true if the next step begins before the frame that follows the one at `frame_ns`.
     [[nodiscard]] bool due(std::int64_t frame_ns) const;
     /// Asks about the next step with the current map.
     void ask(const grid::MapSnapshot& map);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kCaseHead = "scene,motion_model,seed,noise,max_frames";
 constexpr std::size_t kKeyColumns = 5;
-constexpr std::size_t kCaseColumns = 6;  ///< columns before the figures
+constexpr std::size_t kCaseColumns = 6;  ///< number of columns before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;
 constexpr std::size_t kStepColumns = kKeyColumns + 8;
 constexpr std::size_t kTallyColumns = kKeyColumns + 4;
@@ -26,7 +26,8 @@ std::string key_of(const SuiteCase& c) {
     return fmt::format("{},{},{},{},{}", c.scene, c.motion_model, c.seed, c.noise, c.max_frames);
 }
 
-/// A column must not be empty, because the reader merges adjacent separators.
+/// Replaces empty text by a dash. A column must not be empty, because the reader merges adjacent
+/// separators.
 const std::string& or_dash(const std::string& text) {
     static const std::string dash = "-";
     return text.empty() ? dash : text;
@@ -45,7 +46,7 @@ std::string case_line(const SuiteResult& result) {
     const SuiteCase& c = result.which;
     std::string line = fmt::format("{},{}", key_of(c), c.rate_hz);
     for (const double figure : result.figures)
-        line += fmt::format(",{}", figure);  // reads back to the same bits
+        line += fmt::format(",{}", figure);  // this format reads back to the same bits
     return line + "\n";
 }
 
@@ -96,7 +97,7 @@ std::string verdict_lines(const SuiteResult& result) {
     return lines;
 }
 
-/// The following parsers return an empty optional for an incomplete line.
+/// These parsers return an empty optional for an incomplete line.
 std::optional<SuiteCase> parse_key(const Words& words) {
     const auto seed = io::parse_int64(words[2]);
     const auto noise = io::parse_double(words[3]);
@@ -188,7 +189,7 @@ struct LineFile {
                             path));
         }
         std::string kept = head;
-        // A line is complete if its line end was written.
+        // A line is complete if its line end is in the file.
         const std::string_view lines =
             text.empty()
                 ? std::string_view()
@@ -269,7 +270,7 @@ SuiteResult* SuiteTable::find(const SuiteCase& which) {
     return place == places_.end() ? nullptr : &results_[place->second];
 }
 
-/// Returns false if the case is already known.
+/// Adds a case. Returns false if the case is already known.
 bool SuiteTable::remember(SuiteResult result) {
     if (!places_.emplace(key_of(result.which), results_.size()).second) return false;
     results_.push_back(std::move(result));
@@ -300,7 +301,7 @@ Status SuiteTable::keep_thumbnail(const SuiteResult& result) {
 }
 
 std::string thumbnail_file(const std::string& folder, const std::string& scene) {
-    std::string name = scene;  // a path for a scene file
+    std::string name = scene;  // a path if the scene is a file
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '/' || c == '#'; }, '_');
     return fmt::format("{}/pictures/{}.png", folder, name);

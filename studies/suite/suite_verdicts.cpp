@@ -82,8 +82,8 @@ std::string missed_sentence(const Stance& stance, int command, const sim::Safety
     const Eigen::Vector3d& at = stance.T_world_body.translation_m;
     const Eigen::Vector3d& where = answer.dangers.front().where_m;
     return fmt::format(
-        "movement {} at ({:.2f}, {:.2f}) m, yaw {:.2f} rad, was allowed: {} (at {:.3f}, {:.3f}, "
-        "{:.3f} m)",
+        "the dangerous movement {} from ({:.2f}, {:.2f}) m, yaw {:.2f} rad, was allowed: {} "
+        "(danger at {:.3f}, {:.3f}, {:.3f} m)",
         command,
         at.x(),
         at.y(),
@@ -156,7 +156,7 @@ AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
             const sim::SafetyAnswer answer =
                 sim::judge(truth.scene, machine, stance.T_world_body, command);
-            // Skip poses at which the machine cannot stand.
+            // Skips poses at which the machine cannot stand.
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
             const gate::Verdict verdict = ask(machine, map, stance, command);

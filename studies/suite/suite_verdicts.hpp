@@ -14,41 +14,41 @@
 
 namespace surefoot::app {
 
-/// Counts of the gate's verdicts against the truth. Questions whose truth changes within the margin
-/// of a good map (see sim::SafetyMargin) are borderline and counted separately, because the gate
-/// may be more careful there.
+/// Compares the gate's verdicts with the truth. A question is borderline if its truth changes
+/// within the margin of a good map (see sim::SafetyMargin). Borderline questions are counted
+/// separately, because the gate may be more careful there.
 struct VerdictCounts {
     int safe = 0;               ///< clear-cut questions whose true answer is "safe"
-    int safe_ok = 0;            ///< ... of these OK
+    int safe_ok = 0;            ///< clear-cut safe questions with the answer OK
     int unsafe = 0;             ///< clear-cut questions that are truly dangerous
-    int unsafe_ok = 0;          ///< ... of these OK: missed hazards
-    int borderline = 0;         ///< answers that are not clear-cut
-    int borderline_ok = 0;      ///< ... of these OK
-    int borderline_missed = 0;  ///< OK, but dangerous by the exact truth
+    int unsafe_ok = 0;          ///< clear-cut dangerous questions with OK: the missed hazards
+    int borderline = 0;         ///< borderline questions (not clear-cut)
+    int borderline_ok = 0;      ///< borderline questions with the answer OK
+    int borderline_missed = 0;  ///< borderline questions with OK although truly dangerous
 
     /// Counts one question.
     void add(bool truly_safe, bool clear_cut, bool allowed);
 };
 
-/// Key by which wrong verdicts are counted.
+/// Kind of name by which wrong verdicts are counted.
 enum class TallyKey : std::uint8_t {
-    reason,  ///< refused clear-cut safe movements, by the gate's reasons
+    reason,  ///< refused clear-cut safe movements, by the reasons of the gate
     proof,   ///< refused clear-cut safe movements, by the proofs that failed
     danger,  ///< missed hazards, by the true danger
 };
 inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger"};
 
-/// How often one name occurs among the wrong verdicts of one key.
+/// How often one name occurs in wrong verdicts.
 struct VerdictTally {
     TallyKey by = TallyKey::reason;
     std::string name;
-    int named = 0;  ///< verdicts with this name
-    int alone = 0;  ///< verdicts with this name only: without it the verdict would have been right
+    int named = 0;  ///< number of verdicts with this name
+    int alone = 0;  ///< number of verdicts with only this name: this name alone made them wrong
 
     friend bool operator==(const VerdictTally&, const VerdictTally&) = default;
 };
 
-/// Sums tallies by key and name; sorted by key and name.
+/// Sums of tallies with equal key and name, sorted by key and name.
 class VerdictTallies {
   public:
     /// Counts one wrong verdict under each of its names.
@@ -64,7 +64,7 @@ class VerdictTallies {
     std::vector<VerdictTally> all_;
 };
 
-/// Result of compare_verdicts().
+/// Result of asking about all movements around one pose.
 struct AroundAnswers {
     VerdictCounts counts;
     VerdictTallies tallies;
@@ -72,7 +72,7 @@ struct AroundAnswers {
 };
 
 /// Asks the gate about every movement of the machine at its present pose and at reachable poses
-/// around it. These are 0.2 m apart, within `reach_m`, with the present yaw. An operator
+/// around it. These poses are 0.2 m apart, within `reach_m`, with the present yaw. An operator
 /// attestation covers unmeasured ground under the standing feet, as in attest_start().
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const Pose& T_world_body_true,

@@ -233,7 +233,7 @@ class Formats(CliTest):
         self.assertIn(b"property double timestamp\nproperty uint id\n", written)
         self.assertEqual(body, b"".join(rows))
         answer = self.json_of("voxel", self.dir / "a.pcd", "--size", 0.1, "--out", self.dir / "v.pcd")
-        self.assertEqual(answer["notes"], ["only positions are kept, not: timestamp, id, viewpoint"])
+        self.assertEqual(answer["notes"], ["only positions are kept; the output lacks: timestamp, id, viewpoint"])
 
     def test_columns_by_name_and_points_that_are_not_finite(self):
         (self.dir / "a.csv").write_text("id,Y,X,Z\n7,0,0,0.1\n8,0,1,0.2\n9,5,0,0.3\n10,,,\n")

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Box, Machine } from "./messages.ts";
 
-/// The area that an operator attested, in odom, as /surefoot/health has it (docs/reference/rosbridge.md).
+/// The area that an operator attested, in odom, as /surefoot/health sends it (docs/reference/rosbridge.md).
 export interface AttestedArea {
   x_m: number;
   y_m: number;
-  z_m: number; ///< height of the attested ground
+  z_m: number; ///< height of the attested ground in odom
   radius_m: number;
 }
 
-/// The radii that the gate accepts, for the slider.
+/// The radii that the gate accepts, and the step of the slider.
 export interface RadiusRange {
   least_m: number;
   most_m: number;
   step_m: number;
-  first_m: number; ///< shown first
+  first_m: number; ///< radius that the slider shows first
 }
 
 const kFirstRadius_m = 0.6;
@@ -32,14 +32,14 @@ function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
   return Math.ceil(Math.max(farthest(left), farthest(right)) - 1e-6);
 }
 
-/// Undefined if the machine file allows no attestation, or no radius that holds both soles.
+/// Returns undefined if the machine file allows no attestation, or no radius that contains both soles.
 export function radiusRange(machine: Machine | null | undefined): RadiusRange | undefined {
   if (!machine) return undefined;
   const most = tenthMm(machine.attestation_radius_m);
   const least = leastRadius_tenth_mm(machine.feet);
   if (most <= 0 || least > most) return undefined;
   const step = tenthMm(kStep_m);
-  // The slider stops at multiples of 50 mm, the largest radius included.
+  // The slider stops every 50 mm, counted downwards from the largest radius.
   const first_stop = most - Math.floor((most - least) / step) * step;
   const stops = Math.max(0, Math.round((tenthMm(kFirstRadius_m) - first_stop) / step));
   const metres = (value: number) => Number((value * kTenthMm_m).toFixed(4));
@@ -52,11 +52,11 @@ export function radiusRange(machine: Machine | null | undefined): RadiusRange | 
 }
 
 export interface AttestationWords {
-  words: string; ///< changes seldom: read aloud; empty if no attestation is in force
-  detail: string; ///< changes while the machine moves: not read aloud
+  words: string; ///< changes rarely, is read aloud; empty = no attestation is in force
+  detail: string; ///< changes while the machine moves, is not read aloud
 }
 
-/// The text on the map while an attestation is in force. `place`: base_link in odom.
+/// Returns the text on the map while an attestation is in force. `place` is base_link in odom.
 export function attestationWords(
   in_force: boolean,
   area: AttestedArea | undefined,
@@ -73,7 +73,7 @@ export function attestationWords(
   };
 }
 
-/// "radius 0.60 m at x 1.00 m, y 2.00 m"
+/// Returns a text such as "in force: radius 0.60 m at x 1.00 m, y 2.00 m".
 export function attestedWords(area: AttestedArea | undefined): string {
   if (!area) return "in force";
   const { x_m, y_m, radius_m } = area;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Machine, Movement } from "./messages.ts";
 
-/// The outlook of the gate: the verdict on each movement at this moment. Never a permission.
+/// The outlook of the gate: its verdict on each movement at this moment. The outlook is never a permission.
 export type Say = "OK" | "NOT_TRAVERSABLE" | "ERROR";
 export interface OutlookVerdict {
   command: number;
@@ -16,14 +16,14 @@ export interface Outlook {
 }
 
 export interface Direction {
-  code: number; ///< of the joystick
-  words: string; ///< "ahead right"
-  angle_deg: number; ///< where the arrow points on the screen, clockwise from up
+  code: number; ///< command code of the joystick
+  words: string; ///< name of the direction, such as "ahead right"
+  angle_deg: number; ///< direction of the arrow on the screen, clockwise from up
   turn: -1 | 0 | 1; ///< 1 = to the left
 }
 
-/// Outer ring of the joystick: 9 is ahead, then clockwise in steps of 22.5 degrees; 25 and 26 turn. The order
-/// is the one in which people read them: ahead first.
+/// Outer ring of the joystick. 9 is ahead; the codes continue clockwise in steps of 22.5 degrees. 25 and 26 turn. The
+/// order is the one in which people read the directions: ahead first.
 export const kDirections: readonly Direction[] = [
   { code: 9, words: "ahead", angle_deg: 0, turn: 0 },
   { code: 23, words: "ahead left", angle_deg: -45, turn: 0 },
@@ -56,8 +56,8 @@ function sign(kind: SignKind, reason: string): Sign {
   return { kind, word: kWords[kind], reason };
 }
 
-/// The sign of one direction. Only a fresh OK is green. An answer that the page does not know is "cannot judge".
-/// `machine`: undefined = not yet known, null = the service has no machine file.
+/// Returns the sign of one direction. Only a fresh OK is green. An answer that the page does not know is "cannot
+/// judge". `machine`: undefined = not yet known, null = the service has no machine file.
 export function signOf(
   code: number,
   machine: Machine | null | undefined,
@@ -75,13 +75,13 @@ export function signOf(
   return sign("cannot", verdict.text || "the gate cannot judge");
 }
 
-/// The outlook, if it belongs to the present state of the gate (docs/reference/rosbridge.md).
+/// Returns the outlook if it belongs to the present state of the gate (docs/reference/rosbridge.md).
 export function ofState(outlook: Outlook | undefined, state: string | undefined): Outlook | undefined {
   return outlook && (state === undefined || outlook.state === state) ? outlook : undefined;
 }
 
-/// The direction of the large sentence: the chosen one; else ahead if ahead is not allowed; else the first that is
-/// not allowed; else ahead.
+/// Returns the direction of the large sentence. It is the chosen direction. Without a choice it is ahead if ahead is
+/// not allowed, else the first direction that is not allowed, else ahead.
 export function spokenDirection(chosen: number | undefined, signs: ReadonlyMap<number, Sign>): Direction {
   const byCode = (code: number) => kDirections.find((direction) => direction.code === code);
   const wanted = chosen === undefined ? undefined : byCode(chosen);
@@ -91,7 +91,7 @@ export function spokenDirection(chosen: number | undefined, signs: ReadonlyMap<n
   return first("not") ?? first("cannot") ?? kDirections[0];
 }
 
-/// "ahead: no - drop of 0.17 m, 0.31 m ahead of the left foot"
+/// Returns a text such as "ahead: no - drop of 0.17 m, 0.31 m ahead of the left foot".
 export function sentence(direction: Direction, said: Sign): string {
   if (said.kind === "stale") return said.word;
   if (said.kind === "allowed") return `${direction.words}: ${said.word}`;
@@ -114,7 +114,7 @@ const kStateWords: Record<string, string> = {
   STOPPING: "The gate is stopping",
 };
 
-/// Reasons of a state, worded as in docs/reference/gate_reasons.md. A verdict brings its own text.
+/// Reasons of a gate state, worded as in docs/reference/gate_reasons.md. A verdict brings its own text.
 const kWhyWords: Record<string, string> = {
   INTERNAL: "internal error: the map or the gate is damaged",
   CONFIG: "the machine description is not valid",
@@ -144,7 +144,7 @@ const kWhyWords: Record<string, string> = {
   AUDIT: "the log cannot be written",
 };
 
-/// "The gate is warming up"; "The gate is not ready: the last camera image is too old".
+/// Returns a sentence such as "The gate is not ready: the last camera image is too old".
 export function stateSentence(state: string | undefined, why: string | undefined): string {
   if (state === undefined) return "The gate has sent no state yet";
   const words = kStateWords[state] ?? `State of the gate: ${state}`;

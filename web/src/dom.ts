@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// The element with this id; index.html has it.
+/// Returns the element with this id. Throws if index.html has no such element.
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
   if (!element) throw new Error(`index.html has no #${id}`);
   return element as T;
 }
 
-/// Writes only changed text, so that a screen reader does not repeat it ten times a second.
+/// Writes only changed text, so that a screen reader does not repeat the same text ten times a second.
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
@@ -16,7 +16,7 @@ export function setAttribute(element: Element, name: string, value: string): voi
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-/// Makes an element; `attributes` may hold `text`.
+/// Makes an element. `attributes` may contain `text`.
 export function make<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   attributes: Record<string, string> = {},

@@ -13,7 +13,7 @@ import { TrackView } from "./track_view.ts";
 const kHealth = ["lost", "degraded", "ok"];
 const kShownVerdicts = 12;
 
-/// For the engineer: images, layers, stairs with their measures, track, stage times, verdicts and settings.
+/// The view for the engineer: images, layers, stairs with their measures, track, stage times, verdicts and settings.
 export class EngineerView {
   readonly #store: Store;
   readonly #layer: LayerView;

@@ -2,7 +2,7 @@
 import { featureLabels, spreadLabels } from "./feature_words.ts";
 import type { Stairs } from "./messages.ts";
 
-/// Position of odom in a picture: x to the right, y up.
+/// A position of odom in a picture: x to the right, y up.
 export interface PictureFrame {
   origin_x_m: number;
   origin_y_m: number;
@@ -11,8 +11,8 @@ export interface PictureFrame {
   height: number;
 }
 
-/// Edges with ticks to the lower ground and labels with measures over a picture from above. `unit_px`: one pixel of the
-/// screen in pixels of the picture.
+/// Draws edges with ticks to the lower ground, and labels with measures, over a picture from above. `unit_px` is one
+/// pixel of the screen in pixels of the picture.
 export function drawFeatures(
   context: CanvasRenderingContext2D,
   stairs: Stairs,
@@ -39,7 +39,7 @@ function drawEdges(context: CanvasRenderingContext2D, stairs: Stairs, at: At, un
     if (length === 0) continue;
     path.moveTo(ax, ay);
     path.lineTo(bx, by);
-    // The lower ground lies on the right hand; pictures count y downwards.
+    // The lower ground is on the right hand; pictures count y downwards.
     const [tx, ty] = [(-(by - ay) / length) * 6 * unit_px, ((bx - ax) / length) * 6 * unit_px];
     const ticks = Math.max(1, Math.round(length / (14 * unit_px)));
     for (let i = 0; i < ticks; ++i) {
@@ -76,7 +76,7 @@ function drawLabels(
     const [x, y] = at(x_m, y_m);
     const width = Math.max(...lines.map((text) => context.measureText(text).width)) + 12 * unit_px;
     const height = lines.length * line + 5 * unit_px;
-    // Behind the feature, so that its lines stay visible.
+    // Puts the label behind the feature, so that its lines stay visible.
     const [cos, sin] = [Math.cos(yaw_rad), Math.sin(yaw_rad)];
     const off = 8 * unit_px + Math.min(width / 2 / Math.abs(cos || 1e-9), height / 2 / Math.abs(sin || 1e-9));
     return { lines, x: x + off * cos, y: y - off * sin, width, height };

@@ -3,7 +3,7 @@ import { byId, make, setText } from "./dom.ts";
 import { featureRows, type FeatureRow } from "./feature_words.ts";
 import type { Store } from "./store.ts";
 
-/// Flights, drops, kerbs, sills and doors with their measures.
+/// Table of flights, drops, kerbs, sills and doors with their measures.
 export class FeatureTable {
   readonly #store: Store;
   readonly #rows = byId("feature-rows");
@@ -23,7 +23,7 @@ export class FeatureTable {
     this.#rows.replaceChildren(...rows.flatMap((row) => this.#rowsOf(row)));
   }
 
-  /// Remarks are in a row of their own.
+  /// Remarks have their own row.
   #rowsOf({ what, remarks, ...cells }: FeatureRow): HTMLTableRowElement[] {
     const tds = Object.values(cells).map((text) => make("td", { text }));
     const row = make("tr", {}, make("th", { scope: "row", text: what }), ...tds);

@@ -2,9 +2,9 @@
 import type { Door, Feature, Flight, FlightSide, Kerb, LineFeature, Stairs } from "./messages.ts";
 import type { Place } from "./store.ts";
 
-/// Stairs, drops, kerbs, sills and doors as texts of tables, labels and sentences. Uses no browser.
+/// Texts about stairs, drops, kerbs, sills and doors for tables, labels and sentences. Uses no browser.
 
-/// "180 ± 2 mm"; a sigma below 1 mm gets one more digit.
+/// Returns a text such as "180 ± 2 mm". A sigma below 1 mm gets one more digit.
 export function millimetres(value_m: number | null, sigma_m?: number | null): string {
   if (value_m === null) return "-";
   const fine = sigma_m != null && sigma_m < 0.001;
@@ -18,14 +18,14 @@ export function flightName({ kind, steps }: Flight): string {
   return steps === 1 ? `one step ${kind}` : `${steps} steps ${kind}`;
 }
 
-/// "3 steps up, 180 × 310 mm": riser by going.
+/// Returns a text such as "3 steps up, 180 × 310 mm", which means riser × going.
 export function flightLabel(flight: Flight): string {
   const riser = (1e3 * (flight.riser_m ?? NaN)).toFixed(0);
   const size = flight.going_m === null ? riser : `${riser} × ${(1e3 * flight.going_m).toFixed(0)}`;
   return `${flightName(flight)}, ${size} mm`;
 }
 
-/// The same in two lines, for pictures.
+/// Returns the text of flightLabel in two lines, for pictures.
 export function flightLines(flight: Flight): string[] {
   const [name, size] = flightLabel(flight).split(", ");
   return [name, size];
@@ -46,7 +46,7 @@ function placeWords([x_m, y_m, , yaw_rad]: Feature["pose"]): string {
   return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m; ${((yaw_rad * 180) / Math.PI).toFixed(0)}°`;
 }
 
-/// `passed_s`: seconds since the message.
+/// Returns when a feature was last seen. `passed_s` is the time since the message [s].
 function seenWords({ observations, last_seen_s }: Feature, passed_s: number): string {
   if (observations === undefined || last_seen_s === undefined) return "-";
   const ago_s = Math.max(0, last_seen_s + passed_s);
@@ -99,7 +99,7 @@ function doorRow(door: Door, passed_s: number): FeatureRow {
   };
 }
 
-/// One row each, flights first.
+/// Returns one row for each feature, flights first.
 export function featureRows(stairs: Stairs, now_ns = Number(stairs.time_ns)): FeatureRow[] {
   const passed_s = Math.max(0, now_ns - Number(stairs.time_ns)) * 1e-9;
   return [
@@ -126,7 +126,8 @@ export interface FeatureLabel {
   yaw_rad: number;
 }
 
-/// Labels of a picture, flights first, each at the last edge of its feature along its direction, in odom.
+/// Returns the labels of a picture, flights first. Each label is at the last edge of its feature along its direction,
+/// in odom.
 export function featureLabels(stairs: Stairs): FeatureLabel[] {
   const at = ({ pose: [x_m, y_m, , yaw_rad] }: Feature, length_m: number, ...lines: string[]) =>
     x_m === null || y_m === null || yaw_rad === null
@@ -151,10 +152,10 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
   ];
 }
 
-/// From the first edge to the last.
+/// Returns the distance from the first edge of a flight to its last edge.
 const goingLength_m = ({ steps, going_m }: Flight) => Math.max(0, steps - 1) * (going_m ?? 0);
 
-/// Whether a position lies on a flight or within 0.3 m of it. Edges there get no label of their own.
+/// Whether a position lies on a flight or within 0.3 m of it. Edges there get no separate label.
 export function isOnFlight(flight: Flight, x_m: number, y_m: number): boolean {
   const [at_x_m, at_y_m, , yaw_rad] = flight.pose;
   if (at_x_m === null || at_y_m === null || yaw_rad === null) return false;
@@ -176,8 +177,8 @@ export function isOnSomeFlight(flights: Flight[], x_m: number | null, y_m: numbe
 const kFarthest_m = 3;
 const kWidest_rad = Math.PI / 4;
 
-/// Distance from a position to the nearest point of a line; undefined if that point is not ahead. The line is
-/// perpendicular to the yaw of its pose.
+/// Returns the distance from a position to the nearest point of a line; undefined if that point is not ahead. The line
+/// is perpendicular to the yaw of its pose.
 function distanceAhead_m(pose: Feature["pose"], length_m: number | null, place: Place): number | undefined {
   const [x_m, y_m, , yaw_rad] = pose;
   if (x_m === null || y_m === null || yaw_rad === null) return undefined;
@@ -193,8 +194,8 @@ function distanceAhead_m(pose: Feature["pose"], length_m: number | null, place: 
   return is_ahead && distance_m <= kFarthest_m ? distance_m : undefined;
 }
 
-/// The nearest stairs or drop ahead, for the user; empty if there is neither. Not a permission, and not a warning to
-/// rely on.
+/// Returns a sentence about the nearest stairs or drop ahead, for the user. Empty if there is neither. The sentence is
+/// not a permission, and the user must not rely on it as a warning.
 export function aheadWords(stairs: Stairs | undefined, place: Place | undefined): string {
   if (!stairs || !place) return "";
   const of = (words: string, { pose }: Feature, length_m: number | null) => ({
@@ -232,7 +233,8 @@ export interface LabelBox {
   height: number;
 }
 
-/// Removes each label that repeats an earlier one within a label's width: the sides of a pit are one drop.
+/// Removes each label that repeats an earlier label less than a label's width away. For example, the sides of a pit are
+/// one drop.
 export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]): T[] {
   const kept: T[] = [];
   for (const box of boxes) {
@@ -242,7 +244,7 @@ export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]
   return kept;
 }
 
-/// Moves a label that would cover an earlier one down, and every label into the picture.
+/// Moves a label down if it would cover an earlier label, and moves every label into the picture.
 export function spreadLabels<T extends LabelBox>(boxes: T[], width: number, height: number): T[] {
   const placed: T[] = [];
   for (const box of boxes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Freshness and the text of the banner, from times of arrival alone: the clock of the source differs from the page's.
+/// Freshness of the data and the text of the banner. Both use only times of arrival, because the clock of the source
+/// differs from the page's clock.
 
 export type LinkState = "opening" | "open" | "away";
 
@@ -8,7 +9,7 @@ export interface Arrivals {
   service: LinkState;
   gate: LinkState;
   retry_at_ms?: number;
-  service_word_at_ms?: number; ///< any message of the service
+  service_word_at_ms?: number; ///< time of the last message of the service, of any kind
   pose_at_ms?: number;
   map_at_ms?: number;
   outlook_at_ms?: number;
@@ -19,8 +20,8 @@ export interface Arrivals {
 export interface Freshness {
   ground: boolean; ///< the map and the pose may be shown in colours
   verdicts: boolean; ///< the signs may be shown in colours
-  banner: string; ///< empty = nothing to say
-  detail: string; ///< changes all the time: not read aloud
+  banner: string; ///< text of the banner; empty = no banner
+  detail: string; ///< changes all the time, is not read aloud
 }
 
 /// The promised limit is 1 s. One period of the page's clock (100 ms) is subtracted.
@@ -39,7 +40,7 @@ function again(retry_at_ms: number | undefined, now_ms: number): string {
   return `next attempt ${waits ? `in ${seconds(now_ms, retry_at_ms)}` : "now"}`;
 }
 
-/// [sentence, its seconds and limit]
+/// Returns the sentence of the banner, and a detail with seconds and limit.
 function banner(arrivals: Arrivals, now_ms: number): [string, string?] {
   const { service, gate, retry_at_ms, service_word_at_ms, pose_at_ms, map_at_ms, outlook_at_ms } = arrivals;
   const ago = (what: string, at_ms: number) =>

@@ -11,19 +11,19 @@ const kTopics = [
 ] as const;
 const kAnswerWithin_ms = 3000;
 
-/// The gate's answer to an act of the operator, in the gate's own words.
+/// The gate's answer to an act of the operator, in the words of the gate.
 export interface ActResult {
   success: boolean;
   message: string;
-  role?: string; ///< of this client; only /surefoot/authenticate answers with it
+  role?: string; ///< role of this client; only /surefoot/authenticate answers with it
 }
 
-/// Parts of the page that the gate link needs. `heard`: called with each verdict. `refused`: called if the gate refuses
-/// a token that the page had.
+/// Parts of the page that the gate link needs. `heard` is called with each verdict. `refused` is called if the gate
+/// refuses a token that the page had.
 export interface GateLinkOptions {
   store: Store;
   base: () => string | undefined; ///< address of the gate; undefined = not yet known
-  url_token: string | null; ///< of the page's address
+  url_token: string | null; ///< token in the page's address
   token: OperatorToken;
   heard: (verdict: GateVerdict) => void;
   refused: (message: string) => void;
@@ -35,7 +35,7 @@ export class GateLink {
   readonly #socket: ReconnectingSocket;
   #pending = new Map<string, (result: ActResult) => void>();
   #next_id = 1;
-  #failures = 0; ///< attempts to connect that failed, one after the other
+  #failures = 0; ///< number of failed attempts to connect, one after the other
   readonly #token: OperatorToken;
   readonly #url_token: string | null;
   readonly #heard: (verdict: GateVerdict) => void;
@@ -74,7 +74,7 @@ export class GateLink {
     });
   }
 
-  /// Connects, or connects to another address, once the service has sent the port of the gate.
+  /// Connects when the service has sent the port of the gate, or connects again to another port.
   open(): void {
     if (this.#socket.state !== "open") this.#socket.open();
   }
@@ -87,14 +87,15 @@ export class GateLink {
     return this.#call("/surefoot/rearm", "std_srvs/Trigger", {});
   }
 
-  /// Shows the operator's token to the gate and keeps it for this tab if the gate accepts it.
+  /// Sends the operator's token to the gate, and keeps the token for this tab if the gate accepts it.
   async authenticate(token: string): Promise<ActResult> {
     const result = await this.#authenticate(token);
     if (result.success) this.#token.keep(token);
     return result;
   }
 
-  /// Once connected: the token of this tab, or that of the page's address where the connection left it out.
+  /// Runs after each connection. Sends the token of this tab, or the token of the page's address if the connection left
+  /// it out.
   async #showToken(): Promise<void> {
     const kept = this.#token.value;
     const token = kept || (this.#failures % 2 === 1 ? this.#url_token : null);
@@ -153,7 +154,7 @@ export class GateLink {
     const store = this.#store;
     if (typeof msg !== "object" || msg === null) return;
     if (topic === "/surefoot/outlook" && Array.isArray((msg as Outlook).verdicts)) {
-      // While a recording is paused, the gate can only answer that its frames are old.
+      // While a recording is paused, the gate answers only that its frames are old. Such answers are ignored.
       if (store.arrivals.source_state === "paused" && store.outlook) return;
       store.outlook = msg as Outlook;
       store.arrivals.outlook_at_ms = performance.now();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { kGroundMask, kUnknownHeight, type Edge, type MapMessage } from "./messages.ts";
 
-/// The newest ground: cell (ix, iy) is element iy * nx + ix and covers origin + i * resolution in odom.
+/// The newest ground. Cell (ix, iy) is element iy * nx + ix and covers origin + i * resolution in odom.
 export class GroundMap {
   version = 0n;
   frame_time_ns = 0n;
@@ -11,7 +11,7 @@ export class GroundMap {
   base_z_m = 0;
   origin_x_tenth_mm = 0n;
   origin_y_tenth_mm = 0n;
-  height_mm = new Int16Array(0); ///< over base_z; kUnknownHeight = never measured
+  height_mm = new Int16Array(0); ///< height over base_z; kUnknownHeight = never measured
   sigma_mm = new Uint8Array(0);
   state = new Uint8Array(0);
   edges: Edge[] = [];
@@ -23,8 +23,8 @@ export class GroundMap {
     return Number(this.origin_y_tenth_mm) * 1e-4;
   }
 
-  /// Applies a message. False if it does not fit the present map: the map is then empty, because unknown ground must
-  /// not look known, and the whole map must be requested again.
+  /// Applies a message. Returns false if the message does not fit the present map. The map is then empty, because
+  /// unknown ground must not look known, and the caller must request the whole map again.
   apply(message: MapMessage): boolean {
     const fits = message.whole === 1 || this.#follows(message);
     if (!fits) {
@@ -44,7 +44,7 @@ export class GroundMap {
     return true;
   }
 
-  /// Index of the cell at a position in odom, -1 outside.
+  /// Returns the index of the cell at a position in odom; -1 = outside the map.
   cellAt(x_m: number, y_m: number): number {
     const ix = Math.floor((x_m - this.origin_x_m) / this.resolution_m);
     const iy = Math.floor((y_m - this.origin_y_m) / this.resolution_m);
@@ -81,7 +81,7 @@ export class GroundMap {
     this.edges = [];
   }
 
-  /// Moves the window: cells keep their position on the ground, new cells are unknown.
+  /// Moves the window. Cells keep their position on the ground; new cells are unknown.
   #shift(message: MapMessage): void {
     const resolution = BigInt(message.resolution_tenth_mm);
     const dx = Number((message.origin_x_tenth_mm - this.origin_x_tenth_mm) / resolution);

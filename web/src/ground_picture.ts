@@ -3,11 +3,12 @@ import { isCellAttested, type AttestedArea } from "./attestation.ts";
 import { kGround, kGroundMask, kAttested } from "./messages.ts";
 import type { GroundMap } from "./ground_map.ts";
 
-/// Pixels along a cell, enough for the patterns.
+/// Pixels along the side of a cell, enough for the patterns.
 export const kCell_px = 4;
 
-/// Colours after Okabe and Ito; each ground has a pattern as well, so that colour is never alone: free is plain,
-/// unsafe has diagonal bars, unsure has dots, unknown is a dark (or pale) weave without any colour.
+/// Colours after Okabe and Ito. Each kind of ground also has a pattern, so that colour is never the only difference.
+/// Free ground is plain, unsafe ground has diagonal bars, unsure ground has dots, and unknown ground is a dark or pale
+/// weave without any colour.
 export interface GroundColors {
   free: Rgb;
   unsafe: Rgb;
@@ -37,7 +38,7 @@ export const kLightColors: GroundColors = {
   attested: [0, 114, 178],
 };
 
-/// Old data keep their patterns and lose their colours.
+/// Removes the colours of old data and keeps the patterns.
 export function greyed(colors: GroundColors): GroundColors {
   const grey = ([r, g, b]: Rgb): Rgb => {
     const level = Math.round(0.35 * (0.3 * r + 0.59 * g + 0.11 * b) + 84);
@@ -51,8 +52,8 @@ export function greyed(colors: GroundColors): GroundColors {
   };
 }
 
-/// A square window of cells, as a picture with y up (first row = largest y). The patterns are fixed to the ground, not
-/// to the window.
+/// A square window of cells as a picture with y up (the first row has the largest y). The patterns are fixed to the
+/// ground, not to the window.
 export interface GroundWindow {
   first_ix: number;
   first_iy: number;
@@ -64,7 +65,8 @@ function packed([r, g, b]: Rgb, light: number): number {
   return (255 << 24) | (part(b) << 16) | (part(g) << 8) | part(r);
 }
 
-/// Light from the upper left, from the heights of the neighbours: 1 on level ground. Shows steps and slopes.
+/// Returns the light from the upper left, computed from the heights of the neighbours: 1 on level ground. Shows steps
+/// and slopes.
 function light(map: GroundMap, ix: number, iy: number): number {
   const at = (x: number, y: number) => {
     const cell = Math.max(0, Math.min(map.ny - 1, y)) * map.nx + Math.max(0, Math.min(map.nx - 1, x));
@@ -75,7 +77,7 @@ function light(map: GroundMap, ix: number, iy: number): number {
   return 1 + Math.max(-0.25, Math.min(0.25, rise_mm / 240));
 }
 
-/// Main colour of a ground, and that of its pattern.
+/// Returns the main colour of a kind of ground and the colour of its pattern.
 function pairOf(ground: number, colors: GroundColors): readonly [Rgb, Rgb] {
   switch (ground) {
     case kGround.free:
@@ -89,7 +91,7 @@ function pairOf(ground: number, colors: GroundColors): readonly [Rgb, Rgb] {
   }
 }
 
-/// Whether the pattern covers a pixel; x and y count pixels on the ground.
+/// Whether the pattern covers a pixel. x and y count pixels on the ground.
 function patterned(ground: number, x: number, y: number): boolean {
   switch (ground) {
     case kGround.free:
@@ -103,10 +105,10 @@ function patterned(ground: number, x: number, y: number): boolean {
   }
 }
 
-/// Side of a square of the pattern of unknown ground that repeats [px].
+/// Side of the square that repeats in the pattern of unknown ground [px].
 export const kTile_px = 16;
 
-/// A tile of unknown ground, for the area outside the map.
+/// Paints a tile of unknown ground, for the area outside the map.
 export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): void {
   const [main, pattern] = pairOf(kGround.unknown, colors).map((color) => packed(color, 1));
   for (let y = 0; y < kTile_px; ++y)
@@ -114,8 +116,8 @@ export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): voi
       pixels[(kTile_px - 1 - y) * kTile_px + x] = patterned(kGround.unknown, x, y) ? pattern : main;
 }
 
-/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order). The map of perception knows no
-/// attestation: the attested area comes with the gate's health.
+/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order). The attested area comes from
+/// the gate's health, because the map of perception contains no attestation.
 export function paintGround(
   map: GroundMap,
   window: GroundWindow,
@@ -169,7 +171,7 @@ export function paintGround(
   }
 }
 
-/// Shares of the cells within `radius_m` of a position; outside the map they count as unknown.
+/// Returns the shares of the cells within `radius_m` of a position. Cells outside the map count as unknown.
 export function groundShares(map: GroundMap, x_m: number, y_m: number, radius_m: number) {
   const counts = [0, 0, 0, 0];
   let all = 0;

@@ -16,7 +16,7 @@ import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
 const kRadii_m = [1.5, 2.25, 3.25, 4.5];
-/// The machine is below the middle: the picture shows more ground ahead than behind.
+/// The machine is below the middle, so that the picture shows more ground ahead than behind.
 const kMachineAt = 0.62;
 const kSpoken: Record<SignKind, string> = {
   allowed: "#009e73",
@@ -26,20 +26,20 @@ const kSpoken: Record<SignKind, string> = {
   absent: "#8b919b",
 };
 
-/// Labels of flights only: each edge is labelled with its depth.
+/// Only flights get feature labels, because each edge is labelled with its depth.
 const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
-/// Cells are painted pixel by pixel several times a second. Copies to a graphics card and back would take longer, and
-/// seconds with a software renderer.
+/// Cells are painted pixel by pixel several times a second. With copies to a graphics card and back this would take
+/// longer, with a software renderer even seconds.
 const kByProcessor: CanvasRenderingContext2DSettings = { willReadFrequently: true };
 
 interface Label extends LabelBox {
   text: string;
   font: string;
-  ratio: number; ///< pixels of the picture to one of the page
+  ratio: number; ///< pixels of the picture per pixel of the page
 }
 
-/// The ground from above, heading up.
+/// The ground seen from above. The heading of the machine points up.
 export class GroundView {
   spoken: { code: number; kind: SignKind } | undefined;
   readonly #canvas: HTMLCanvasElement;
@@ -101,7 +101,7 @@ export class GroundView {
     return { width, height };
   }
 
-  /// Drawing units become metres of odom.
+  /// Makes drawing units metres of odom.
   #toOdom(place: Place, at: { x: number; y: number; scale: number }): void {
     const sin = Math.sin(place.yaw_rad) * at.scale;
     const cos = Math.cos(place.yaw_rad) * at.scale;
@@ -115,7 +115,7 @@ export class GroundView {
     );
   }
 
-  /// Drawing units become metres of base_link.
+  /// Makes drawing units metres of base_link.
   #toBody(at: { x: number; y: number; scale: number }): void {
     this.#context.setTransform(0, -at.scale, -at.scale, 0, at.x, at.y);
   }
@@ -177,7 +177,7 @@ export class GroundView {
     this.#cells.getContext("2d", kByProcessor)!.putImageData(this.#image, 0, 0);
   }
 
-  /// Lines with teeth towards the lower side (on the right hand), as on hiking maps.
+  /// Draws edges as lines with teeth towards the lower side (on the right hand), as on hiking maps.
   #drawEdges(scale: number, place: Place): void {
     const { map } = this.#store;
     const x0_m = map.origin_x_m;
@@ -236,13 +236,13 @@ export class GroundView {
     this.#labels([...drops, ...stairs], 16);
   }
 
-  /// Labels that make room for each other.
+  /// Draws the labels so that they do not cover each other.
   #labels(labels: { lines: string[]; x_m: number; y_m: number }[], size_px: number): void {
     const boxes = labels.map(({ lines, x_m, y_m }) => this.#labelBox(lines.join(", "), x_m, y_m, size_px));
     for (const box of spreadLabels(withoutRepeats(boxes), this.#canvas.width, this.#canvas.height)) this.#drawLabel(box);
   }
 
-  /// Box of an upright label at a position in the present drawing units, in pixels.
+  /// Returns the box [px] of an upright label at a position in the present drawing units.
   #labelBox(text: string, x: number, y: number, size_px: number): Label {
     const context = this.#context;
     const ratio = Math.min(2, devicePixelRatio || 1);
@@ -337,7 +337,7 @@ export class GroundView {
       context.strokeStyle = "#14171c";
       context.stroke(this.#box(foot));
     }
-    // An arrow that points ahead.
+    // Draws an arrow that points ahead.
     const size_m = 0.1;
     context.beginPath();
     context.moveTo(size_m * 1.3, 0);
@@ -353,7 +353,7 @@ export class GroundView {
     context.fill();
   }
 
-  /// Footprints after a step in the direction of the large sentence.
+  /// Draws the footprints after a step in the direction of the large sentence.
   #drawSpoken(scale: number): void {
     const { spoken } = this;
     const machine = this.#store.hello?.machine;
@@ -380,7 +380,7 @@ export class GroundView {
   #describe(place: Place): void {
     const { map, freshness } = this.#store;
     const shares = groundShares(map, place.x_m, place.y_m, 1.5);
-    // In steps of 5 %, so that a screen reader does not announce every cell.
+    // Rounds to steps of 5 %, so that a screen reader does not announce every cell.
     const percent = (share: number) => `${Math.round(share * 20) * 5} %`;
     const words = freshness.ground
       ? `The ground from above, within 1.5 m: ${percent(shares.free)} free, ${percent(shares.unsafe)} unsafe, ` +

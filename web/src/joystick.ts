@@ -4,11 +4,11 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import type { Steer } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// The service ends the movement after 1 s without a message.
+/// Period of repeated messages. The service ends the movement after 1 s without a message.
 const kAgain_ms = 300;
 const kKeys: Readonly<Record<string, number>> = { ArrowUp: 9, ArrowDown: 17, ArrowLeft: 21, ArrowRight: 13 };
 
-/// The text below the joystick. `held`: command of the held sign or key, 0 = none.
+/// Returns the text below the joystick. `held` is the command of the held sign or key; 0 = none.
 export function joystickWords(held: number, steer: Steer | undefined): string {
   if (steer?.taken && !steer.yours) return "Another page holds the joystick.";
   const words = (code: number) => kDirections.find((one) => one.code === code)?.words ?? `movement ${code}`;
@@ -20,7 +20,7 @@ export function joystickWords(held: number, steer: Steer | undefined): string {
   return `${outcome}Hold a sign or an arrow key to walk. The gate judges every step.`;
 }
 
-/// Joystick of a simulated machine: held signs and arrow keys. Off until the user switches it on.
+/// Joystick of a simulated machine, with held signs and arrow keys. It is off until the user switches it on.
 export class Joystick {
   readonly #store: Store;
   readonly #send: (message: object) => boolean;
@@ -73,7 +73,7 @@ export class Joystick {
     this.#changed();
   }
 
-  /// False in elements that use the arrow keys themselves.
+  /// Returns false for elements that use the arrow keys themselves.
   #arrowsAreFree(target: EventTarget | null): boolean {
     return !(target as HTMLElement | null)?.closest?.("input, select, canvas, dialog, [role=tab]");
   }

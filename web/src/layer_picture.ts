@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { LayerMessage } from "./messages.ts";
 
-/// Cividis (Nunez et al. 2018), the same anchors as surefoot/eval/report/colormap.cpp: colours linear in sRGB between them.
+/// Cividis (Nunez et al. 2018), with the same anchors as surefoot/eval/report/colormap.cpp. Colours between them are
+/// linear in sRGB.
 const kCividis: readonly (readonly [number, number, number])[] = [
   [0, 34, 78],
   [0, 46, 106],
@@ -22,7 +23,7 @@ const kCividis: readonly (readonly [number, number, number])[] = [
   [254, 232, 56],
 ];
 
-/// Colour of a share of the range, clamped to 0..1.
+/// Returns the colour of a share of the range. The share is clamped to 0..1.
 export function cividis(share: number): readonly [number, number, number] {
   const at = Math.max(0, Math.min(1, share)) * (kCividis.length - 1);
   const i = Math.min(kCividis.length - 2, Math.floor(at));
@@ -36,7 +37,7 @@ export interface Range {
   high: number;
 }
 
-/// Smallest and largest finite value; undefined if there is none.
+/// Returns the smallest and largest finite value; undefined if there is none.
 export function rangeOf(values: Float32Array): Range | undefined {
   let low = Infinity;
   let high = -Infinity;
@@ -48,7 +49,7 @@ export function rangeOf(values: Float32Array): Range | undefined {
   return low <= high ? { low, high } : undefined;
 }
 
-/// One pixel per cell, first row = largest y; unknown cells stay transparent.
+/// Draws one pixel per cell. The first row has the largest y. Unknown cells stay transparent.
 export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels: Uint8ClampedArray): void {
   const { nx, ny, values } = layer;
   pixels.fill(0);
@@ -64,7 +65,7 @@ export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels
     }
 }
 
-/// Four significant digits: "0.1235", "12.3", "1.20e-6".
+/// Returns a number with four significant digits: "0.1235", "12.3", "1.20e-6".
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "unknown";
   const size = Math.abs(value);

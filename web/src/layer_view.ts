@@ -5,8 +5,8 @@ import { cividis, paintLayer, rangeOf, shortNumber } from "./layer_picture.ts";
 import type { LayerMessage, Stairs } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// A selectable layer of the map with its legend, the value under the cursor (mouse, finger or arrow keys), and the
-/// edges and stairs over it.
+/// A selectable layer of the map with its legend and the value under the cursor (mouse, finger or arrow keys). Edges
+/// and stairs are drawn over the layer.
 export class LayerView {
   readonly #store: Store;
   readonly #select = byId<HTMLSelectElement>("layer-name");
@@ -26,7 +26,7 @@ export class LayerView {
     this.#drawLegend();
   }
 
-  /// Name of the layer that is shown, empty without any.
+  /// Returns the name of the layer that is shown; empty if there is none.
   get wanted(): string {
     return this.#select.value;
   }
@@ -48,7 +48,7 @@ export class LayerView {
     this.#drawCanvas();
   }
 
-  /// The newest message, if it is of the layer that was chosen.
+  /// Returns the newest message if it belongs to the chosen layer.
   get #layer(): LayerMessage | undefined {
     const { layer, hello } = this.#store;
     return layer && hello?.layers[layer.index] === this.wanted ? layer : undefined;

@@ -15,14 +15,15 @@ import {
 import URDFLoader, { type URDFRobot } from "urdf-loader";
 import type { Machine } from "./messages.ts";
 
-/// The link whose frame is that of the left camera, x along the view. Optional in a model.
+/// The link whose frame is that of the left camera, with x along the view. A model may lack this link.
 const kCameraLink = "camera";
-/// A symbol as wide as the view of a common lens; not the field of view of this camera.
+/// Length of the camera symbol [m]; half width and half height of its end as shares of this length. The symbol is as
+/// wide as the view of a common lens. It does not show the field of view of this camera.
 const kView_m = 0.42;
 const kHalfWidth = 0.55;
 const kHalfHeight = 0.36;
 
-/// The shape of a machine: the boxes of its URDF in base_link, moved by its joints.
+/// The shape of a machine: the boxes of its URDF in base_link. Its joints move the boxes.
 export class MachineModel {
   readonly object = new Group();
   readonly #robot: URDFRobot;
@@ -39,7 +40,8 @@ export class MachineModel {
       mesh.add(new LineSegments(new EdgesGeometry(mesh.geometry), line));
     }
     for (const material of seen) {
-      // The file has sRGB colours, the loader takes them for linear light: they would look almost white.
+      // The file has sRGB colours, but the loader reads them as linear light. Without this conversion the colours
+      // would look almost white.
       material.color.convertSRGBToLinear();
       material.specular = new Color(0x000000);
     }
@@ -47,7 +49,7 @@ export class MachineModel {
     this.object.add(this.#robot);
   }
 
-  /// Sets the angles of a pose, in the order of `machine.joints`; without angles, those of standing.
+  /// Sets the joint angles of a pose, in the order of `machine.joints`. Without angles, sets those of standing.
   move(machine: Machine, joints_rad: number[]): void {
     const known = joints_rad.length === machine.joints.length;
     machine.joints.forEach(({ name, stand_rad }, i) =>
@@ -56,7 +58,7 @@ export class MachineModel {
   }
 }
 
-/// A pyramid from the camera along its view.
+/// Returns a pyramid from the camera along its view.
 function viewMark(): Group {
   const [x, y, z] = [kView_m, kView_m * kHalfWidth, kView_m * kHalfHeight];
   const corners = [

@@ -17,13 +17,14 @@ import { kGround, type Box, type Machine, type PoseMessage } from "./messages.ts
 import type { Place } from "./store.ts";
 
 const kFootHeight_m = 0.08;
-/// Above the highest ground under a foot: the mesh between cells may lie higher than the cells.
+/// Height of the footprints above the highest ground under a foot, because the mesh between cells may be higher than
+/// the cells.
 const kPrintHeight_m = 0.008;
 
-/// The machine in the 3D scene: its model, or its body parts as boxes if there is no model. On the ground: its
-/// footprints for standing here.
+/// The machine in the 3D scene: its model, or its body parts as boxes if there is no model. Also draws its footprints
+/// for standing on the ground.
 export class MachineView {
-  readonly object = new Group(); ///< in odom, relative to the zero of the scene
+  readonly object = new Group(); ///< position in odom, relative to the zero of the scene
   readonly #element: HTMLElement;
   readonly #changed: () => void;
   readonly #body = new Group();
@@ -31,7 +32,7 @@ export class MachineView {
   #machine: Machine | null | undefined;
   #model: MachineModel | undefined;
 
-  /// The element's data-machine says what is shown: none, boxes or model.
+  /// Sets data-machine of the element to what is shown: none, boxes or model.
   constructor(element: HTMLElement, changed: () => void) {
     this.#element = element;
     this.#changed = changed;
@@ -68,7 +69,7 @@ export class MachineView {
     if (machine.model) void this.#load(machine, machine.model);
   }
 
-  /// The boxes stay until the model is loaded, and if it cannot be loaded.
+  /// Shows the boxes until the model is loaded. They stay if the model cannot be loaded.
   async #load(machine: Machine, path: string): Promise<void> {
     let model: MachineModel;
     try {
@@ -87,13 +88,13 @@ export class MachineView {
   }
 }
 
-/// A point beside base_link, in odom.
+/// Returns a point beside base_link, in odom.
 function carried(place: Place, x_m: number, y_m: number): { x_m: number; y_m: number } {
   const [c, s] = [Math.cos(place.yaw_rad), Math.sin(place.yaw_rad)];
   return { x_m: place.x_m + c * x_m - s * y_m, y_m: place.y_m + s * x_m + c * y_m };
 }
 
-/// The highest known ground under the corners and the middle of a foot.
+/// Returns the highest known ground under the corners and the middle of a foot.
 function highestUnder(foot: Box, place: Place, map: GroundMap): number | undefined {
   let highest_m: number | undefined;
   for (const [along, across] of [

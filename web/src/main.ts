@@ -12,9 +12,9 @@ import { Timeline } from "./timeline.ts";
 import { Tones } from "./tones.ts";
 import { WalkView } from "./walk_view.ts";
 
-/// Period of the page's own clock.
+/// Period of the page clock.
 const kTick_ms = 100;
-/// The machine walks slowly, and tablets without a graphics card must keep up.
+/// Shortest time between two drawings. The machine walks slowly, and tablets without a graphics card must keep up.
 const kDraw_ms = 66;
 
 const store = new Store();
@@ -36,7 +36,7 @@ const service = new ServiceLink(store, `${scheme}//${location.host}/page${query}
 
 let drawing = false;
 let drawn_at_ms = -kDraw_ms;
-/// Draws once, soon, for any number of changes.
+/// Draws soon, and only once for any number of changes.
 function changed(): void {
   if (drawing) return;
   drawing = true;
@@ -55,7 +55,7 @@ const walk = new WalkView(store, gate, tones, changed);
 const joystick = new Joystick(store, (message) => service.say(message), changed);
 const timeline = new Timeline(store, (message) => service.say(message), changed);
 const record = new RecordButton(store, (message) => service.say(message));
-/// Loaded when it is first shown: the walk view comes first.
+/// Loaded when the user first opens it, because the page starts with the walk view.
 let engineer: EngineerView | undefined;
 
 function want(): void {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file.
-/// Uses no socket, no clock and no picture.
+/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file. Uses
+/// no socket, no clock and no picture.
 
 export const kProtocol = 1;
 
 type FieldType = "u8" | "u16" | "u32" | "u64" | "i16" | "i32" | "i64" | "f32" | "f64";
 type Fields = readonly (readonly [string, FieldType])[];
-/// 64-bit integers are bigint: a number cannot hold a time in nanoseconds exactly.
+/// 64-bit integers are bigint, because a number cannot hold a time in nanoseconds exactly.
 type RecordOf<F extends Fields> = {
   [E in F[number] as E[0]]: E[1] extends "u64" | "i64" ? bigint : number;
 };
@@ -84,7 +84,7 @@ export const kLayerFields = [
 
 export const kKind = { map: 1, pose: 2, image: 3, layer: 4 } as const;
 
-/// Bits 0-1 of a cell's state, and the flags above them.
+/// The values of bits 0-1 in a cell's state. The flags below are the bits above them.
 export const kGround = { unknown: 0, free: 1, unsafe: 2, unsure: 3 } as const;
 export const kGroundMask = 3;
 export const kAttested = 4;
@@ -92,11 +92,11 @@ export const kDropEvidence = 8;
 export const kLowOverhead = 16;
 export const kUnknownHeight = -32768;
 
-/// No map of the service has more cells (40 x 40 m of 25 mm has 2.6 million).
+/// Largest number of cells that the page accepts. Maps of the service have fewer: 40 x 40 m of 25 mm has 2.6 million.
 const kMostCells = 4_000_000;
 
 export type Edge = RecordOf<typeof kEdgeFields>;
-/// The cells of a run follow each other in `cells`, 4 bytes each, from byte `at`.
+/// A run of cells. They follow each other in `cells`, 4 bytes each, from byte `at`.
 export interface Run {
   first: number;
   count: number;
@@ -184,7 +184,9 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
   at += sizeOf(kMapFields);
   const cell_count = head.nx * head.ny;
   if (cell_count === 0 || cell_count > kMostCells || head.resolution_tenth_mm === 0)
-    return unreadable(`map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} tenths of a mm`);
+    return unreadable(
+      `map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} x 0.1 mm; expected 1 to ${kMostCells} cells`,
+    );
   if (view.byteLength < at + head.edge_count * sizeOf(kEdgeFields))
     return unreadable("map: the message ends inside its edges");
   const edges: Edge[] = [];
@@ -200,7 +202,7 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
     runs.push({ first, count, at });
     at += count * sizeOf(kCellFields);
   }
-  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes too many`);
+  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes follow the last run`);
   return { kind: "map", ...head, edges, runs, cells: view };
 }
 
@@ -209,7 +211,7 @@ function decodePose(view: DataView, at: number): BinaryMessage {
   const head = read(view, at, kPoseFields);
   at += sizeOf(kPoseFields);
   if (view.byteLength !== at + head.joint_count * sizeOf(kJointFields))
-    return unreadable(`pose: ${view.byteLength} bytes for ${head.joint_count} joints`);
+    return unreadable(`pose: a message of ${view.byteLength} bytes does not fit ${head.joint_count} joints`);
   const joints_rad: number[] = [];
   for (let i = 0; i < head.joint_count; ++i) joints_rad.push(view.getFloat32(at + 4 * i, true));
   const numbers = [head.x_m, head.y_m, head.z_m, head.qx, head.qy, head.qz, head.qw];
@@ -231,7 +233,7 @@ function decodeLayer(view: DataView, at: number): BinaryMessage {
   at += sizeOf(kLayerFields);
   const count = head.nx * head.ny;
   if (count === 0 || count > kMostCells || view.byteLength !== at + 4 * count)
-    return unreadable(`layer: ${view.byteLength - at} bytes for ${head.nx} x ${head.ny} values`);
+    return unreadable(`layer: ${view.byteLength - at} bytes do not fit ${head.nx} x ${head.ny} values`);
   const values = new Float32Array(count);
   for (let i = 0; i < count; ++i) values[i] = view.getFloat32(at + 4 * i, true);
   return { kind: "layer", ...head, values };
@@ -289,7 +291,7 @@ export interface Machine {
 }
 export interface Joint {
   name: string;
-  stand_rad: number; ///< shown if a pose has no angles
+  stand_rad: number; ///< angle that is shown if a pose has no angles
 }
 export interface Hello {
   kind: "hello";
@@ -323,14 +325,14 @@ export interface Status {
   viewers: number;
   playback: Playback | null;
 }
-/// How a recording is played; frames 0 = number not known.
+/// How a recording is played. frames = 0: the number of frames is not known.
 export interface Playback {
   frame: number;
   frames: number;
   paused: boolean;
   speed: number;
 }
-/// The holder of the joystick, and the result of the last requested movement (asked 0: none yet).
+/// The holder of the joystick, and the result of the last requested movement. asked = 0: there was no request yet.
 export interface Steer {
   kind: "steer";
   yours: boolean;
@@ -340,10 +342,10 @@ export interface Steer {
   moved: boolean;
   text: string;
 }
-/// x [m], y [m], z [m], yaw [rad] in odom; null = no number.
+/// x [m], y [m], z [m] and yaw [rad] in odom. null = unknown.
 type PoseNumbers = [number | null, number | null, number | null, number | null];
 type Point = [number | null, number | null];
-/// A feature of the ground, followed over several observations.
+/// A feature of the ground that is tracked over several observations.
 export interface Feature {
   pose: PoseNumbers;
   id?: number;
@@ -387,7 +389,7 @@ export interface Door extends Feature {
   sill_m: number | null;
   clearance_m: number | null;
 }
-/// Lower ground on the right hand from the first end to the second.
+/// A line feature. The lower ground is on the right hand from the first end to the second.
 export interface StairsEdge {
   from: Point;
   to: Point;
@@ -453,7 +455,7 @@ const kStairsKeys = ["time_ns", "flights", "drops", "kerbs", "sills", "doors", "
 const kSettingKeys = ["key", "accepted", "value", "text"];
 const kRecordingKeys = ["state", "folder", "frames", "left_out", "bytes", "duration_s", "text"];
 
-/// Decodes a text message; undefined if its kind is unknown or keys are missing.
+/// Decodes a text message. Returns undefined if its kind is unknown or keys are missing.
 export function decodeJson(text: string): JsonMessage | undefined {
   let message: unknown;
   try {

@@ -28,7 +28,7 @@ export class OperatorActs {
     this.#looked.addEventListener("change", () => {
       this.#yes.disabled = !this.#looked.checked;
     });
-    // The click of the button decides: Chromium reports `close` late, and then once for each close.
+    // The click of the button decides, because Chromium reports `close` late, and then once for each close.
     this.#yes.addEventListener("click", () => {
       const radius_m = Number(this.#radius.value);
       if (!this.#looked.checked) return;

@@ -13,12 +13,12 @@ export class OperatorToken {
     this.#storage = storage;
   }
 
-  /// Empty if there is none.
+  /// Returns the token; empty if there is no token.
   get value(): string {
     try {
       return this.#storage.getItem(kKey) ?? "";
     } catch {
-      return ""; // the browser allows the page no storage
+      return ""; // the browser allows this page no storage
     }
   }
 
@@ -34,7 +34,7 @@ export class OperatorToken {
     try {
       this.#storage.removeItem(kKey);
     } catch {
-      // Nothing is kept.
+      // There is no storage, so there is no token to remove.
     }
   }
 }
@@ -44,8 +44,8 @@ export function needsOperator(message: string): boolean {
   return /\brole\b.*\boperator\b/i.test(message);
 }
 
-/// The gate's address. A browser hides why a connection failed. So after a failure with the token of the page's
-/// address, the next attempt leaves that token out, so that a wrong one does not keep the page from the gate.
+/// Returns the address of the gate. A browser hides why a connection failed. So after a failure with the token of the
+/// page's address, the next attempt leaves this token out: a wrong token must not keep the page from the gate.
 export function gateAddress(base: string, url_token: string | null, failures: number): string {
   const leaves_out = failures % 2 === 1;
   return url_token && !leaves_out ? `${base}?token=${encodeURIComponent(url_token)}` : base;

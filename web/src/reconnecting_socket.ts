@@ -4,7 +4,7 @@ import type { LinkState } from "./freshness.ts";
 const kFirstWait_ms = 250;
 const kLongestWait_ms = 4000;
 
-/// Wait before retry number `attempt` (0 = first): doubled each time, up to 4 s.
+/// Returns the wait before retry number `attempt` (0 = first retry). It doubles with each retry, up to 4 s.
 export function wait_ms(attempt: number): number {
   return Math.min(kLongestWait_ms, kFirstWait_ms * 2 ** attempt);
 }
@@ -12,12 +12,13 @@ export function wait_ms(attempt: number): number {
 export interface SocketEvents {
   opened(): void;
   message(data: ArrayBuffer | string): void;
-  /// Also called if the connection was never open. `retry_in_ms`: until the next attempt; `reason`: from the other
-  /// side, often empty.
+  /// Also called if the connection was never open. `retry_in_ms` is the time until the next attempt. `reason` comes
+  /// from the other side and is often empty.
   closed(retry_in_ms: number, reason: string): void;
 }
 
-/// A WebSocket that reconnects by itself. `address` is called before each attempt; undefined = not yet known.
+/// A WebSocket that reconnects by itself. `address` is called before each attempt; undefined = the address is not yet
+/// known.
 export class ReconnectingSocket {
   state: LinkState = "opening";
   #socket: WebSocket | undefined;
@@ -58,7 +59,7 @@ export class ReconnectingSocket {
     this.#again("");
   }
 
-  /// False if there is no connection.
+  /// Sends data. Returns false if there is no connection.
   send(message: unknown): boolean {
     if (this.state !== "open" || !this.#socket) return false;
     this.#socket.send(JSON.stringify(message));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Recording } from "./messages.ts";
 
-/// "150 frames, 61.0 MB, 10.0 s; 2 frames left out: the disk is too slow"
+/// Returns a text such as "150 frames, 61.0 MB, 10.0 s; 2 frames left out: the disk is too slow".
 export function countWords({ frames, bytes, duration_s, left_out }: Recording): string {
   const counts = `${frames} frame${frames === 1 ? "" : "s"}, ${(1e-6 * bytes).toFixed(1)} MB, ${duration_s.toFixed(1)} s`;
   return left_out > 0 ? `${counts}; ${left_out} frame${left_out === 1 ? "" : "s"} left out: the disk is too slow` : counts;
@@ -9,10 +9,10 @@ export function countWords({ frames, bytes, duration_s, left_out }: Recording): 
 
 export interface RecordingWords {
   button: string;
-  possible: boolean; ///< the button does something
-  state: string; ///< changes seldom: read aloud
-  counts: string; ///< changes all the time: not read aloud
-  mark: string; ///< in the bar of every page while a recording runs, else empty
+  possible: boolean; ///< true: the button can start or stop a recording
+  state: string; ///< changes rarely, is read aloud
+  counts: string; ///< changes all the time, is not read aloud
+  mark: string; ///< text in the bar of every page; empty if no recording runs
 }
 
 export function recordingWords(recording: Recording | undefined): RecordingWords {

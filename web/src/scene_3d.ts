@@ -26,12 +26,12 @@ import { MachineView } from "./machine_view.ts";
 import { kGround } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
-/// Cells along the side of the mesh: 6 m of 25 mm; of a larger map the part around the machine is shown.
+/// Cells along the side of the mesh: 6 m of 25 mm cells. Of a larger map only the part around the machine is shown.
 const kMostCells = 240;
-/// Least time between two pictures: a software renderer draws only a few a second.
+/// Shortest time between two pictures. A software renderer draws only a few pictures per second.
 const kPeriod_ms = 60;
 const kBorderPoints = 96;
-/// Over the attested ground, so that the ground does not hide the border.
+/// Height of the border over the attested ground, so that the ground does not hide the border.
 const kBorderHeight_m = 0.01;
 
 /// The ground as a lit mesh with the machine on it. Coordinates are in odom relative to `#zero`. Unknown ground is a
@@ -160,7 +160,7 @@ export class Scene3d {
     this.#view.elevation_rad = Math.max(0.08, Math.min(1.5, this.#view.elevation_rad + elevation_rad));
   }
 
-  /// From behind the machine and to its right, also when it turns.
+  /// Looks at the machine from behind and from its right side, also when the machine turns.
   #look(target: Vector3, yaw_rad: number): void {
     const { azimuth_rad, elevation_rad, distance_m } = this.#view;
     const across_m = distance_m * Math.cos(elevation_rad);
@@ -207,7 +207,7 @@ export class Scene3d {
     this.#drawAttested(zero);
   }
 
-  /// The border of the attested area, also over the holes of unknown ground.
+  /// Draws the border of the attested area, also over the holes of unknown ground.
   #drawAttested(zero: Place): void {
     const { attested } = this.#store;
     const points: number[] = [];
@@ -227,7 +227,7 @@ export class Scene3d {
     );
   }
 
-  /// A drop stands as a curtain from its upper to its lower ground.
+  /// Draws each drop as a curtain from its upper to its lower ground.
   #drawEdges(map: GroundMap, zero: Place): void {
     const corners: number[] = [];
     const rims: number[] = [];
@@ -253,7 +253,8 @@ export class Scene3d {
   }
 }
 
-/// Corners are the middles of cells; a face stands only where all its four cells are known.
+/// Returns the mesh of the ground. Its corners are the middles of cells. A face exists only where all its four cells
+/// are known.
 export function groundMesh(map: GroundMap, window: GroundWindow, zero: Place): BufferGeometry {
   const { first_ix, first_iy, cells } = window;
   const positions = new Float32Array(3 * cells * cells);

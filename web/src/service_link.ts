@@ -13,10 +13,10 @@ export interface Want {
   image_hz: number;
 }
 
-/// A connection without a message for so long is closed and opened again.
+/// A connection without a message for this time is closed and opened again.
 const kHopeless_ms = 5000;
 
-/// The page's own socket: hello, status, map, pose, pictures.
+/// The connection of the page to the service: hello, status, map, pose, pictures.
 export class ServiceLink {
   readonly #store: Store;
   readonly #socket: ReconnectingSocket;
@@ -54,12 +54,12 @@ export class ServiceLink {
     this.#socket.send({ op: "want", ...want });
   }
 
-  /// False if there is no connection.
+  /// Sends a message. Returns false if there is no connection.
   say(message: object): boolean {
     return this.#socket.send(message);
   }
 
-  /// Call periodically: restarts a connection that sends nothing.
+  /// Must be called periodically. Restarts a connection that sends nothing.
   watch(): void {
     const word = this.#arrivals.service_word_at_ms;
     if (this.#socket.state === "open" && word !== undefined && performance.now() - word > kHopeless_ms)
@@ -113,7 +113,7 @@ export class ServiceLink {
       case "map":
         this.#arrivals.map_at_ms = performance.now();
         if (message.map_version < store.map.version) store.forgetTrack();
-        // After each `want` the service sends the whole map again.
+        // The service sends the whole map again after each `want`.
         if (!store.map.apply(message)) this.#socket.send({ op: "want", ...this.#want });
         return;
       case "pose":

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Setting } from "./messages.ts";
 
-/// "elevation.pixels.reach_px" -> group "elevation.pixels", name "reach_px".
+/// Splits a key: "elevation.pixels.reach_px" has the group "elevation.pixels" and the name "reach_px".
 export function splitKey(key: string): { group: string; name: string } {
   const at = key.lastIndexOf(".");
   return { group: key.slice(0, Math.max(0, at)), name: key.slice(at + 1) };
 }
 
-/// Settings whose key or comment contains every typed word.
+/// Returns the settings whose key or comment contains every typed word.
 export function findSettings(settings: readonly Setting[], typed: string): Setting[] {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
   return settings.filter(({ key, comment }) => {

@@ -9,10 +9,10 @@ interface Knob {
   input: HTMLInputElement;
   said: HTMLElement;
   value: string; ///< last value from the service
-  answer: SettingAnswer | undefined; ///< the one shown
+  answer: SettingAnswer | undefined; ///< the answer that is shown
 }
 
-/// All settings of the run. Settings of the service can be changed here; the others are listed.
+/// All settings of the run. The user can change the settings of the service here; the other settings are only listed.
 export class SettingsView {
   readonly #store: Store;
   readonly #send: (message: object) => boolean;
@@ -46,7 +46,7 @@ export class SettingsView {
     }
     for (const { key, value } of settings) {
       const knob = this.#knobs.get(key)!;
-      // Text that the user is typing stays.
+      // Keeps the text that the user is typing.
       if (value !== knob.value && (knob.input.value === knob.value || document.activeElement !== knob.input))
         knob.input.value = value;
       knob.value = value;

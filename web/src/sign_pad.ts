@@ -17,7 +17,7 @@ function picture(className: string, symbol: string, angle_deg = 0, mirrored = fa
   return svg;
 }
 
-/// Rows of the pad in reading order, with the machine in the middle.
+/// Command codes of the pad in reading order. 0 is the machine in the middle.
 const kPlaces = [23, 9, 11, 21, 0, 13, 19, 17, 15, 25, 26];
 
 interface Button {
@@ -25,7 +25,7 @@ interface Button {
   element: HTMLButtonElement;
   shape: SVGUseElement;
   word: HTMLElement;
-  reason: HTMLElement; ///< for screen readers; on the screen it is in the large sentence
+  reason: HTMLElement; ///< for screen readers; on the screen, the large sentence shows the reason
 }
 
 /// One sign for each direction: shape, colour and word. A pressed sign selects its direction for the large sentence.

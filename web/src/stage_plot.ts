@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Store } from "./store.ts";
 
-/// After Okabe and Ito, each with a dash of its own.
+/// Colours after Okabe and Ito. Each line also has its own dash pattern.
 const kLines: readonly (readonly [string, number[]])[] = [
   ["#0072b2", []],
   ["#d55e00", [8, 4]],
@@ -15,7 +15,7 @@ const kLines: readonly (readonly [string, number[]])[] = [
   ["#a04000", [6, 2, 2, 2]],
 ];
 
-/// Time of each stage over the last two minutes.
+/// Plots the time of each stage over the last two minutes.
 export class StagePlot {
   readonly #element: HTMLElement;
   readonly #store: Store;

@@ -52,9 +52,9 @@ export interface StageTimes {
 
 const kMostVerdicts = 50;
 const kMostPlaces = 4000;
-const kMostStageTimes = 240; ///< two minutes of status messages
+const kMostStageTimes = 240; ///< number of stage times in two minutes of status messages
 
-/// All data of the page. Links write them and report changes; views read them.
+/// All data of the page. Links write the data and report changes; views read the data.
 export class Store {
   hello: Hello | undefined;
   status: Status | undefined;
@@ -62,7 +62,7 @@ export class Store {
   joystick_on = false;
   stairs: Stairs | undefined;
   settings: Settings | undefined;
-  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last change that this page asked for
+  setting_answers = new Map<string, SettingAnswer>(); ///< key: setting; value: answer to the last change by this page
   recording: Recording | undefined;
   pose: PoseMessage | undefined;
   map = new GroundMap();
@@ -73,7 +73,7 @@ export class Store {
   verdicts: GateVerdict[] = [];
   track: Place[] = [];
   stage_times: StageTimes[] = [];
-  problem = ""; ///< the last message that could not be read, and why
+  problem = ""; ///< the last message that the page could not read, and the reason
   chosen: number | undefined; ///< code of the direction that the user chose
   attestation_radius_m: number | undefined; ///< radius in the open attestation dialog
   arrivals: Arrivals = { service: "opening", gate: "opening", has_machine: false };
@@ -101,7 +101,7 @@ export class Store {
     if (this.track.length > kMostPlaces) this.track.splice(0, kMostPlaces / 4);
   }
 
-  /// Odom was restarted: the old track has no meaning in the new frame.
+  /// Clears the track after a restart of odom, because the old track has no meaning in the new frame.
   forgetTrack(): void {
     this.track = [];
   }
@@ -111,17 +111,17 @@ export class Store {
     if (this.stage_times.length > kMostStageTimes) this.stage_times.shift();
   }
 
-  /// Whether an operator's attestation is in force, as far as the page has fresh data of the gate.
+  /// Whether an operator's attestation is in force. False without fresh data of the gate.
   get attesting(): boolean {
     return this.freshness.verdicts && this.health?.attesting === true;
   }
 
-  /// The attested area, to be drawn; undefined if no attestation is in force.
+  /// Returns the attested area to draw; undefined if no attestation is in force.
   get attested(): AttestedArea | undefined {
     return this.attesting ? (this.health?.attested ?? undefined) : undefined;
   }
 
-  /// base_link on the ground; undefined without a pose.
+  /// Returns base_link on the ground; undefined without a pose.
   get place(): Place | undefined {
     const { pose } = this;
     if (!pose) return undefined;

@@ -3,12 +3,12 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import type { Playback } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// "frame 186 of 600"; counted from one.
+/// Returns a text such as "frame 186 of 600". Frames are counted from one.
 export function frameWords({ frame, frames }: Pick<Playback, "frame" | "frames">): string {
   return frames > 0 ? `frame ${frame + 1} of ${frames}` : `frame ${frame + 1}`;
 }
 
-/// Pause, jump and speed of a recording, for all pages together.
+/// Pause, jump and speed of a recording. They apply to all pages together.
 export class Timeline {
   readonly #store: Store;
   readonly #bar = byId("timeline");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { SignKind } from "./directions.ts";
 
-/// The three tones of the REX link (tools/tones): they differ in rhythm and in pitch. Notes of (pitch in Hz,
-/// 0 = silence; duration in s).
+/// The three tones of the REX link (tools/tones). They differ in rhythm and in pitch. A note is [pitch in Hz, duration
+/// in s]; pitch 0 = silence.
 const kTones: Partial<Record<SignKind, readonly (readonly [number, number])[]>> = {
   allowed: [[880, 0.14]],
   not: [
@@ -26,7 +26,7 @@ const kOvertones = [
 const kFade_s = 0.008;
 const kVolume = 0.5;
 
-/// Off until the user switches them on: browsers block sound before a user action.
+/// Plays the tones. They are off until the user switches them on, because browsers block sound before a user action.
 export class Tones {
   #context: AudioContext | undefined;
   #last: SignKind | undefined;

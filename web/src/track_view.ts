@@ -2,10 +2,10 @@
 import { byId, setText } from "./dom.ts";
 import type { Store } from "./store.ts";
 
-/// The ellipse is drawn at as many sigmas: 99 % of a plane's normal distribution lie within.
+/// Size of the drawn ellipse in sigmas. In a plane, 99 % of a normal distribution lie within 3 sigma.
 const kSigmas = 3;
 
-/// Half axes and direction of the ellipse of one sigma.
+/// Returns the half axes and the direction of the ellipse of one sigma.
 export function ellipseOf(var_x: number, var_y: number, cov_xy: number) {
   const mean = (var_x + var_y) / 2;
   const spread = Math.hypot((var_x - var_y) / 2, cov_xy);

@@ -9,7 +9,7 @@ import { SignPad } from "./sign_pad.ts";
 import type { Store } from "./store.ts";
 import type { Tones } from "./tones.ts";
 
-/// For the user and the clinician: the ground, one sign for each direction, and why.
+/// The view for the user and the clinician: the ground, one sign for each direction, and the reason.
 export class WalkView {
   readonly #store: Store;
   readonly #tones: Tones;
@@ -17,7 +17,7 @@ export class WalkView {
   readonly #pad: SignPad;
   readonly #acts: OperatorActs;
   readonly #changed: () => void;
-  #scene: Scene3d | undefined; ///< loaded when it is first asked for
+  #scene: Scene3d | undefined; ///< loaded when the user first opens it
 
   constructor(store: Store, gate: GateLink, tones: Tones, changed: () => void) {
     this.#store = store;
@@ -39,12 +39,12 @@ export class WalkView {
     new ResizeObserver(changed).observe(byId("ground"));
   }
 
-  /// Opens the field for the operator's token. `why`: the sentence of the gate.
+  /// Opens the field for the operator's token. `why` is the sentence of the gate.
   askToken(why: string): void {
     this.#acts.askToken(why);
   }
 
-  /// Signs and tones are updated even while the other view is shown.
+  /// Updates signs and tones even while the other view is shown.
   draw(shown: boolean): void {
     const { direction, sign, words } = this.#pad.draw();
     this.#tones.follow(sign.kind);
