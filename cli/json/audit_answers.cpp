@@ -15,6 +15,7 @@ namespace {
 
 using gate_process::dump_indented;
 using gate_process::Json;
+
 Json summary_json(const gate_process::AuditSummary& summary) {
     Json damage = nullptr;
     if (summary.damage) {

@@ -16,6 +16,7 @@ namespace {
 using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
+
 Json vector(const Eigen::Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }

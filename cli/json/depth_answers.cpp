@@ -16,6 +16,7 @@ namespace {
 using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
+
 }  // namespace
 
 std::string measured_depth_json(const MeasuredPair& measured, const std::string& folder) {

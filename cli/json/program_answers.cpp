@@ -15,6 +15,7 @@ namespace {
 using gate_process::dump_indented;
 using gate_process::Json;
 using gate_process::number;
+
 }  // namespace
 
 std::string settings_json(const std::vector<io::ConfigEntry>& entries) {

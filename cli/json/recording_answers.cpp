@@ -15,6 +15,7 @@ namespace {
 
 using gate_process::dump_indented;
 using gate_process::Json;
+
 }  // namespace
 
 std::string scenes_json(const std::vector<sim::SceneInfo>& scenes) {

@@ -15,6 +15,7 @@ namespace {
 
 using gate_process::dump_indented;
 using gate_process::Json;
+
 Json event_json(const RexLinkRow& row) {
     using rex_link::LinkEventKind;
     const rex_link::LinkEvent& event = row.event;
