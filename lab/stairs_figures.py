@@ -98,7 +98,7 @@ def is_thesis_flight_true(row):
 
 def required(folder):
     """(what, found, required, met) for each measured figure, from the results after all observations."""
-    rows = {(part, mode): [r for r in read_part(folder, part, mode) if r["way"] == "told"] for part in PARTS for mode in MODES}
+    rows = {(part, mode): [r for r in read_part(folder, part, mode) if r["way"] == "tracked"] for part in PARTS for mode in MODES}
     figures = []
 
     def share(what, mine, is_good, least_percent):

@@ -94,7 +94,7 @@ def held_out_rows(rows, matchers, name):
 
 IMAGE_FAULTS = {"smear": "2 px more blur in both cameras", "finger mark": "a finger mark on the left lens (4 px)", "glass": "glass",
             "sun": "sun in stripes, shadows", "sun and over-exposed": "images 2.5 times too bright",
-            "right eye brighter": "right camera 1.3 times as bright", "right eye darker": "right camera 0.6 times as bright"}
+            "right camera brighter": "right camera 1.3 times as bright", "right camera darker": "right camera 0.6 times as bright"}
 
 
 def robustness_part(rows):

@@ -69,8 +69,8 @@ std::vector<Series> held_out_series() {
         {"sun and over-exposed",
          usual,
          {"exposure.sun_warm_up=true", "exposure.warm_up_factor=2.5"}},
-        {"right eye brighter", usual, {"exposure.right_gain=1.3"}},
-        {"right eye darker", usual, {"exposure.right_gain=0.6"}},
+        {"right camera brighter", usual, {"exposure.right_gain=1.3"}},
+        {"right camera darker", usual, {"exposure.right_gain=0.6"}},
     };
 }
 

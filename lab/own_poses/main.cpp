@@ -51,7 +51,7 @@ using experiments::SceneCase;
 
 struct Case {
     SceneCase seen;
-    sim::CarriedBy motion_model = sim::CarriedBy::scene;
+    sim::MotionModelChoice motion_model = sim::MotionModelChoice::scene;
     std::string rig;
 };
 
@@ -123,7 +123,7 @@ Result<std::optional<std::string>> measure(const Case& now,
     sim.motion_model = now.motion_model;
     sim.rig_preset = now.rig;
     auto source = sim::open_scene(sim, &executor);
-    if (!source && now.motion_model != sim::CarriedBy::scene) {
+    if (!source && now.motion_model != sim::MotionModelChoice::scene) {
         log_warning(source.error().message);
         return std::optional<std::string>{};
     }
@@ -169,13 +169,13 @@ Result<std::optional<std::string>> measure(const Case& now,
                          floor_figures(truth.scene, pipeline->map()));
 }
 
-Result<sim::CarriedBy> motion_model_named(std::string_view name) {
-    const auto* const found =
-        std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
-    if (found == std::end(sim::kCarriedByNames))
+Result<sim::MotionModelChoice> motion_model_named(std::string_view name) {
+    const auto* const found = std::find(
+        std::begin(sim::kMotionModelChoiceNames), std::end(sim::kMotionModelChoiceNames), name);
+    if (found == std::end(sim::kMotionModelChoiceNames))
         return usage_error(
             fmt::format("unknown motion model '{}'; use scene, trolley, rex or hand", name));
-    return static_cast<sim::CarriedBy>(found - std::begin(sim::kCarriedByNames));
+    return static_cast<sim::MotionModelChoice>(found - std::begin(sim::kMotionModelChoiceNames));
 }
 
 int measure_all(const std::vector<std::string>& words) {

@@ -8,7 +8,7 @@
 // Writes OUT.csv, one line per window of 32 x 32 px of the rectified left image: frame, u, v,
 // texture_dn (horizontal gradient of the grey values), coarse_dn, grey_dn, density (share of
 // matched pixels), residual_px (scatter of the disparity about the robustly fitted plane), rms_px,
-// inliers, eyes_dn (difference of the two images after alignment by that plane).
+// inliers, cameras_dn (difference of the two images after alignment by that plane).
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -234,7 +234,7 @@ int run(const std::string& name,
     DepthImage depth;
     auto file = fmt::output_file(out);
     file.print(
-        "frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,rms_px,inliers,eyes_dn\n");
+        "frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,rms_px,inliers,cameras_dn\n");
     std::vector<Window> before;
     Repetition repetition;
     for (int frame = 0; max_frames == 0 || frame < max_frames; ++frame) {

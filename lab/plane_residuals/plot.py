@@ -53,7 +53,7 @@ def measures(rows):
     found["fine to coarse texture"] = statistics.median(r["texture_dn"] / max(r["coarse_dn"], 0.05) for r in textured)
     found["median texture [dn/px]"] = statistics.median(r["texture_dn"] for r in textured)
     found["windows of texture < 2"] = 1 - len(textured) / len(rows)  # this measure and the next are compared, but not fitted
-    even = [r["eyes_dn"] for r in rows if r["density"] > 0.8 and r["texture_dn"] < 4 and not math.isnan(r["eyes_dn"])]
+    even = [r["cameras_dn"] for r in rows if r["density"] > 0.8 and r["texture_dn"] < 4 and not math.isnan(r["cameras_dn"])]
     found["difference of the cameras, texture < 4 [dn]"] = quantile(even, 0.25)
     return found
 

@@ -13,7 +13,7 @@
 //
 // Writes OUT.csv, two lines per judged frame: the detection in this frame alone, and the tracked
 // result. Lengths in mm, angles in deg; empty or nan = not found:
-//   way                look = this frame alone, told = tracked by FeatureTracker
+//   way                single = this frame alone, tracked = tracked by FeatureTracker
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
 //   kind, steps, riser, going, width, sill, ahead   true values; ahead: from the left camera
 //   found              flight whose first edge lies within 0.1 m and 10 deg of the true one
@@ -131,12 +131,12 @@ std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeat
         nearest(features.sills, truth, [&](const stairs::LineFeature& candidate) {
             return is_opening_of(candidate.pose, truth);
         });
-    const std::string told = door == nullptr ? std::string(",0,,,")
-                                             : fmt::format(",1,{:.2f},{:.2f},{:.2f}",
-                                                           mm(door->width_m),
-                                                           mm(door->width_sigma_m),
-                                                           mm(door->sill_m));
-    return fmt::format("{},{:.2f}", told, sill == nullptr ? kNone : mm(sill->height_m));
+    const std::string door_text = door == nullptr ? std::string(",0,,,")
+                                                  : fmt::format(",1,{:.2f},{:.2f},{:.2f}",
+                                                                mm(door->width_m),
+                                                                mm(door->width_sigma_m),
+                                                                mm(door->sill_m));
+    return fmt::format("{},{:.2f}", door_text, sill == nullptr ? kNone : mm(sill->height_m));
 }
 
 constexpr const char* kHeader =
@@ -161,7 +161,8 @@ class Judge {
             finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);
         }
-        return row(observation, "look", found_, took_ns) + row(observation, "told", told_, took_ns);
+        return row(observation, "single", found_, took_ns) +
+               row(observation, "tracked", tracked_, took_ns);
     }
 
   private:
@@ -171,7 +172,7 @@ class Judge {
         const std::int64_t start_ns = steady_now_ns();
         finder_.find(terrain, found_);
         const std::int64_t took_ns = steady_now_ns() - start_ns;
-        tracker_.update(found_, terrain, {observation.frame * kFrame_ns, {}}, told_);
+        tracker_.update(found_, terrain, {observation.frame * kFrame_ns, {}}, tracked_);
         return took_ns;
     }
 
@@ -207,7 +208,7 @@ class Judge {
     stairs::FeatureFinder finder_;
     stairs::FeatureTracker tracker_;
     stairs::TerrainFeatures found_;
-    stairs::TerrainFeatures told_;
+    stairs::TerrainFeatures tracked_;
 };
 
 struct Done {

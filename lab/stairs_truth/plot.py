@@ -10,7 +10,7 @@ from stairs_figures import errors_of, is_drop_near, is_flight_true, numbers, sca
 STAIRS_FIRST_SEED = 85_001  # no setting was chosen with these
 OWN_POSES = "own poses"
 STAIRS_AT_ONCE = 10
-STAIRS_WAYS = {"told": "", "look": ", single observation"}
+STAIRS_WAYS = {"tracked": "", "single": ", single observation"}
 
 
 def stairs(lab):
@@ -18,7 +18,7 @@ def stairs(lab):
     rows = {part: [row for mode in stairs_figures.MODES for row in stairs_rows(lab, part, mode)] for part in stairs_figures.PARTS}
     rows["up"] += [{**row, "mode": f"{row['mode']}, {OWN_POSES}"}
                    for row in stairs_rows(lab, "up", "images_0.25", OWN_POSES, "sim.known_motion=false")]
-    noise = stairs_noise({part: [row for row in mine if row["way"] == "look"] for part, mine in rows.items()})
+    noise = stairs_noise({part: [row for row in mine if row["way"] == "single"] for part, mine in rows.items()})
     for part, mine in rows.items():
         some = [(mode, f"{mode}, measured {most_px} or less", most_px) for mode, most_px in stairs_figures.MOST_PX.items()]
         rows[part] = [{**row, "mode": name + STAIRS_WAYS[row["way"]]}

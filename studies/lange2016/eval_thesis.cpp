@@ -212,7 +212,7 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
 
 int frames_of(const ThesisRun& run, const ThesisConditions& conditions) {
     const auto script = sim::make_scene(
-        run.scene, conditions.seed, sim::motion_model_of(carried_by(run.motion_model)));
+        run.scene, conditions.seed, sim::motion_model_of(motion_model_choice(run.motion_model)));
     if (!script) return 1;
     const double last = std::floor(script->motion->duration_s() * run.rate_hz);
     const int all = saturated_integer<int>(last + 1.0);

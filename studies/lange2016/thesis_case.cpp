@@ -40,7 +40,7 @@ Result<GroundBox> box_of(const BoxText& text, const sim::NamedNumbers& numbers) 
 
 Result<sim::ScriptedScene> script_of(const ThesisRun& run, const ThesisConditions& conditions) {
     return sim::make_scene(
-        run.scene, conditions.seed, sim::motion_model_of(carried_by(run.motion_model)));
+        run.scene, conditions.seed, sim::motion_model_of(motion_model_choice(run.motion_model)));
 }
 
 /// Takes the measurements of the thesis from a scan or a map. `points_m` supply vertical faces;
@@ -196,7 +196,7 @@ class LiveRun {
     [[nodiscard]] Status open() {
         SourceRequest request{
             run_.scene, "", run_.rate_hz, conditions_.max_frames, conditions_.seed, settings_.sim};
-        request.sim.motion_model = carried_by(run_.motion_model);
+        request.sim.motion_model = motion_model_choice(run_.motion_model);
         auto source = open_simulation(request, serial_);
         if (!source) return source.error();
         source_ = std::move(*source);

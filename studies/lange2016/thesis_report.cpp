@@ -51,8 +51,8 @@ double value_of(const ThesisResults& results, const ThesisRow& row, ThesisColumn
 double exact_of(const ThesisRow& row, std::uint64_t seed) {
     if (std::string_view(row.truth).empty()) return std::nan("");
     const ThesisRun& run = run_named(row.run);
-    const auto script =
-        sim::make_scene(run.scene, seed, sim::motion_model_of(carried_by(run.motion_model)));
+    const auto script = sim::make_scene(
+        run.scene, seed, sim::motion_model_of(motion_model_choice(run.motion_model)));
     if (!script) return std::nan("");
     const auto value = sim::evaluate(row.truth, sim::drawn_numbers(*script));
     return value ? *value : std::nan("");

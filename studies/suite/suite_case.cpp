@@ -146,11 +146,11 @@ pipeline::PipelineConfig config_on(const sim::SceneTruth& truth, const Settings&
     return config;
 }
 
-sim::CarriedBy carried_by(const std::string& name) {
-    const auto at =
-        std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
-    SUREFOOT_ASSERT(at != std::end(sim::kCarriedByNames));
-    return static_cast<sim::CarriedBy>(at - std::begin(sim::kCarriedByNames));
+sim::MotionModelChoice motion_model_choice(const std::string& name) {
+    const auto at = std::find(
+        std::begin(sim::kMotionModelChoiceNames), std::end(sim::kMotionModelChoiceNames), name);
+    SUREFOOT_ASSERT(at != std::end(sim::kMotionModelChoiceNames));
+    return static_cast<sim::MotionModelChoice>(at - std::begin(sim::kMotionModelChoiceNames));
 }
 
 std::string SuiteCase::name() const {
@@ -252,7 +252,7 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which, const SuiteConditions
     SourceRequest request{
         which.scene, "", which.rate_hz, which.max_frames, which.seed, settings.sim};
     request.sim.noise *= which.noise;
-    request.sim.motion_model = carried_by(which.motion_model);
+    request.sim.motion_model = motion_model_choice(which.motion_model);
     Serial serial;
     auto source = open_simulation(request, serial);
     if (!source) return source.error();

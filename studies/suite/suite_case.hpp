@@ -29,8 +29,8 @@ struct SuiteCase {
     friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
 };
 
-/// Returns the motion model with this name, one of sim::kCarriedByNames.
-[[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
+/// Returns the motion model with this name, one of sim::kMotionModelChoiceNames.
+[[nodiscard]] sim::MotionModelChoice motion_model_choice(const std::string& name);
 
 /// Returns the pipeline settings for a scene. The height of base_link above its ground comes from
 /// the truth, because the construction of each motion model fixes this height. The trolley is 4 cm

@@ -15,7 +15,7 @@ struct EvalSuiteOptions {
     std::string machine = "rex";
     std::string camera = "zed";       ///< camera profile, one of sim::kCameraProfileNames
     std::vector<std::string> scenes;  ///< empty = all
-    /// Motion models of the cases, each one of sim::kCarriedByNames.
+    /// Motion models of the cases, each one of sim::kMotionModelChoiceNames.
     std::vector<std::string> motion_models = {"scene"};
     int seeds = 1;                           ///< number of seeds for each scene
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera

@@ -88,7 +88,7 @@ Status add_motion_models(const std::string& name,
                          std::vector<SuiteScene>& scenes) {
     std::set<sim::MotionModel> motion_models;
     for (const std::string& word : options.motion_models) {
-        const auto asked = sim::motion_model_of(carried_by(word));
+        const auto asked = sim::motion_model_of(motion_model_choice(word));
         const auto scene = sim::make_scene(name, options.common.seed, asked);
         if (!scene && asked && sim::make_scene(name, options.common.seed)) {
             log_warning(fmt::format("scene {} with motion model {} is left out: {}",

@@ -122,12 +122,12 @@ bool needs_images(const ImageFaultConfig& faults) {
 
 }  // namespace
 
-std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
+std::optional<MotionModel> motion_model_of(MotionModelChoice carried_by) {
     switch (carried_by) {
-        case CarriedBy::scene: return std::nullopt;
-        case CarriedBy::trolley: return MotionModel::trolley;
-        case CarriedBy::rex: return MotionModel::rex;
-        case CarriedBy::hand: return MotionModel::hand;
+        case MotionModelChoice::scene: return std::nullopt;
+        case MotionModelChoice::trolley: return MotionModel::trolley;
+        case MotionModelChoice::rex: return MotionModel::rex;
+        case MotionModelChoice::hand: return MotionModel::hand;
     }
     return std::nullopt;
 }
@@ -139,7 +139,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
                         "sensor that records the scene; 'analytic' computes depth without images");
     visitor.enumeration("motion_model",
                         motion_model,
-                        kCarriedByNames,
+                        kMotionModelChoiceNames,
                         "motion model that moves the camera along the path of the scene");
     visitor.boolean(
         "known_motion",

@@ -34,17 +34,18 @@ enum class Sensor : std::uint8_t {
 inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analytic"};
 
 /// Motion model of the camera: the one of the scene file, or an override.
-enum class CarriedBy : std::uint8_t { scene, trolley, rex, hand };
-inline constexpr const char* kCarriedByNames[] = {"scene", "trolley", "rex", "hand"};
-/// The motion model; no value for `CarriedBy::scene`.
-[[nodiscard]] std::optional<MotionModel> motion_model_of(CarriedBy carried_by);
+enum class MotionModelChoice : std::uint8_t { scene, trolley, rex, hand };
+inline constexpr const char* kMotionModelChoiceNames[] = {"scene", "trolley", "rex", "hand"};
+/// The motion model; no value for `MotionModelChoice::scene`.
+[[nodiscard]] std::optional<MotionModel> motion_model_of(MotionModelChoice carried_by);
 
 struct SceneOptions {
     std::string scene = "demo_stairs";
-    std::string rig_preset = "zed_vga";         ///< ignored if `rig` is set
-    std::optional<camera::StereoRig> rig;       ///< replaces `rig_preset`; keeps its T_body_left
-    std::uint64_t seed = 1;                     ///< seed of textures, noise and path offsets
-    CarriedBy motion_model = CarriedBy::scene;  ///< error if it cannot follow the scene's path
+    std::string rig_preset = "zed_vga";    ///< ignored if `rig` is set
+    std::optional<camera::StereoRig> rig;  ///< replaces `rig_preset`; keeps its T_body_left
+    std::uint64_t seed = 1;                ///< seed of textures, noise and path offsets
+    MotionModelChoice motion_model =
+        MotionModelChoice::scene;  ///< error if it cannot follow the scene's path
     /// A REX under live command: it stands at the start of the scene's path and takes its steps
     /// from `SceneSource::commanded`. The run ends only after `frames`.
     bool commanded = false;
