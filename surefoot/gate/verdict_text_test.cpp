@@ -200,5 +200,31 @@ TEST(VerdictText, an_ok_and_an_error_have_no_place) {
     EXPECT_EQ(text_of(verdict, Query{}, rex()), "internal error: the map or the gate is damaged");
 }
 
+TEST(VerdictText, says_what_where_value_and_limit) {
+    Terrain hole;
+    hole.box(0.55, 0.60, 0.15, 0.20, -0.17);
+    const auto map = hole.snapshot();
+    const Query query = query_at_body(kForward, *map);
+    const Verdict verdict = decide(rex(), query, *map, kReady, kNowNs);
+    // The cell's centre at 0.5625 m, the toes at 0.240 m.
+    EXPECT_EQ(text_of(verdict, query, rex()),
+              "drop of 0.17 m, 0.32 m ahead of the left foot (limit 0.050 m)");
+}
+
+TEST(VerdictText, every_reason_has_a_sentence_and_a_code) {
+    for (int i = 0; i < kReasonCount; ++i) {
+        Verdict verdict;
+        verdict.primary = static_cast<Reason>(i);
+        verdict.decision = is_error(verdict.primary) ? Decision::error : Decision::not_traversable;
+        const std::string text = text_of(verdict, Query{}, rex());
+        EXPECT_GT(text.size(), 12U) << to_string(verdict.primary);
+        EXPECT_NE(text, to_string(verdict.primary));
+        for (int j = 0; j < i; ++j)
+            EXPECT_STRNE(to_string(static_cast<Reason>(j)), to_string(verdict.primary));
+    }
+    EXPECT_STREQ(to_string(static_cast<Reason>(200)), "INTERNAL");
+    EXPECT_STREQ(to_string(static_cast<Decision>(200)), "ERROR");
+}
+
 }  // namespace
 }  // namespace surefoot::gate::testing
