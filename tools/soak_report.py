@@ -290,9 +290,9 @@ def lines_of(found):
         "", "| measured quantity | perception | gate |", "|---|---|---|"]
     for text, field, digits in (
             ("number of processes that ran one after the other", "processes", 0),
-            ("longest life of a process, without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
-            ("resident memory at the beginning of this life [MB]", "mb_first", 1), ("resident memory at the end of this life [MB]", "mb_last", 1),
-            ("**slope of the resident memory in this life [MB per hour]**", "mb_per_h", 2), ("slope of the memory that is not shared in this life [MB per hour]", "own_mb_per_h", 2),
+            ("longest life of a process, without its first 30 minutes (\"the longest life\") [h]", "warm_hours_of_the_longest", 2),
+            ("resident memory at the beginning of the longest life [MB]", "mb_first", 1), ("resident memory at the end of the longest life [MB]", "mb_last", 1),
+            ("**slope of the resident memory in the longest life [MB per hour]**", "mb_per_h", 2), ("slope of the memory that is not shared, in the longest life [MB per hour]", "own_mb_per_h", 2),
             ("slope of the memory that is not shared, over all lives of more than 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
             ("largest resident memory of any process [MB]", "mb_most", 1),
             ("**slope of the number of handles [per hour]** (lowest number in each 5 minutes)", "handles_per_h", 2),
@@ -310,7 +310,7 @@ def lines_of(found):
               f"| perception stopped or killed while the gate said OK: longest time to the first inhibit, with ten questions a second [ms] | "
               f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
               f"| gate killed: longest time without an answer [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
-              "| handles of the gate without clients, at the beginning and at the end | "
+              "| number of handles of the gate without clients, at the beginning and at the end of the run | "
               f"{found['handles_alone'][0]}, {found['handles_alone'][1]} |",
               f"| largest number of files in shared memory | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
               f"| largest size of the audit folder (limit 64 MB) [MB] | {number(found['audit_mb_most'])} |",
