@@ -59,13 +59,16 @@ def chi_square(share, freedom):
     return freedom * (1 - part + statistics.NormalDist().inv_cdf(share) * math.sqrt(part)) ** 3
 
 
-def scatter(errors):
-    """Mean / standard deviation with its 95 % interval, as if the errors were normal."""
-    if len(errors) < 6:
-        return "-"
+def deviation(errors):
+    """Standard deviation with its 95 % interval, as if the errors were normal."""
     sd, freedom = statistics.stdev(errors), len(errors) - 1
     low, high = (sd * math.sqrt(freedom / chi_square(share, freedom)) for share in (0.975, 0.025))
-    return f"{statistics.mean(errors):+.1f} / {sd:.1f} ({low:.1f}-{high:.1f})"
+    return f"{sd:.1f} ({low:.1f}-{high:.1f})"
+
+
+def scatter(errors):
+    """Mean / standard deviation with its 95 % interval, as if the errors were normal."""
+    return f"{statistics.mean(errors):+.1f} / {deviation(errors)}" if len(errors) > 5 else "-"
 
 
 def numbers(rows, key):
@@ -97,22 +100,27 @@ def is_thesis_flight_true(row):
 
 
 def required(folder):
-    """(what, found, required, met) for each measured figure, from the results after all observations."""
+    """(what, found, required, met) for each measured figure, from the results after all observations.
+
+    `required` is None for a figure without a required value.
+    """
     rows = {(part, mode): [r for r in read_part(folder, part, mode) if r["way"] == "tracked"] for part in PARTS for mode in MODES}
     figures = []
 
     def share(what, mine, is_good, least_percent):
         if mine:
             good = sum(map(is_good, mine))
-            figures.append((what, wilson(good, len(mine)), f"{least_percent} %", 100 * good >= least_percent * len(mine)))
+            figures.append((what, wilson(good, len(mine)), f"at least {least_percent} %", 100 * good >= least_percent * len(mine)))
 
     def sizes(mode, riser_mm, going_mm):
         mine = [r for r in rows["up", mode] if r["found"] == "1"]
         for name, most_mm in (("riser", riser_mm), ("going", going_mm)):
             errors = errors_of(mine, f"found_{name}", name)
             if len(errors) > 5:
-                figures.append((f"flights up of 4 to 8 steps, {mode.replace('_', ' ')} px, {name}: mean error / sd",
-                                f"{scatter(errors)} mm, {len(errors)} flights", f"sd {most_mm} mm", statistics.stdev(errors) <= most_mm))
+                what = f"flights up of 4 to 8 steps, {mode.replace('_', ' ')} px, {name}"
+                figures.append((f"{what}: mean error", f"{statistics.mean(errors):+.1f} mm, {len(errors)} flights", None, True))
+                figures.append((f"{what}: standard deviation of the error", f"{deviation(errors)} mm, {len(errors)} flights",
+                                f"at most {most_mm} mm", statistics.stdev(errors) <= most_mm))
 
     sizes("analytic_0.25", 1.0, 2.0)
     sizes("images_0.25", 2.4, 2.7)
@@ -121,15 +129,15 @@ def required(folder):
         for steps in (1, 2, 3):
             share(f"flights up of {steps} step{'s' if steps > 1 else ''}, {px}: found", [r for r in rows["few", mode] if r["scene"] == f"up_{steps}"],
                   lambda r: r["found"] == "1", 95)
-        share(f"stairs down, 1.5 m ahead, {px}: drop found, its edge within 30 mm", rows["down_far", mode], is_drop_near, 90)
+        share(f"stairs down, 1.5 m ahead, {px}: drop found with its edge within 30 mm", rows["down_far", mode], is_drop_near, 90)
         share(f"stairs down, 0.67-1.0 m ahead, {px}: riser within 10 mm and going within 30 mm", rows["down_near", mode], is_flight_true, 90)
         share(f"kerbs down of 75-150 mm, 0.67-1.5 m ahead, {px}: flagged as a drop", rows["kerbs", mode], lambda r: r["drop"] == "1", 99)
         if mine := rows["none", mode]:
             false = sum(r["flights"] != "0" for r in mine)
-            figures.append((f"frames without stairs in which a flight is reported, {px}", wilson(false, len(mine)), "1 %", 100 * false <= len(mine)))
-    exact, first = "steps exact, the first found", "the first step found (the last lie above the camera)"
+            figures.append((f"frames without stairs in which a flight is reported, {px}", wilson(false, len(mine)), "at most 1 %", 100 * false <= len(mine)))
+    exact, first = "number of steps exact", "number of steps not judged (the last steps lie above the camera)"
     for scene, what, steps in (("demo_stairs", "demonstration stairs", exact), ("flight_20_up", "flight of 20 steps", first),
-                               ("up_glass", "carpet between glass", exact), ("up_open", "steep, boards without risers", exact)):
+                               ("up_glass", "carpeted stairs between panes of glass", exact), ("up_open", "steep stairs of boards without risers", exact)):
         share(f"thesis, {what}, images 0.25 px: riser within 5 mm, {steps}",
               [r for r in rows["thesis", "images_0.25"] if r["scene"] == scene], is_thesis_flight_true, 95)
     doors = rows["doors", "images_0.25"]

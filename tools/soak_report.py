@@ -285,39 +285,40 @@ def lines_of(found):
     lines = [
         f"Seed {found['seed']}, {found['hours']:.2f} h at commit {found['commit']}, load average "
         f"{found['load_average']['mean']:.1f} (at most {found['load_average']['max']:.1f}) on a machine with other users. "
-        f"Gate and well-behaved client were {found['urgent']} nice values more urgent than other sessions. Perception and gate took {100 * found['processor_share']:.0f} % of one core. "
+        f"The gate and the well-behaved client were {found['urgent']} nice values more urgent than other sessions. Perception and gate together used {100 * found['processor_share']:.0f} % of one core. "
         f"{'Passed.' if found['passed'] else 'NOT passed: ' + '; '.join(found['failures']) + '.'}",
-        "", "| | perception | gate |", "|---|---|---|"]
+        "", "| measured quantity | perception | gate |", "|---|---|---|"]
     for text, field, digits in (
-            ("number of processes, one after the other", "processes", 0),
-            ("longest life of a process without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
-            ("resident memory at the beginning of this life [MB]", "mb_first", 1), ("resident memory at the end of this life [MB]", "mb_last", 1),
-            ("**slope of the resident memory in this life [MB per hour]**", "mb_per_h", 2), ("slope of the memory that is not shared in this life [MB per hour]", "own_mb_per_h", 2),
-            ("slope of the memory that is not shared over all lives beyond 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
+            ("number of processes that ran one after the other", "processes", 0),
+            ("longest life of a process, without its first 30 minutes (\"the longest life\") [h]", "warm_hours_of_the_longest", 2),
+            ("resident memory at the beginning of the longest life [MB]", "mb_first", 1), ("resident memory at the end of the longest life [MB]", "mb_last", 1),
+            ("**slope of the resident memory in the longest life [MB per hour]**", "mb_per_h", 2), ("slope of the memory that is not shared, in the longest life [MB per hour]", "own_mb_per_h", 2),
+            ("slope of the memory that is not shared, over all lives of more than 30 minutes [MB per hour]", "own_mb_per_h_of_all", 2),
             ("largest resident memory of any process [MB]", "mb_most", 1),
-            ("**slope of handles [per hour]** (fewest in each 5 minutes)", "handles_per_h", 2),
-            ("smallest and largest number of handles", None, 0), ("slope of threads [per hour]", "threads_per_h", 2)):
+            ("**slope of the number of handles [per hour]** (lowest number in each 5 minutes)", "handles_per_h", 2),
+            ("smallest number of handles, largest number of handles", None, 0), ("slope of the number of threads [per hour]", "threads_per_h", 2)):
         cells = [f"{number(found[name]['handles_least'], 0)}, {number(found[name]['handles_most'], 0)}" if field is None
                  else number(found[name][field], digits) for name in ("perception", "gate")]
         lines.append(f"| {text} | {cells[0]} | {cells[1]} |")
-    lines += ["", "| | |", "|---|---|",
+    lines += ["", "| measured quantity | value |", "|---|---|",
               f"| questions of the well-behaved client | {found['queries']} |",
-              "| answers | " + ", ".join(f"{k} {v}" for k, v in found["verdicts"].items()) + " |",
-              f"| latency p50, p99, p99.9, largest [ms] | " + ", ".join(number(latency[k]) for k in latency) + " |",
+              "| answers by verdict (LOST and TIMEOUT: no answer came) | " + ", ".join(f"{k} {v}" for k, v in found["verdicts"].items()) + " |",
+              *(f"| waiting time for an answer, {name} [ms] | {number(latency[key])} |" for name, key in
+                (("median", "p50"), ("99 % within", "p99"), ("99.9 % within", "p99.9"), ("largest", "max"))),
               f"| **missed deadlines** | {sum(found['missed'].values())}" +
               "".join(f", {what}: {times}" for what, times in found["missed"].items()) + " |",
-              f"| perception stopped or killed while the gate said OK: longest time to the first inhibit, asked ten times a second [ms] | "
+              f"| perception stopped or killed while the gate said OK: longest time to the first inhibit, with ten questions a second [ms] | "
               f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
               f"| gate killed: longest time without an answer [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
-              "| handles of the gate without clients, at the beginning and at the end | "
+              "| number of handles of the gate without clients, at the beginning and at the end of the run | "
               f"{found['handles_alone'][0]}, {found['handles_alone'][1]} |",
               f"| largest number of files in shared memory | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
               f"| largest size of the audit folder (limit 64 MB) [MB] | {number(found['audit_mb_most'])} |",
-              f"| verdicts of the log replayed: equal, different | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
-              f"| gaps in the log, verdicts lost in them | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
-              "", "| fault | times |", "|---|---|"]
+              f"| replay of the log: equal verdicts, different verdicts | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
+              f"| gaps in the log, verdicts lost in these gaps | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
+              "", "| injected fault | number of times |", "|---|---|"]
     lines += [f"| {kind} | {times} |" for kind, times in found["faults"].items()]
-    lines += ["", "| clients | times |", "|---|---|"]
+    lines += ["", "| action of the clients | number of times |", "|---|---|"]
     lines += [f"| {what} | {times} |" for what, times in sorted(found["clients"].items())]
     return lines
 
