@@ -111,7 +111,7 @@ camera::StereoRig rectified_rig(const camera::StereoRig& rig, const camera::Rect
     return ideal;
 }
 
-/// Whether a fault needs images. A dropped frame needs none.
+/// Returns true if a fault needs images. A dropped frame needs no image.
 bool needs_images(const ImageFaultConfig& faults) {
     return faults.repeat_probability > 0.0 || faults.tear_probability > 0.0 ||
            faults.freeze_probability > 0.0 ||
@@ -137,10 +137,11 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
                         sensor,
                         kSensorNames,
                         "sensor that records the scene; 'analytic' computes depth without images");
-    visitor.enumeration("motion_model",
-                        motion_model,
-                        kMotionModelChoiceNames,
-                        "motion model that moves the camera along the path of the scene");
+    visitor.enumeration(
+        "motion_model",
+        motion_model,
+        kMotionModelChoiceNames,
+        "motion model that moves the camera; 'scene' = the motion model of the scene file");
     visitor.boolean(
         "known_motion",
         known_motion,
@@ -294,7 +295,8 @@ std::optional<RexJoints> SceneSource::rex_joints(std::int64_t time_ns) const {
     return walker_->rex_joints(seconds_from_ns(time_ns - kStart_ns));
 }
 
-/// Also sets the pose of the next frame of a commanded source.
+/// Returns true if another frame follows. For a commanded source it also sets the pose of this
+/// frame.
 bool SceneSource::has_next() {
     if (!commanded_) return next_pose_ < truth_.trajectory.size();
     if (next_pose_ == frame_limit_) return false;
@@ -302,7 +304,7 @@ bool SceneSource::has_next() {
     return true;
 }
 
-/// Sets the rig of the truth, which is the rig that the frames claim to come from.
+/// Makes the sensor, and sets `truth_.rig` to the nominal rig of the frames.
 Status SceneSource::make_sensor(const SceneOptions& options, const camera::StereoRig& rig) {
     switch (options.sensor) {
         case Sensor::stereo: truth_.rig = rig; return make_renderer(options);

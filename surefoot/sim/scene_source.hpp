@@ -33,21 +33,21 @@ enum class Sensor : std::uint8_t {
 };
 inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analytic"};
 
-/// Motion model of the camera: the one of the scene file, or an override.
+/// Motion model of the camera: the model of the scene file, or a model that replaces it.
 enum class MotionModelChoice : std::uint8_t { scene, trolley, rex, hand };
 inline constexpr const char* kMotionModelChoiceNames[] = {"scene", "trolley", "rex", "hand"};
-/// The motion model; no value for `MotionModelChoice::scene`.
+/// Returns the motion model; no value for `MotionModelChoice::scene`.
 [[nodiscard]] std::optional<MotionModel> motion_model_of(MotionModelChoice carried_by);
 
 struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";    ///< ignored if `rig` is set
-    std::optional<camera::StereoRig> rig;  ///< replaces `rig_preset`; keeps its T_body_left
-    std::uint64_t seed = 1;                ///< seed of textures, noise and path offsets
+    std::optional<camera::StereoRig> rig;  ///< used instead of `rig_preset`
+    std::uint64_t seed = 1;                ///< seed of scene, path, noise and faults
     MotionModelChoice motion_model =
-        MotionModelChoice::scene;  ///< error if it cannot follow the scene's path
+        MotionModelChoice::scene;  ///< must be able to follow the path of the scene
     /// A REX under live command: it stands at the start of the scene's path and takes its steps
-    /// from `SceneSource::commanded`. The run ends only after `frames`.
+    /// from `SceneSource::commanded`. The run ends only after `frames` (0: 1 000 000 frames).
     bool commanded = false;
     int frames = 0;  ///< number of frames; 0 = to the end of the path
     double rate_hz = 10.0;
@@ -61,13 +61,13 @@ struct SceneOptions {
     ImageFaultConfig faults;
     KnockConfig knock;  ///< the true poses are those of the machine, also after the knock
     ImuNoiseConfig imu_noise = imu_noise_of(imu);
-    /// Model of errors and lens (an RGB-D `rig` keeps its lens), at the place of the left camera.
+    /// Gives the depth errors and the lens. A `rig` without a right camera keeps its own lens.
     DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
     DepthCameraConfig depth_errors = depth_camera_preset(depth_camera).config;
     AnalyticStereoConfig analytic;
     /// Frames carry known motion: the true motion with the errors of `drift`, and the source
     /// reports its start pose. This keeps errors of odometry and ground alignment out of a
-    /// measurement. The analytic sensor always carries known motion.
+    /// measurement. Frames of the analytic sensor always carry known motion.
     bool known_motion = false;
     DriftConfig drift;
     /// Frames carry the machine's motion estimate: the true motion with `machine_drift`. The
@@ -75,8 +75,8 @@ struct SceneOptions {
     bool machine_motion = false;
     DriftConfig machine_drift = {.position_m_sqrt_m = 0.01, .turn_deg_sqrt_m = 0.5};
 
-    /// The values that a configuration file can set. Choosing another IMU or depth camera replaces
-    /// its values; values set in the same call or later override them.
+    /// Describes the values that a configuration file can set. Choosing another IMU or depth camera
+    /// replaces its values; values set in the same call or later override them.
     void describe(ConfigVisitor& visitor);
 };
 
@@ -95,18 +95,18 @@ class SceneSource final : public camera::FrameSource {
     /// Fills in the images of a frame whose stamp is set; returns false if there are none.
     using KnownImages = std::function<bool(StereoFrame& frame)>;
     /// Skips rendering of frames whose images `known` has from a run with the same options. Returns
-    /// false, and renders all frames, if an image depends on earlier images: automatic exposure, or
-    /// faults that show older images. After a skipped frame `last_shot` and `last_depth_m` still
-    /// belong to the last rendered frame.
+    /// false and renders all frames for the analytic sensor, automatic exposure, and faults that
+    /// show older images. After a skipped frame `last_shot` and `last_depth_m` still belong to the
+    /// last rendered frame.
     bool use_known_images(KnownImages known);
     /// Number of frames that were not rendered because their images were known.
     [[nodiscard]] int known_frames() const noexcept { return known_frames_; }
 
-    /// Live steering; null unless `SceneOptions::commanded`. A step may begin at `now_s` or later.
+    /// Live commands; null unless `SceneOptions::commanded`. A step may begin at `now_s` or later.
     [[nodiscard]] const std::shared_ptr<CommandedMotion>& commanded() const noexcept {
         return commanded_;
     }
-    /// Earliest motion time that no frame has exposed yet.
+    /// Motion time that no frame has exposed yet: half a frame after the last frame.
     [[nodiscard]] double now_s() const noexcept;
     /// Joint angles of a REX at the time of a frame; no value for the other motion models. For
     /// forgotten steps of a commanded motion see CommandedMotion::forget_before.
@@ -115,7 +115,7 @@ class SceneSource final : public camera::FrameSource {
     /// for hours and keeps only the pose of the last frame.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// All faults of the recording. `InjectedFault::frame` counts poses of `truth().trajectory`;
-    /// frames that arrive have smaller indices, because a dropped frame has no StereoFrame.
+    /// `StereoFrame::index` does not count dropped frames.
     [[nodiscard]] const std::vector<InjectedFault>& faults() const noexcept { return faults_; }
     /// Exposure of the last frame (sensors with images only).
     [[nodiscard]] const Shot& last_shot() const noexcept { return shot_; }
@@ -135,7 +135,7 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] Status make_renderer(const SceneOptions& options);
     [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
     [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
-    /// Pose of base_link as the camera sees it: that of the machine until the camera is knocked.
+    /// Pose of the base_link that is fixed to the camera. A knock turns it against the machine.
     [[nodiscard]] Pose carried_body(const StampedPose& now) const;
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
@@ -179,9 +179,9 @@ class SceneSource final : public camera::FrameSource {
     std::int64_t imu_until_ns_ = 0;
 };
 
-/// Usage errors: unknown scene or rig preset (the message lists the names), an unusable rig, a
-/// number out of range, image faults for a sensor without images. `executor` renders rows in
-/// parallel and must outlive the source; without an executor the calling thread renders.
+/// Returns a usage error for an unknown scene or rig preset, an unusable rig, a number out of
+/// range, and image faults for a sensor without images. `executor` renders rows in parallel and
+/// must outlive the source; without an executor the calling thread renders.
 [[nodiscard]] Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options,
                                                               Executor* executor = nullptr);
 

@@ -56,7 +56,7 @@ class CommandedMotion final : public Motion {
     mutable std::mutex mutex_;   ///< protects the members below
     std::vector<Piece> pieces_;  ///< in time order; the first one is a stand
     std::vector<StepEvent> steps_;
-    std::size_t walked_ = 0;  ///< number of finished pieces
+    std::size_t walked_ = 0;  ///< number of pieces made so far
     RexStand stand_;          ///< stand after the last step
     double free_s_ = 0.0;
 };

@@ -47,8 +47,8 @@ struct ScriptedMotion {
     std::vector<Stop> stops = {};       ///< only for a trolley; a hand-held camera never stops
 };
 
-/// Builds the motion of a script. The seed moves all waypoints but the first by about a centimetre
-/// and a third of a degree, and draws small irregularities. An unwalkable script is a usage error.
+/// Builds the motion of a script. The seed moves all waypoints but the first by up to 1 cm along x
+/// and y and 0.3 deg, and draws small irregularities. An unwalkable script is a usage error.
 ///
 /// The feet of the REX land on `ground_z_m`, queried under the middle of each sole. Without this
 /// function the ground is linear between the waypoint heights, queried under base_link. The other

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRing_s = 1.2;  ///< duration of a ringing
 constexpr double kHanging_rad =
     3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: a swinging foot's toes hang down by this angle
-constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: length of a foot strike
+constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: duration of a foot strike
 
 /// u^n and its derivatives by time, for u that rises from 0 to 1 within `length_s`.
 Jet power(double u, double length_s, int n) {
@@ -55,8 +55,8 @@ Pose about_toes(double lift_rad) {
 
 }  // namespace
 
-/// Share of its full tilt that a foot has. The heel rises before the swing and falls during it, or
-/// rises during the swing and falls after it.
+/// Returns the share of its full tilt that a foot has. The heel rises before the swing and falls
+/// during it, or rises during the swing and falls after it.
 double RexMotion::lifted(const Swing& swing, double time_s, double share) {
     if (swing.heel_up_s < swing.start_s) {
         if (time_s >= swing.start_s) return 1.0 - share;
@@ -140,8 +140,7 @@ std::optional<LegAngles> RexMotion::leg(Side side, double time_s) const {
 
 LegAngles RexMotion::joints(Side side, double time_s) const {
     const auto angles = leg(side, time_s);
-    SUREFOOT_ASSERT(
-        angles.has_value());  // `make` has checked every sample with a margin of a degree
+    SUREFOOT_ASSERT(angles.has_value());  // `make` has checked the reach at twice the sample rate
     return *angles;
 }
 

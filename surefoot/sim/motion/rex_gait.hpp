@@ -19,12 +19,12 @@ struct Spread {
     double high = 0.0;
 };
 
-/// ASSUMPTION for every value except the step time and the gait trace: the model proposed in the
-/// project's safety notes. Replace the values when a recording of a real REX exists.
+/// ASSUMPTION: every value except the step time, which follows from the data sheet. Replace the
+/// values when a recording of a real REX exists.
 struct RexGaitConfig {
     double step_s = 10.0;                ///< step time: 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;               ///< standing time within step_s, until the ringing stops
-    double foot_clearance_m = 0.01;      ///< height of the toes of a swinging foot; ankles: 22 mm
+    double foot_clearance_m = 0.01;      ///< largest lift of the toes in a swing; ankles: 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< sway of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};           ///< roll of base_link toward the standing foot
     Spread yaw_deg{1.5, 3.0};            ///< yaw of base_link toward the foot behind
@@ -53,8 +53,8 @@ struct FootState {
 /// acceleration is continuous. The sharp transition is the foot strike: a pulse of 0.12 s, then
 /// ringing. Foot poses are exact and legs follow by inverse kinematics, so a standing foot never
 /// slips. A foot that stays behind lifts its heel before it swings, as in the trace. Roll, yaw,
-/// ringing and pulse are the frame above the hips giving way; the pelvis of the trace has none of
-/// them. `at` includes these movements; `pelvis` and `joints` do not.
+/// ringing and pulse are movements of the frame above the hips; the pelvis does not make them. `at`
+/// includes these movements; `pelvis` and `joints` do not.
 class RexMotion final : public Motion {
   public:
     /// Returns a usage error if the legs cannot reach a step or, on level ground, a joint leaves
@@ -66,8 +66,8 @@ class RexMotion final : public Motion {
 
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return duration_s_; }
-    /// The legs as in `joints` plus the sway of the frame. The feet of a REX drawn at base_link
-    /// then stay in place, except for the vertical ringing of a few millimetres.
+    /// Returns the angles of `joints` and the sway of the frame. The feet of a REX drawn at
+    /// base_link then stay in place, except for the vertical ringing of a few millimetres.
     [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
     /// Pose of base_link without sway, ringing and strike pulses, as the legs carry it.
@@ -75,7 +75,7 @@ class RexMotion final : public Motion {
     [[nodiscard]] FootState foot(Side side, double time_s) const;
     [[nodiscard]] LegAngles joints(Side side, double time_s) const;
 
-    /// Time span of one step, and where base_link stands before and after it, level.
+    /// Time span of one step, with the level poses of base_link before and after the step.
     struct Span {
         double start_s = 0.0;
         double end_s = 0.0;
@@ -119,7 +119,7 @@ class RexMotion final : public Motion {
     [[nodiscard]] std::optional<LegAngles> leg(Side side, double time_s) const;
 
     std::vector<Body> bodies_;                  ///< in time order; the first one is a stand
-    std::array<std::vector<Swing>, 2> swings_;  ///< per side, in time order; first = initial stand
+    std::array<std::vector<Swing>, 2> swings_;  ///< swings in time order; first = stand
     std::vector<Strike> strikes_;               ///< in time order
     std::vector<Span> steps_;
     double duration_s_ = 0.0;

@@ -19,19 +19,20 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kTrace = 64;
-// The first and the last weight shift take longer than in the trace, so its end samples are held.
+// The first and the last weight shift take longer than in the trace, so the first and the last
+// sample of the trace are held.
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
 /// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
-/// that foot is then 42 mm higher than with a flat sole. The heel rises during this number of
-/// samples, after the other foot has landed.
+/// that foot is then 42 mm higher than with a flat sole. The heel rises during `kHeel` samples,
+/// after the other foot has landed.
 constexpr double kHeelLift_rad = 10.0 * kRadPerDeg;
 constexpr double kHeel = 6.0;
 /// Smallest height difference of a step on stairs.
 constexpr double kStair_m = 0.02;
 /// Highest riser: the stair limit of the machine file (0.18 m) plus 20 mm for irregular stairs.
 constexpr double kMaxRise_m = 0.20;
-/// Limit of the acceleration of the ringing; it stays within the acceleration of a foot strike.
+/// Limit of the acceleration of the ringing: the largest default acceleration of a foot strike.
 constexpr double kMaxRing_m_s2 = 2.0;
 
 /// Part of a step, from one sample of the trace to another.
@@ -44,7 +45,7 @@ struct Phase {
     }
 };
 
-/// Times of the swings and of the weight shifts.
+/// Times of the swings and of the weight shifts, in samples of the trace.
 struct Phases {
     Phase lead_swings;
     Phase trail_swings;
@@ -81,7 +82,7 @@ struct TraceWay {
 struct Carried {
     double x_m;  ///< position of the hips relative to the carrying sole
     double z_m;
-    double other_x_m;  ///< position of the other sole
+    double other_x_m;  ///< position of the other sole relative to the carrying sole
     double pitch_rad;
 };
 
@@ -450,7 +451,8 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     // sideways or a turn.
     const double calm = 0.5 + 0.5 * std::min(1.0, std::abs(movement.forward_m) / 0.40);
     // A flat foot stands with its leg leaning by 9 deg at most (range of the ankle), which moves
-    // the hip by 0.13 m. Half of a sideways step takes its part of these 0.13 m.
+    // the hip by 0.13 m. The limit of 0.12 m keeps a margin of 10 mm. Half of a sideways step
+    // reduces this limit.
     constexpr double kLean_m = 0.12;
     sway.shift_m =
         std::min(drawn(rng, config_.lateral_shift_m), kLean_m - 0.5 * std::abs(movement.left_m));

@@ -42,7 +42,7 @@ struct RexStep {
     double wait_s = 0.0;  ///< time that the machine stands before the command
     RexMovement movement;
     RexStand before;
-    RexStand after;  ///< real end of the step: a few millimetres off the commanded place
+    RexStand after;  ///< real end of the step: a few millimetres off the commanded pose
 };
 
 struct RexPlan {
@@ -51,10 +51,10 @@ struct RexPlan {
     double last_wait_s = 0.0;
 };
 
-/// Plans commands through the waypoints as an operator would give them. First turn in place toward
-/// the waypoint, or go backward or sideways if that is shorter or the waypoint asks for it. Then
-/// repeat the sector that brings the machine nearest. Then turn to the waypoint's yaw. Stops within
-/// half a step and half a turn. A path of more than 2000 steps is a usage error.
+/// Plans commands through the waypoints as an operator would give them. The machine turns in place
+/// toward the waypoint, or goes backward or sideways if that is shorter or requested. It repeats
+/// the sector that brings it nearest. Then it turns to the waypoint's yaw. It stops within half a
+/// step and half a turn. A path of more than 2000 steps is a usage error.
 [[nodiscard]] Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
                                              const RexStepSizes& sizes,
                                              Rng& rng);

@@ -10,13 +10,13 @@ namespace surefoot::sim {
 enum class Move : std::uint8_t { automatic, ahead, back, side };
 inline constexpr const char* kMoveNames[] = {"auto", "ahead", "back", "side"};
 
-/// A place on the floor, with the pause of the camera there.
+/// A pose on the ground, and the pause of the camera at this pose.
 struct Waypoint {
     double x_m = 0.0;
     double y_m = 0.0;
     double yaw_rad = 0.0;
     double pause_s = 0.0;
-    double ground_z_m = 0.0;      ///< height of the ground there
+    double ground_z_m = 0.0;      ///< height of the ground at this point
     Move move = Move::automatic;  ///< automatic = the way with the fewest steps
 };
 

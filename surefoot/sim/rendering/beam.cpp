@@ -34,8 +34,9 @@ Beam::Beam(const Vector3d& tip_m, const Vector3d& axis, double half_angle_rad, d
       cosine_(std::cos(half_angle_rad_)),
       tip_radius_m_(tip_radius_m + kMargin_m) {}
 
-/// Uses the distance from the centre to the nearest line of the cone. Behind the tip the true
-/// distance is larger than this value, so the test stays conservative.
+/// Uses the distance from the centre to the nearest straight line of the cone surface, which is
+/// extended behind the tip. Behind the tip the true distance is larger than this value, so the test
+/// stays conservative.
 bool Beam::misses(const Sphere& sphere) const {
     if (!(cosine_ > 0.0)) return false;
     const Vector3d to_center = sphere.center_m - tip_m_;

@@ -12,8 +12,8 @@ struct Sphere {
 };
 
 /// All rays of a block of pixels: a cone in the world frame whose tip may be anywhere in a small
-/// ball, because the rows are exposed one after another. The tests below are conservative proofs:
-/// true holds for every ray; false may mean "not proved" (always from 90 deg of half angle on).
+/// ball, because the rows are exposed one after another. The tests below are conservative: true is
+/// proved for every ray, false may mean "not proved". From 90 deg of half angle on, all give false.
 class Beam {
   public:
     Beam(const Eigen::Vector3d& tip_m,

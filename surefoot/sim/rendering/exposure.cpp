@@ -15,11 +15,13 @@ constexpr double kWarmUpMax_s = 30.0;
 }  // namespace
 
 void ExposureConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("exposure_s",
-                   exposure_s,
-                   1e-5,
-                   0.1,
-                   "exposure time; if automatic is true, the exposure time at the start");
+    visitor.number(
+        "exposure_s",
+        exposure_s,
+        1e-5,
+        0.1,
+        "exposure time of every frame; with automatic = true only the reference time for "
+        "imaging.exposure");
     visitor.boolean("automatic",
                     automatic,
                     "true: the exposure control keeps the mean grey value at target_dn");

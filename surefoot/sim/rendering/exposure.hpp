@@ -11,7 +11,7 @@ namespace surefoot::sim {
 /// How a camera chooses its exposure. The renderer's grey values hold for `exposure_s` and gain 1.
 /// ASSUMPTION: the control parameters are typical of small cameras; nobody measured them on a ZED.
 struct ExposureConfig {
-    double exposure_s = 0.008;  ///< fixed value, or the start value of the automatic control
+    double exposure_s = 0.008;  ///< fixed value, or the reference of the automatic control
     bool automatic = false;     ///< true: keep the mean grey value at `target_dn`
     double target_dn = 110.0;   ///< wanted mean grey value of the left image
     double min_exposure_s = 0.0001;
@@ -45,7 +45,7 @@ class ExposureControl {
   public:
     ExposureControl(const ExposureConfig& config, std::uint64_t seed);
 
-    /// Exposure settings for a frame.
+    /// Returns the exposure settings of a frame.
     [[nodiscard]] Shot shot(double since_start_s) const;
     /// Call at the first frame: sets the steady state for this image.
     void settle(const Image<float>& signal_dn);

@@ -37,7 +37,7 @@ struct ImageFaultConfig {
     double repeat_probability = 0.0;
     double tear_probability = 0.0;
     double freeze_probability = 0.0;  ///< probability that a freeze begins at this frame
-    int freeze_frames = 10;           ///< length of one freeze
+    int freeze_frames = 10;           ///< number of frames in one freeze
     std::vector<InjectedFault> planned;
 
     void describe(ConfigVisitor& visitor);
@@ -45,7 +45,7 @@ struct ImageFaultConfig {
     [[nodiscard]] std::optional<std::string> problem(int frames, int height) const;
 };
 
-/// The faults of a whole recording in frame order; deterministic for a given seed.
+/// Draws the faults of a whole recording, in frame order; deterministic for a given seed.
 [[nodiscard]] std::vector<InjectedFault> plan_faults(const ImageFaultConfig& config,
                                                      int frames,
                                                      int height,

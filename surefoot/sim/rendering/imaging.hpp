@@ -37,8 +37,8 @@ class PixelNoise {
     std::vector<float> quantiles_;
 };
 
-/// Grey value of a noiseless signal: adds noise of variance (gain read)^2 + gain shot signal, then
-/// rounds and clamps.
+/// Returns the grey value of a noiseless signal: adds noise of variance (gain read)^2 + gain shot
+/// signal, then rounds and clamps.
 [[nodiscard]] std::uint8_t exposed_pixel(const ImagingConfig& config,
                                          double gain,
                                          float signal_dn,

@@ -58,7 +58,7 @@ int whole_lanes(int width) {
     return (width + kLanes - 1) / kLanes * kLanes;
 }
 
-/// 1 inside two thirds of the radius, 0 beyond the radius, a smooth transition between.
+/// Returns 1 inside two thirds of the radius, 0 beyond the radius, and a smooth transition between.
 float smudge_share(double distance, double radius) {
     const double t = std::clamp(3.0 * (1.0 - distance / radius), 0.0, 1.0);
     return static_cast<float>(t * t * (3.0 - 2.0 * t));

@@ -26,7 +26,7 @@ struct OpticsConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Weights of a Gaussian spot: odd count, sum 1, second moment exactly sigma^2 although sampled.
+/// Weights of a sampled Gaussian spot: an odd number of weights, sum 1, second moment sigma^2.
 [[nodiscard]] std::vector<float> smear_kernel(double sigma_px);
 
 /// Convolves an image with the spot in both directions; border pixels are replicated outward.

@@ -54,12 +54,12 @@ struct PlaneTexels {
     double texels_per_m = 0.0;
 };
 
-/// Limit of the cosine of incidence (1.1 deg from grazing) that stretches a pixel's footprint.
+/// Smallest cosine of incidence (1.1 deg from grazing) that stretches a pixel's footprint.
 inline constexpr double kLeastCosine = 0.02;
 
-/// Texture coordinates and footprint of a ray that hits a plane, see `look_at`.
+/// Returns the texture position and the footprint of a ray that hits a plane.
 [[nodiscard]] TexelLook look_at(const PlaneTexels& plane, const Sight& sight);
-/// Computes `look_at` for a batch; bit-identical under every instruction set.
+/// Computes the same for a batch, with the same bits on every instruction set.
 void look_at(const PlaneTexels& plane, const SightBatch& sights, TextureBatch& out);
 
 }  // namespace surefoot::sim

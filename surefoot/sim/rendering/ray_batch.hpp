@@ -59,8 +59,8 @@ struct FacingSide {
     int face = 0;
 };
 
-// Each function gives bit-identical results to the plain code named in its comment, for many rays
-// at once and under every instruction set.
+// Each function handles many rays at once. On every instruction set it gives the same bits as plain
+// code that handles one ray.
 
 /// Directions from an optical frame into the world: R_world_camera * (x, y, z)[i] for the rays
 /// [range.first, range.end). Element 0 of `x`, `y` and `z` belongs to ray 0.
@@ -71,8 +71,8 @@ void turn_rays(const Eigen::Matrix3d& R_world_camera,
                BatchRange range,
                RayBatch& out);
 
-/// Hits on a plane that all rays meet first, `above_m` below the origin. A NaN ray (beyond the rim
-/// of a fisheye image) hits nothing.
+/// Computes the hits on a plane that all rays meet first, `above_m` below the origin. A NaN ray
+/// (beyond the rim of a fisheye image) hits nothing.
 void meet_plane(const Eigen::Vector3d& normal,
                 double above_m,
                 int face,

@@ -54,8 +54,8 @@ struct CameraConfig {
 
 /// Renders a scene by casting the exact ray of each pixel through its lens model, from the camera
 /// pose at the exposure of that row. Textures are averaged over the pixel, surface edges over 4
-/// points in it, so that sub-pixel detail blurs as in a real camera. Pixel blocks run through the
-/// executor; the bytes do not depend on it. Immutable after construction.
+/// points in it, so that sub-pixel detail blurs as in a real camera. The executor does not change
+/// the result. Immutable after construction.
 class Renderer {
   public:
     /// Returns an error that names the problem if the rig cannot be rendered, for example an RGB-D
@@ -65,7 +65,7 @@ class Renderer {
                                                const CameraConfig& config,
                                                std::uint64_t seed);
 
-    /// Signals that both cameras of a moving rig collect around a stamp (see `row_offset_s`).
+    /// Collects the signals of both cameras of a moving rig around a stamp (see `row_offset_s`).
     void collect(const Motion& motion,
                  double stamp_s,
                  double exposure_s,
@@ -90,7 +90,7 @@ class Renderer {
   private:
     /// Sub-pixel positions: offsets from the pixel centre in px.
     using Places = std::span<const std::array<double, 2>>;
-    /// Outputs of an instant that the caller needs.
+    /// Outputs of `render_instant` that the caller needs.
     enum class Wanted : std::uint8_t { picture, picture_and_depth };
     Renderer(const Scene& scene,
              const camera::StereoRig& rig,

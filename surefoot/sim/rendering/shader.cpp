@@ -271,8 +271,8 @@ bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) con
     return true;
 }
 
-/// Whether the first sphere meets the path of the light from the lamp to a point of the second
-/// sphere.
+/// Returns true if the first sphere meets the path of the light from the lamp to a point of the
+/// second sphere.
 bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
     const Vector3d to_center = blocker.center_m - points.center_m;
     const double along_m = towards_lamp_.dot(to_center);

@@ -33,7 +33,7 @@ class Shader {
     void surface(int surface, const SightBatch& sights, std::span<Seen> out) const;
     /// Light of a ray that hits no surface.
     [[nodiscard]] static Seen background() noexcept;
-    /// Whether the lamp lights a surface point. Always true in a scene without shadows.
+    /// Returns true if the lamp lights a surface point. Always true in a scene without shadows.
     [[nodiscard]] bool lit(const Eigen::Vector3d& point_m) const;
 
   private:

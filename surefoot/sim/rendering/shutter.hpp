@@ -10,7 +10,7 @@
 
 namespace surefoot::sim {
 
-/// When and how long pixels collect light. ExposureConfig holds the exposure time.
+/// Motion blur and rolling shutter of a camera. ExposureConfig holds the exposure time.
 struct ShutterConfig {
     int blur_samples = 0;  ///< number of images averaged over an exposure; 0 or 1 = a sharp image
     bool rolling = true;   ///< true: rows are exposed in turn if the rig has a read-out time

@@ -13,7 +13,7 @@ namespace surefoot::sim {
 /// Gaussian noise that changes slowly over an image: independent numbers on a lattice, low-passed
 /// by the cubic B-spline in both directions and scaled to variance 1 everywhere. Its correlation
 /// along a row or a column falls to 1/e at `length_px`. The lattice has a random offset, so that no
-/// pixel is special. A function of (seed, pixel) alone.
+/// pixel is special. The values depend on (seed, pixel) alone.
 class SmoothNoise {
   public:
     /// Prepares every `stride`-th pixel of an image; there are `columns` by `rows` such pixels.

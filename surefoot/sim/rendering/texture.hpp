@@ -77,12 +77,12 @@ struct Footprint {
     double axis_v = 0.0;
 };
 
-/// A repeating square tile of 8-bit texels with all its halvings (mip levels, Williams 1983).
+/// A repeating square tile of 8-bit texels with its mip levels, each half as wide (Williams 1983).
 class TextureTable {
   public:
     static constexpr int kSize = 1024;
-    /// Position in 2^-16 of a texel of the finest level. It wraps with the tile: adding or losing a
-    /// multiple of the tile changes nothing.
+    /// Position in units of 2^-16 texels of the finest level. It wraps: adding a multiple of the
+    /// tile size changes nothing.
     using Place = std::uint32_t;
     /// Adding this constant to a double turns its lowest bits into a whole number of either sign.
     /// Wrapping is intended, and compilers vectorise this form.

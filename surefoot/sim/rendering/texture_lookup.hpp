@@ -22,8 +22,8 @@ inline constexpr float kBlotchLeastLevel = 2.0F;
 inline constexpr int kTopLevel = TextureTable::levels() - 1;
 static_assert(TextureTable::kSize == 1 << kTopLevel);
 
-/// Number of cells before the first cell of a level. Levels from one on have 1 + 4 + 16 + ...
-/// cells, which is 1010...1 in binary.
+/// Number of cells before the first cell of a level. A level and all coarser levels together have 1
+/// + 4 + 16 + ... cells: 1010...1 in binary.
 inline std::uint32_t first_cell(std::uint32_t level) noexcept {
     constexpr std::uint32_t kAll = ((4U << (2U * kTopLevel)) - 1U) / 3U;
     return kAll - (kAll >> (2U * level));
@@ -98,7 +98,7 @@ struct Cover {
 
 inline Cover cover_of(float along_u, float along_v, float minor_texel, float cosine) noexcept {
     Cover cover;
-    // The number of taps is the aspect ratio of the footprint, rounded to a whole number.
+    // The number of taps is the aspect ratio of the footprint, rounded, from 1 to 4.
     cover.taps = 1 + (cosine < 2.0F / 3.0F ? 1 : 0) + (cosine < 2.0F / 5.0F ? 1 : 0) +
                  (cosine < 2.0F / 7.0F ? 1 : 0);
     const float major_texel = minor_texel / cosine;

@@ -53,8 +53,7 @@ void add_noise(Image<float>& field, int cell_u, int cell_v, float amplitude, Rng
     }
 }
 
-/// Paints a turned rectangle with corners or, if `round` is true, an ellipse. Its rim is one texel
-/// soft.
+/// A turned rectangle or, if `round` is true, an ellipse. Its rim is one texel soft.
 struct Patch {
     float x = 0.0F;
     float y = 0.0F;
@@ -68,7 +67,7 @@ struct Patch {
 void paint(Image<float>& field, const Patch& patch) {
     const float c = std::cos(patch.yaw_rad);
     const float s = std::sin(patch.yaw_rad);
-    // in range: no patch of the patterns below has more than 60 texels to a side
+    // in range: no patch of the patterns below has a half side of more than 60 texels
     const int reach = static_cast<int>(std::ceil(length(patch.half_u, patch.half_v))) + 1;
     const int cx = static_cast<int>(patch.x);
     const int cy = static_cast<int>(patch.y);

@@ -93,7 +93,7 @@ class Walk {
     std::vector<Place> open_;
 };
 
-/// Returns the figures that do not depend on a movement. Of the box only the size matters.
+/// Returns the figures of the machine, with its left foot centred on the origin.
 rules::Figures foot_figures(const Machine& machine) {
     rules::Figures figures = rules::figures_of(machine, Movement{});
     Rect& foot = figures.feet[0];

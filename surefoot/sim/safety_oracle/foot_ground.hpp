@@ -25,8 +25,8 @@ struct FootGround {
     LevelPlane plane;  ///< least-squares plane over `p_foot_m`
 
     [[nodiscard]] double tilt_rad() const;
-    /// Patch of the sole with the largest mean residual to the plane, and its position. The sole is
-    /// cut into equal patches with sides of at most `side_m`.
+    /// Patch of the sole with the largest absolute mean residual to the plane, and its position.
+    /// The sole is cut into equal patches with sides of at most `side_m`.
     struct Patch {
         double residual_m = 0.0;
         Eigen::Vector2d center_field_m = Eigen::Vector2d::Zero();
@@ -39,7 +39,7 @@ struct FootGround {
                                       const Rect& foot,
                                       const PlanarPose& T_field_body);
 
-/// Calls f(i, j, p_field, p_body) for the samples under a rectangle in base_link, rims included.
+/// Calls f(i, j, p_field, p_body) for the samples under a rectangle in base_link, border included.
 template <typename F>
 void for_samples_under(const GroundField& field,
                        const Rect& box,

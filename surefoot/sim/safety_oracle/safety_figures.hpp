@@ -13,7 +13,7 @@ namespace surefoot::sim::rules {
 /// The machine's dimensions and limits for one movement, in metres and radians.
 struct Figures {
     std::array<Rect, 2> feet;  ///< rectangles of the feet, in base_link
-    /// A part of the body: its box in base_link, without sway; heights over the soles.
+    /// A part of the body: its box in base_link, without sway, and its heights above the soles.
     struct Part {
         Rect box;
         double low_m = 0.0;

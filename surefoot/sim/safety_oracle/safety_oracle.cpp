@@ -50,8 +50,8 @@ const Movement* movement_of(const Machine& machine, int command) {
     return movement.configured && enabled ? &movement : nullptr;
 }
 
-/// Stance on the ground under the feet before the movement, if this ground is near the pose's
-/// height.
+/// Returns the stance before the movement. It is unknown if the ground differs from the height of
+/// the soles by more than the body's lower edge.
 rules::Stance stance_here(const Scene& scene,
                           const Figures& figures,
                           const PlanarPose& T_world_field,
@@ -99,7 +99,7 @@ std::string describe(const Finding& f) {
     };
     switch (f.danger) {
         case Danger::unknown_command: return "the machine has no such movement";
-        case Danger::unknown_pose: return "the pose of the machine is not a number";
+        case Danger::unknown_pose: return "a number in the pose of the machine is not finite";
         case Danger::no_stance:
             return f.limit > 0.0 ? against("the feet stand at heights that differ by")
                                  : "the feet do not stand on ground " + at;
@@ -120,8 +120,10 @@ std::string describe(const Finding& f) {
         case Danger::roughness: return against("the ground under a landing foot is uneven by");
         case Danger::obstacle_in_way:
             return against("an obstacle in the path of a foot has a height of");
-        case Danger::body_hits: return against("the body hits an object that begins at");
-        case Danger::overhang_too_low: return against("an object above the machine begins at");
+        case Danger::body_hits:
+            return against("the body hits an object that begins at a height of");
+        case Danger::overhang_too_low:
+            return against("an object above the hips begins at a height of");
         case Danger::disconnected:
             return "the ground under a landing foot is not connected to the ground under the "
                    "standing feet " +

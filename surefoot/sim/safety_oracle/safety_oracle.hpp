@@ -18,7 +18,7 @@ namespace surefoot::sim {
 enum class Danger : std::uint8_t {
     unknown_command,   ///< the machine has no such movement, or its class is disabled
     unknown_pose,      ///< a number of the pose is not finite
-    no_stance,         ///< a foot is not supported now, or the feet stand at two heights
+    no_stance,         ///< a standing foot lacks ground, or the feet's heights differ too much
     not_level_here,    ///< the ground under the standing feet is too steep [deg]
     no_ground,         ///< some part of a landing foot has no ground
     drop_off,          ///< a part of a landing foot lies over a drop
@@ -40,7 +40,7 @@ struct Finding {
     Danger danger = Danger::unknown_command;
     double value = 0.0;  ///< [m], or degrees for tilt and not_level_here
     double limit = 0.0;  ///< limit in the unit of the value
-    Eigen::Vector3d where_m = Eigen::Vector3d::Zero();  ///< world
+    Eigen::Vector3d where_m = Eigen::Vector3d::Zero();  ///< position in the world
 };
 
 /// Changes of pose and limits that a clear-cut answer must survive. ASSUMPTION: errors of a good
@@ -48,7 +48,7 @@ struct Finding {
 struct SafetyMargin {
     double position_m = 0.010;  ///< shift along and across, and change of the height of the user
     double yaw_rad = 0.009;     ///< about 0.5 deg
-    double limit_share = 0.10;  ///< every other limit is made stricter and looser by this share
+    double limit_share = 0.10;  ///< share by which all other limits become stricter or looser
 };
 
 /// The truth about one command.
@@ -68,18 +68,18 @@ struct SafetyAnswer {
 /// machine's dimensions and limits.
 ///
 /// Only position and yaw of the pose matter; its height tells storeys apart. The feet stand on the
-/// highest surface below the ankles (at most the body's lower edge above the soles). The body is
-/// upright. Rules, all without any tolerance for noise:
-/// - Stance: ground lies under both whole present feet, not steeper than the tilt limit, and the
-///   feet are at one height within the step limit. Their plane (median slope, mean height)
+/// highest surface that is not above the lower edge of the body. The body is upright. Rules, all
+/// without any tolerance for noise:
+/// - Stance: ground lies under the whole of both standing feet, not steeper than the tilt limit,
+///   and the feet are at one height within the step limit. Their plane (median slope, mean height)
 ///   continues ahead. Heights are measured from it, so that a ramp under the machine is not a step.
 /// - Landing: every 5 mm under both feet after the movement, the ground is within the step limits.
 ///   The fitted plane is within the tilt limit, the means of patches are within the residual limit.
-/// - Edge: no void and no ground lower than the drop limit is within the drop band around the feet.
+/// - Edge: the drop band around the landed feet has no void and no drop above the drop limit.
 /// - Way: nothing in the path of a foot, with its margin, is higher than the swing clearance (or
 ///   the step-up limit of the class, if larger) or hangs lower than the body's edge.
-/// - Body: no solid is in the path of the box with its sway, from lower edge to height.
-/// - The landing ground is joined to the standing ground without a jump over the swing clearance.
+/// - Body: no solid is in the path of a part of the body, widened by the sway.
+/// - The landing ground is joined to the standing ground without a jump above the limit of "Way".
 /// The path is straight and the turn is even. A movement of class stair, if the machine file
 /// enables it, must place the whole foot like any other movement: rules for treads are not here.
 ///
@@ -90,7 +90,7 @@ struct SafetyAnswer {
                                  int command,
                                  const SafetyMargin& margin = {});
 
-/// Puts each answer at [pose * commands.size() + command]. Any executor gives the same answers.
+/// Judges all commands at the first pose, then at the next. The executor changes no answer.
 [[nodiscard]] std::vector<SafetyAnswer> judge_all(const Scene& scene,
                                                   const Machine& machine,
                                                   std::span<const Pose> T_world_body,
@@ -98,7 +98,7 @@ struct SafetyAnswer {
                                                   Executor& executor,
                                                   const SafetyMargin& margin = {});
 
-/// One label as written to a file.
+/// The answer for one command at one time: a line of `safety_csv`.
 struct SafetyLabel {
     std::int64_t time_ns = 0;
     int command = 0;

@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 /// A value that reaches a limit exactly does not exceed it, despite rounding [m, rad].
 constexpr double kRounding = 1e-7;
 
-/// Keeps the worst place of each danger.
+/// Keeps the worst finding of each danger.
 class Collector {
   public:
     explicit Collector(const PlanarPose& T_world_field) : T_world_field_(T_world_field) {}

@@ -16,15 +16,15 @@ struct Stance {
     LevelPlane plane;
     double height_difference_m = 0.0;  ///< difference of the feet's mean heights over the plane
     double tilt_rad = 0.0;             ///< tilt of the plane or of one foot, whichever is steeper
-    std::optional<Eigen::Vector2d> void_at_m;  ///< a point of a foot without ground [field frame]
-    bool known = false;                        ///< true: some part of both feet has ground
+    std::optional<Eigen::Vector2d> void_at_m;  ///< a point under a foot where ground is missing
+    bool known = false;                        ///< true: a part of each foot has ground
 };
 [[nodiscard]] Stance stand(const GroundField& field,
                            const Figures& figures,
                            const PlanarPose& T_field_body);
 
-/// All dangers at this pose, one finding for each danger, sorted. `reached` marks the samples that
-/// are joined to the ground under the feet.
+/// Returns the dangers at this pose, one finding for each danger, in the order of `Danger`.
+/// `reached` marks the samples that are joined to the ground under the feet.
 [[nodiscard]] std::vector<Finding> dangers_at(const GroundField& field,
                                               const std::vector<char>& reached,
                                               const Figures& figures,

@@ -18,7 +18,7 @@ using NamedNumbers = std::map<std::string, double, std::less<>>;
 /// text: a syntax error, an unknown name, a value that is not finite (division by zero).
 [[nodiscard]] Result<double> evaluate(std::string_view text, const NamedNumbers& names);
 
-/// Whether the text is letters, digits and '_' and does not begin with a digit.
+/// Returns true for a text of letters, digits and '_' that does not begin with a digit.
 [[nodiscard]] bool is_name(std::string_view text) noexcept;
 
 }  // namespace surefoot::sim

@@ -9,10 +9,10 @@
 
 namespace surefoot::sim {
 
-/// Ground and obstacles on one vertical line, for a machine on some level (world-frame heights).
+/// Ground and obstacles on one vertical line, for a machine on a level. Heights: world frame.
 struct GroundSample {
-    /// The highest surface within a foot's reach above the level, or the lowest surface if every
-    /// surface is higher. NaN without any ground.
+    /// The highest surface up to the reach above the level, or the lowest surface if every surface
+    /// is higher. NaN without any ground.
     double ground_m = std::numeric_limits<double>::quiet_NaN();
     /// Underside of the lowest solid that ends above the reach; infinity if the space is free.
     double underside_m = std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ class GroundField {
         int max_j = -1;
     };
 
-    /// 16 x 16 samples with bounds of their values, so that flat areas can be skipped.
+    /// Up to 16 x 16 samples with bounds of their values, so that flat areas can be skipped.
     struct Tile {
         Range range;
         double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf = has a void

@@ -202,7 +202,7 @@ std::vector<FaceFrame> Floor::faces() const {
     std::vector<FaceFrame> frames(1);
     for (std::size_t k = 0; k < pits_.size(); ++k) {
         frames.emplace_back();
-        // The walls of a pit look inward.
+        // The walls of a pit face inward.
         frames.push_back(side_frame(Vector3d::UnitX()));
         frames.push_back(side_frame(-Vector3d::UnitX()));
         frames.push_back(side_frame(Vector3d::UnitY()));

@@ -78,7 +78,7 @@ class Scene {
     /// Returns the material index for `add`.
     int add_material(const Material& material);
     void add(Primitive primitive, int material, Label label);
-    /// Pit bottoms get the label drop and can have another material.
+    /// Bottoms and walls of pits get the label drop and `pit_material`.
     void add_floor(const Floor& floor, int material, int pit_material, Label label = Label::floor);
 
     void light(const Lighting& lighting) { lighting_ = lighting; }
@@ -90,7 +90,7 @@ class Scene {
     /// First surface along a ray (unit direction); only faces that point toward the origin count.
     [[nodiscard]] std::optional<Hit> intersect(const Eigen::Vector3d& origin_m,
                                                const Eigen::Vector3d& direction) const;
-    /// Whether the ray hits any surface nearer than `distance_m`.
+    /// Returns true if the ray hits a surface nearer than `distance_m`.
     [[nodiscard]] bool blocked(const Eigen::Vector3d& origin_m,
                                const Eigen::Vector3d& direction,
                                double distance_m) const;
@@ -111,7 +111,7 @@ class Scene {
     /// Every upward surface that is not buried in another solid, highest first (a table, then the
     /// floor under it).
     [[nodiscard]] std::vector<SurfaceHeight> surfaces_at(double x_m, double y_m) const;
-    /// The first primitive that is solid at a point, its surface included.
+    /// Index of the first primitive that contains a point; its surface counts.
     [[nodiscard]] std::optional<int> solid_at(const Eigen::Vector3d& point_m) const;
     /// Exact highest point over the inside of a cell; no value without ground.
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;

@@ -40,8 +40,8 @@ namespace surefoot::sim {
 ///
 ///     motion: {motion_model: rex, script: back_to_table, table_x_m: distance_m, left_m: 0.95}
 ///     # approach: distance_m; turn_round: turn_deg; pivot_and_reverse: distance_m;
-///     # sidestep_through_door: door_x_m, door_y_m, beyond_m; descend_backwards: steps_ahead,
-///     riser_m
+///     # sidestep_through_door: door_x_m, door_y_m, beyond_m;
+///     # descend_backwards: steps_ahead, riser_m
 ///
 /// The feet of the REX land on the ground of the scene.
 ///
@@ -55,12 +55,12 @@ struct SceneFile {
 /// Limit of the primitives in a scene file, because images number their surfaces in 15 bits.
 inline constexpr int kMaxPrimitives = 2000;
 
-/// The scenes that a file holds.
+/// Reads the names and descriptions of the scenes of a file.
 [[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
 
 /// Reads one scene; `name` may be empty if the file holds only one. The random stream depends on
 /// seed and scene name: seed 7 draws unrelated numbers in two scenes or variants. `motion_model`
-/// replaces that of the scene (same path, default speed of that model).
+/// replaces the model of the scene (same path, default speed and height of the new model).
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
                                                std::uint64_t seed,

@@ -361,8 +361,10 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {file_with("  - box: {material: stone, x_m: 1/0}\n"), "the value is not finite"},
         {file_with("  - box: {material: stone, x_m: .nan}\n"),
          "test.yaml:10: 'x_m' needs a number"},
-        {file_with("  - box: {material: gold}\n"), "'material' 'gold' is not one of stone, wood"},
-        {file_with("  - box: {material: stone, label: lava}\n"), "'label' 'lava' is not one of"},
+        {file_with("  - box: {material: gold}\n"),
+         "'material' is 'gold'; it must be one of stone, wood"},
+        {file_with("  - box: {material: stone, label: lava}\n"),
+         "'label' is 'lava'; it must be one of"},
         {file_with("  - cone: {x_m: 1}\n"),
          "test.yaml:10: 'cone' is not a solid; known solids: box"},
         {file_with("  - box\n"), "test.yaml:10: a solid is one group"},
@@ -431,8 +433,10 @@ TEST(SceneFileTest, AGroupHasALimitedNumberOfKeys) {
         const auto made = read_scene({"test.yaml", text}, "", 1);
         return made ? std::string("accepted") : made.error().message;
     };
-    EXPECT_EQ(with_keys(10'001), "test.yaml:10001: more than 10000 keys in a group");
-    EXPECT_EQ(with_keys(90'000), "test.yaml:10001: more than 10000 keys in a group");
+    EXPECT_EQ(with_keys(10'001),
+              "test.yaml:10001: more than 10000 keys in a group; use fewer keys");
+    EXPECT_EQ(with_keys(90'000),
+              "test.yaml:10001: more than 10000 keys in a group; use fewer keys");
     EXPECT_EQ(with_keys(10'000).find("more than"), std::string::npos);
 }
 
@@ -448,14 +452,14 @@ TEST(SceneFileTest, MaterialsLightAndMotionAreChecked) {
     };
     const std::vector<BadFile> files{
         {replaced("pattern: concrete", "pattern: marble"),
-         "test.yaml:5: 'pattern' 'marble' is not one of carpet, "},
+         "test.yaml:5: 'pattern' is 'marble'; it must be one of carpet, "},
         {replaced("albedo: 0.4", "albedo: 1.4"), "test.yaml:5: 'albedo' is 1.4; it must be 0 to 1"},
         {replaced("pattern: wood", "shine: 1"), "test.yaml:6: unknown key 'shine'"},
         {replaced("motion:", "lighting: {lamp: -1}\nmotion:"), "test.yaml:7: 'lamp' is -1"},
         {replaced("motion:", "lighting: {shadows: 3}\nmotion:"),
          "test.yaml:7: 'shadows' needs true or false, not '3'"},
         {replaced("waypoints:", "motion_model: horse\n  waypoints:"),
-         "test.yaml:8: 'motion_model' 'horse' is not one of trolley, rex, hand"},
+         "test.yaml:8: 'motion_model' is 'horse'; it must be one of trolley, rex, hand"},
         {replaced("[{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]", "[]"),
          "test.yaml:8: 'waypoints' has 0 entries; 1 to 1000 are allowed"},
         {replaced("pause_s: 1", "pause_s: -1"), "test.yaml:8: 'pause_s' is -1"},

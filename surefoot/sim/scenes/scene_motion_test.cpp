@@ -101,7 +101,8 @@ TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {"motion_model: rex", "test.yaml:5: 'motion' needs 'waypoints' or 'script'"},
         {"script: approach, distance_m: 1, carrier: rex, motion_model: rex",
          "unknown key 'carrier'"},
-        {"script: dance", "test.yaml:5: 'script' 'dance' is not one of approach, turn_round, "},
+        {"script: dance",
+         "test.yaml:5: 'script' is 'dance'; it must be one of approach, turn_round, "},
         {"script: approach", "test.yaml:5: key 'distance_m' is missing"},
         {"script: approach, distance_m: 0", "'distance_m' is 0; it must be 0.1 to 100"},
         {"script: approach, distance_m: 1, turn_deg: 3", "unknown key 'turn_deg'"},
@@ -118,7 +119,7 @@ TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {"script: approach, motion_model: rex, speed_m_s: 1, distance_m: 1",
          "cannot be followed: simulator: speed_m_s is 1; a rex moves at 0.02 to 0.1"},
         {"waypoints: [{x_m: 0, y_m: 0, move: jump}]",
-         "'move' 'jump' is not one of auto, ahead, back, side"}};
+         "'move' is 'jump'; it must be one of auto, ahead, back, side"}};
     for (const auto& [motion, message] : motions) {
         const std::string said = refusal(motion);
         EXPECT_EQ(said.find("test.yaml:5: "), 0U) << said;

@@ -25,9 +25,12 @@ class Copier {
         SceneNode out;
         out.line = line_of(in);
         if (depth > kMaxDepth)
-            fail(out.line, fmt::format("nested deeper than {} levels", kMaxDepth));
+            fail(out.line,
+                 fmt::format("nested deeper than {} levels; use fewer nested groups and lists",
+                             kMaxDepth));
         if (++values_ > kMaxValues) {
-            fail(out.line, fmt::format("more than {} values", kMaxValues));
+            fail(out.line,
+                 fmt::format("more than {} values; make the scene file smaller", kMaxValues));
         }
         if (error_) return out;
         if (in.IsScalar()) {
@@ -56,7 +59,8 @@ class Copier {
         const int line = line_of(key);
         if (!key.IsScalar()) return fail(line, "a key must be plain text");
         if (out.items.size() >= kMaxKeys) {  // the search for repeated keys below is linear
-            return fail(line, fmt::format("more than {} keys in a group", kMaxKeys));
+            return fail(line,
+                        fmt::format("more than {} keys in a group; use fewer keys", kMaxKeys));
         }
         if (out.find(key.Scalar()) != nullptr) {
             return fail(line,

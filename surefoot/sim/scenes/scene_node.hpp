@@ -16,7 +16,7 @@ struct SceneNode {
     enum class Kind : std::uint8_t { nothing, text, list, group };
 
     Kind kind = Kind::nothing;
-    int line = 1;                  ///< from 1; for a value of a group: the line of its key
+    int line = 1;                  ///< first line = 1; a value of a group has the line of its key
     std::string key;               ///< key of a value in a group
     std::string text;              ///< text of a single value
     std::vector<SceneNode> items;  ///< items of a list or a group
@@ -28,8 +28,8 @@ struct SceneNode {
 /// Names the kind in a message, for example "a list" or "a group of keys".
 [[nodiscard]] const char* to_string(SceneNode::Kind kind) noexcept;
 
-/// `file` is the name in messages. Errors: more than 1 MB, 32 levels, 10 000 keys in a group or 100
-/// 000 values (aliases count each time).
+/// Reads YAML; `file` is its name in messages. Refuses more than 1 MB, 32 levels, 10 000 keys in a
+/// group or 100 000 values (aliases count each time).
 [[nodiscard]] Result<SceneNode> parse_scene_node(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::sim

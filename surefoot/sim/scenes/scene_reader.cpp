@@ -72,8 +72,8 @@ class GroupReader final : public ConfigVisitor {
         const std::string word = reader_.word(*node);
         const auto found = std::find(names.begin(), names.end(), word);
         if (found == names.end()) {
-            return reader_.fail(*node,
-                                fmt::format("'{}' is not one of {}", word, fmt::join(names, ", ")));
+            return reader_.fail(
+                *node, fmt::format("is '{}'; it must be one of {}", word, fmt::join(names, ", ")));
         }
         value = static_cast<int>(found - names.begin());
     }
@@ -112,7 +112,7 @@ class GroupReader final : public ConfigVisitor {
     std::vector<int> lines_;
 };
 
-/// Whether the text is a word, not an expression.
+/// Returns true if the text is a word, not an expression.
 bool looks_like_a_word(const std::string& text, const NamedNumbers& numbers) {
     return is_name(text) && numbers.find(text) == numbers.end();
 }

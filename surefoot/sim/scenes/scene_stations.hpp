@@ -13,7 +13,7 @@ namespace surefoot::sim {
 /// Height of a laser scanner on its tripod above the ground.
 inline constexpr double kTripod_m = 1.6;
 
-/// Whether a station is inside a solid, or below every surface that could carry a tripod.
+/// Returns true if a station is inside a solid, or below every surface that could carry a tripod.
 [[nodiscard]] bool is_buried(const Scene& scene, const Eigen::Vector3d& station_m);
 
 /// Reads the group `scan` of a scene file: world positions of the laser scanner, `above_m` above

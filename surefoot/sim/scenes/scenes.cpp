@@ -71,7 +71,7 @@ Result<ScriptedScene> make_scene(const std::string& name,
     const std::string likely = did_you_mean(name, names);
     return usage_error(
         fmt::format("simulator: no scene is named '{}'{} 'surefoot sim --list' "
-                    "shows all {}",
+                    "shows all {} scenes",
                     name,
                     likely.empty() ? ";" : likely,
                     names.size()));

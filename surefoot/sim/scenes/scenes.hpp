@@ -48,10 +48,10 @@ struct ScriptedScene {
 [[nodiscard]] std::vector<SceneInfo> list_scenes();
 
 /// Builds a scene. The seed draws its parameters, shifts its textures and moves the stops of the
-/// path by about a centimetre (never the first stop). `name` is a listed name or a ".yaml" file
-/// ("my/kerb.yaml", or "my/kerbs.yaml#kerb_low" if the file holds several). An unknown name is a
-/// usage error that lists the names. `motion_model` replaces that of the scene; a path that this
-/// model cannot follow (a walking machine's steps are limited) is an error.
+/// path by up to 1 cm along x and y (never the first stop). `name` is a listed name or a ".yaml"
+/// file ("my/kerb.yaml", or "my/kerbs.yaml#kerb_low" if the file holds several). An unknown name is
+/// a usage error that names the likely scene. `motion_model` replaces the model of the scene; a
+/// path that this model cannot follow (a walking machine's steps are limited) is an error.
 [[nodiscard]] Result<ScriptedScene> make_scene(const std::string& name,
                                                std::uint64_t seed,
                                                std::optional<MotionModel> motion_model = {});

@@ -93,7 +93,7 @@ TEST(ScenesTest, UnknownNamesSayWhatIsLikelyAndWhereTheListIs) {
         scene.error().message,
         "simulator: no scene is named 'demo_stair'; did you mean 'demo_stairs'? 'surefoot sim "
         "--list' shows all " +
-            std::to_string(list_scenes().size()));
+            std::to_string(list_scenes().size()) + " scenes");
     EXPECT_EQ(make_scene("qqqqqqqqqqq", 1).error().message.find("did you mean"), std::string::npos);
     const auto rig = rig_preset("zed_vag");
     ASSERT_FALSE(rig);

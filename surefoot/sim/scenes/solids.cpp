@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Limit of coordinates: scenes are places to walk through, no landscapes.
+/// Limit of coordinates. A scene is a room or a path, not a landscape.
 constexpr double kReach_m = 100.0;
 constexpr double kMinSize_m = 1e-3;
 
@@ -32,16 +32,20 @@ void describe_heading(ConfigVisitor& visitor, double& heading_deg) {
 }
 
 void describe_size(ConfigVisitor& visitor, const char* key, double& size_m) {
-    visitor.number(
-        key, size_m, kMinSize_m, kReach_m, "dimension of the object; the key says which one");
+    visitor.number(key,
+                   size_m,
+                   kMinSize_m,
+                   kReach_m,
+                   "dimension that the key names, for example the length of the object");
 }
 
 void describe_height(ConfigVisitor& visitor, const char* key, double& z_m) {
-    visitor.number(key,
-                   z_m,
-                   -kReach_m,
-                   kReach_m,
-                   "height above the origin of the group or scene; the key says of which part");
+    visitor.number(
+        key,
+        z_m,
+        -kReach_m,
+        kReach_m,
+        "height, above the origin of the group or scene, of the part that the key names");
 }
 
 std::optional<std::string> not_above(double bottom_m, double top_m) {

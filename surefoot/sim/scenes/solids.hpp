@@ -22,7 +22,7 @@ struct Place {
     double yaw_rad = 0.0;
 
     [[nodiscard]] Eigen::Vector2d to_world(const Eigen::Vector2d& p_m) const;
-    /// Composes a place that is given relative to this one.
+    /// Returns the place that is given relative to this place.
     [[nodiscard]] Place then(double x_m, double y_m, double z_m, double heading_deg) const;
 };
 
@@ -35,7 +35,7 @@ struct Site {
 
 /// Material names, for keys that select a material.
 using MaterialNames = std::span<const char* const>;
-/// The solid's own material, unless the file names another one.
+/// Marks a part that has the material of its solid, unless the file names another material.
 inline constexpr int kSameMaterial = -2;
 
 // The solids of a scene file. Each struct holds its keys, reports why it is impossible, and adds
@@ -172,7 +172,7 @@ struct DoorSpec {
     int sill_material = kSameMaterial;
     double x_m = kRequired;  ///< middle of the opening
     double y_m = kRequired;
-    double heading_deg = 0.0;  ///< direction of the way through
+    double heading_deg = 0.0;  ///< direction of travel through the door
     double z_m = 0.0;
     double width_m = kRequired;  ///< clear width between the posts
     double thickness_m = 0.12;

@@ -121,11 +121,13 @@ void FlightSpec::describe(ConfigVisitor& visitor) {
     visitor.number(
         "base_m", base_m, 0.0, kReach_m, "depth of the solid below the lower end of the flight");
     visitor.number("nosing_m", nosing_m, 0.0, 0.1, "overhang of a tread over its riser");
-    visitor.number("tread_thickness_m",
-                   tread_thickness_m,
-                   0.005,
-                   0.3,
-                   "thickness of a tread; used if the flight has a nosing or no risers");
+    visitor.number(
+        "tread_thickness_m",
+        tread_thickness_m,
+        0.005,
+        0.3,
+        "thickness of a tread with a nosing or without a riser; smallest thickness of the "
+        "landing of a flight that leads down");
     visitor.boolean("open", open, "true: the flight has no risers");
     visitor.number("rise_variation_m",
                    rise_variation_m,

@@ -14,8 +14,8 @@
 
 namespace surefoot::sim {
 
-/// Ground truth of a simulated recording. The world frame equals odom if the run starts with its
-/// first frame: the origin is the ground under the first base_link.
+/// Ground truth of a simulated recording. The world frame equals odom if the run starts with the
+/// first frame of the recording: the origin is the ground under the first base_link.
 struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
@@ -73,7 +73,7 @@ struct EdgeConfig {
                                             const EdgeConfig& config = {});
 
 struct VisibilityConfig {
-    double range_m = 2.5;    ///< straight distance from the left camera to the surface
+    double range_m = 2.5;    ///< largest straight distance from the left camera
     int min_frames = 1;      ///< smallest number of frames that must see a cell
     double margin_px = 0.0;  ///< ignored pixels at the image border
     int frame_stride = 1;    ///< use every n-th pose only

@@ -140,7 +140,8 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    shadow.jump_px,
                    0.0,
                    100.0,
-                   "smallest disparity jump between neighbouring pixels that counts as an edge");
+                   "smallest disparity jump between neighbouring pixels that counts as an edge, in "
+                   "addition to a slope of 0.2 px per px");
     visitor.number(
         "fattening_px",
         shadow.fattening_px,
@@ -396,7 +397,7 @@ void AnalyticStereo::measure_row(const View& view,
             measured_px +=
                 scale.locking_px * std::sin(kTurn * scale.full_pixels * found.disparity_px);
         }
-        // This test also drops pixels that errors have pushed beyond infinity.
+        // This test also drops pixels whose errors make the disparity zero or negative.
         const bool known = measured_px > 0.0F;
         const double suspicion = found.invented ? config_.edge_suspicion : config_.plain_suspicion;
         out.disparity_px.row(v)[u] = known ? measured_px : kNanF;

@@ -61,7 +61,7 @@ struct AnalyticStereoConfig {
 /// no image. With every error at 0 it equals `rectified_disparity_px` where both cameras see the
 /// point. Mirrors and glass return nothing (ASSUMPTION). Occlusion uses only surfaces that the left
 /// camera sees; an object that only the right camera sees hides nothing. Immutable after
-/// construction; rows run through the executor, and the bytes do not depend on it.
+/// construction; the executor does not change the result.
 class AnalyticStereo {
   public:
     /// `rig`: the full rectified camera. Fails on an unusable stride or share. The scene must
@@ -70,8 +70,8 @@ class AnalyticStereo {
                                                      const camera::RectifiedRig& rig,
                                                      const AnalyticStereoConfig& config,
                                                      std::uint64_t seed);
-    /// The camera of the depth images: that of `make` for stride 1, otherwise a smaller camera with
-    /// proportionally shorter focal lengths and disparities in its own pixels.
+    /// The camera of the depth images: the `rig` of `make` for stride 1, otherwise a smaller camera
+    /// with proportionally shorter focal lengths and disparities in its own pixels.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
     /// Exact view of the left camera. Keep the object from frame to frame to reuse its memory.
     struct View {
@@ -102,7 +102,7 @@ class AnalyticStereo {
                             SurfaceNoise::Square& square) const;
     void cast_rows(const Pose& T_world_camera, int block_y, View& out) const;
     struct Match {
-        float disparity_px = 0.0F;  ///< NaN = none
+        float disparity_px = 0.0F;  ///< NaN = no match
         bool invented = false;
     };
     [[nodiscard]] Match match(const View& view, int u, int v, float luck) const;
@@ -122,8 +122,8 @@ class AnalyticStereo {
     RayField rays_;
     PixelNoise noise_;
     SurfaceNoise surface_noise_;
-    std::vector<double> known_;  ///< per surface, seen head-on; 0 if the surface never matches
-    bool fixed_noise_ = false;   ///< whether some noise is attached to the surfaces
+    std::vector<double> known_;  ///< matched share of each surface, seen head-on
+    bool fixed_noise_ = false;   ///< true: noise is attached to the surfaces
     double fade_cosine_ = 0.0;   ///< cosine of `fade_incidence_deg`
     std::vector<float> cdf_;
 };

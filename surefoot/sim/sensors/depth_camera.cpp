@@ -20,12 +20,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Independent random streams per frame.
+/// Number of independent random streams per frame, and their names.
 constexpr std::uint64_t kStreams = 4;
 enum Stream : std::uint64_t { axial, lateral_u, lateral_v, loss };
 /// Distance from an edge [px] up to which lateral noise acts: three sigma of 0.8 px.
 constexpr int kEdgeReach_px = 3;
-/// A light ray starts this far from its surface, so that it does not hit the surface again.
+/// A light ray from the projector ends this far before its surface, so that the surface does not
+/// block the ray.
 constexpr double kSelf_m = 1e-6;
 
 double smaller_angle_rad(double cosine) {
@@ -266,7 +267,8 @@ DepthCamera::Seen DepthCamera::beside_edge(
     return other.surface == center.surface ? center : other;
 }
 
-/// Mean depth at four sub-pixel positions, as the sensor averages them.
+/// Returns the mean depth at four sub-pixel positions if they lie on several surfaces. Otherwise,
+/// or if a position has no surface, returns the depth of `center`.
 double DepthCamera::mixed_depth_m(const Pose& T_world_camera,
                                   int u,
                                   int v,

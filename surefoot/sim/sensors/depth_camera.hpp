@@ -25,7 +25,7 @@ struct DepthCameraConfig {
     double axial_center_m = 0.4;
     double axial_angle = 0.0001;         ///< factor of the term with the angle theta [m^1.5]
     double lateral_share = 0.001376915;  ///< share of z, in the image plane: 0.8 px of a Kinect
-    double min_range_m = 0.35;           ///< smallest z for which the model is valid
+    double min_range_m = 0.35;           ///< smallest measured z
     double max_range_m = 3.0;
     /// Projector offset along the camera's x axis; points in its shadow are unknown. 0 = light from
     /// the camera itself (time of flight). Kinect v1: 75 mm (Khoshelham and Elberink 2012).
@@ -63,8 +63,8 @@ struct DepthFrame {
 };
 
 /// Depth images of a scene. Mirrors and glass return nothing (ASSUMPTION: their light never comes
-/// back). Reflectance is the mean of the material. Rows run through the executor; the bytes do not
-/// depend on it. Immutable after construction.
+/// back). Reflectance is the mean of the material. The executor does not change the result.
+/// Immutable after construction.
 class DepthCamera {
   public:
     /// Returns an error with the problem of an unusable camera. The scene must outlive the object.

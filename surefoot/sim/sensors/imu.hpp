@@ -48,8 +48,8 @@ inline constexpr const char* kImuNames[] = {"none", "consumer", "adis16448", "mp
 
 /// A random walk with steps of unit variance. Any index is computed without the steps before it
 /// (Levy's construction of Brownian motion: independent increments between powers of two, bridges
-/// between them). W(0) = 0; negative indices walk the other way. A function of (seed, index)
-/// alone.
+/// between them). W(0) = 0; negative indices walk the other way. The result depends on (seed,
+/// index) alone.
 [[nodiscard]] double random_walk(std::uint64_t seed, std::int64_t index);
 
 /// IMU samples on a moving body. Sample k is at k / rate from time zero for every query, and its
@@ -62,10 +62,10 @@ class ImuModel {
              const ImuNoiseConfig& noise,
              std::int64_t start_ns,
              std::uint64_t seed);
-    /// Samples with after_ns < stamp <= until_ns.
+    /// Returns the samples with after_ns < stamp <= until_ns.
     [[nodiscard]] std::vector<ImuSample> samples(std::int64_t after_ns,
                                                  std::int64_t until_ns) const;
-    /// Sample without errors at any time.
+    /// Returns the sample without errors at `time_ns`.
     [[nodiscard]] ImuSample ideal(std::int64_t time_ns) const;
 
   private:

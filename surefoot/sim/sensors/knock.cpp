@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Rises from 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, with derivatives by s.
+/// A value that rises from 0 to 1 with continuous acceleration: 10 s^3 - 15 s^4 + 6 s^5, with
+/// derivatives by s.
 struct Blend {
     double value;
     double first;

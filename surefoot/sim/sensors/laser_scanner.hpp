@@ -67,8 +67,8 @@ class LaserScanner {
     [[nodiscard]] int columns() const noexcept { return columns_; }
     [[nodiscard]] int rows() const noexcept { return rows_; }
     /// Delivers the columns in order on the calling thread, until `take` returns false. Only a few
-    /// columns are in memory. The executor computes them; the bytes do not depend on it. `station`
-    /// selects the noise.
+    /// columns are in memory. The executor does not change the result. `station` selects the
+    /// noise.
     void scan(const Pose& T_world_scanner,
               int station,
               Executor& executor,

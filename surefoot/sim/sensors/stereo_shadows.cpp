@@ -141,8 +141,8 @@ class StripWalk {
     std::vector<LineWalk> lines_;
 };
 
-/// Bridges a run of occluded pixels [first, end) of a row, from the surface before to the one
-/// after.
+/// Bridges a run of occluded pixels [first, end) of a row, from the surface before the run to the
+/// surface after it.
 void bridge_run(const float* disparity_px, int first, int end, int width, ShadowMap& out, int v) {
     if (first == 0 || end == width) return;
     const float from_px = disparity_px[first - 1];
