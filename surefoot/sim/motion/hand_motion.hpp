@@ -19,7 +19,7 @@ struct HandConfig {
     double height_m = 1.30;   ///< height of base_link above the ground, in front of the chest
     double speed_m_s = 1.0;   ///< walking speed; slow, because the person watches a screen
     double ramp_s = 0.8;      ///< time to reach speed_m_s
-    double cadence_hz = 1.8;  ///< steps per second, both feet counted
+    double cadence_hz = 1.8;  ///< lowest steps per second, both feet; the seed adds up to 10 %
     double bob_m = 0.016;     ///< vertical amplitude, at the cadence
     double surge_m = 0.006;   ///< amplitude fore and aft, at the cadence
     double sway_m = 0.015;    ///< amplitude sideways, at half the cadence: one sway in two steps

@@ -102,8 +102,9 @@ Status check_slope(MotionModel motion_model,
     const double steepest = kSteepest[static_cast<std::size_t>(motion_model)];
     if (std::abs(rise_m) <= steepest * way_m) return {};
     return usage_error(fmt::format(
-        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m; a {} climbs 1:{:.0f} "
-        "at most. Put waypoints at the foot and at the top of the slope, or use the rex",
+        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m; motion_model {} climbs "
+        "1:{:.0f} at most. Put waypoints at the foot and at the top of the slope, or set "
+        "motion_model to rex",
         i,
         rise_m,
         way_m,
@@ -114,14 +115,15 @@ Status check_slope(MotionModel motion_model,
 Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
     if (script.motion_model != MotionModel::hand) {
-        return usage_error(
-            fmt::format("simulator: height_m is allowed for a hand only, because a {} has a fixed "
-                        "height; remove height_m",
-                        kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
+        return usage_error(fmt::format(
+            "simulator: height_m is allowed for motion_model hand only, because motion_model "
+            "{} has a fixed height; remove height_m",
+            kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
     return usage_error(
-        fmt::format("simulator: height_m is {}; for a hand it must be {} to {} m (0 = default)",
+        fmt::format("simulator: height_m is {}; for motion_model hand it must be {} to {} m (0 = "
+                    "default)",
                     script.height_m,
                     kLowestHand_m,
                     kHighestHand_m));
@@ -135,7 +137,8 @@ Status check(const MotionScript& script) {
     if (script.speed_m_s != 0.0 &&
         !(script.speed_m_s >= speeds.slowest_m_s && script.speed_m_s <= speeds.fastest_m_s)) {
         return usage_error(
-            fmt::format("simulator: speed_m_s is {}; a {} moves at {} to {} m/s (0 = default)",
+            fmt::format("simulator: speed_m_s is {}; motion_model {} moves at {} to {} m/s (0 = "
+                        "default)",
                         script.speed_m_s,
                         kMotionModelNames[motion_model],
                         speeds.slowest_m_s,

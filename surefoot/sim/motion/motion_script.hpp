@@ -19,7 +19,7 @@ inline constexpr const char* kMotionModelNames[] = {"trolley", "rex", "hand"};
 /// A path through a scene, as its scene file describes it.
 struct MotionScript {
     MotionModel motion_model = MotionModel::trolley;
-    /// 0 = default of the motion model. For the REX: step length ahead divided by step duration.
+    /// Speed; 0 = default of the motion model. For the REX: step length ahead / step duration.
     double speed_m_s = 0.0;
     /// Height of base_link above the ground, hand-held only; 0 = default of the motion model.
     double height_m = 0.0;

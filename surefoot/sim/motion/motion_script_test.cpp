@@ -42,7 +42,7 @@ TEST(MotionScriptTest, ImpossibleScriptsAreRefusedInWords) {
     script.motion_model = MotionModel::hand;
     EXPECT_EQ(refusal(script), "accepted") << "who carries it climbs stairs";
     script.waypoints[1].ground_z_m = 0.36;
-    EXPECT_NE(refusal(script).find("rises by 0.360 m over 0.300 m; a hand climbs 1:1"),
+    EXPECT_NE(refusal(script).find("rises by 0.360 m over 0.300 m; motion_model hand climbs 1:1"),
               std::string::npos);
     script.waypoints[1].ground_z_m = 0.18;
     script.motion_model = MotionModel::rex;
@@ -50,7 +50,7 @@ TEST(MotionScriptTest, ImpossibleScriptsAreRefusedInWords) {
     script.waypoints[1].ground_z_m = 0.5;
     EXPECT_NE(refusal(script).find("limit is 0.20 m"), std::string::npos);
     script.speed_m_s = 1.0;
-    EXPECT_NE(refusal(script).find("speed_m_s is 1; a rex moves at 0.02 to 0.1"),
+    EXPECT_NE(refusal(script).find("speed_m_s is 1; motion_model rex moves at 0.02 to 0.1"),
               std::string::npos);
 }
 

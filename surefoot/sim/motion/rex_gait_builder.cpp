@@ -359,7 +359,7 @@ double RexMotionBuilder::reach_limit_m(const RexMotion::Body& body, double time_
 void RexMotionBuilder::sink_to_reach(RexMotion::Body& body, std::vector<double> heights_m) const {
     constexpr int kPerSample = 4;
     constexpr int kRounds = 100;
-    constexpr double kEnough_m = 1e-5;  // the knee margin of the reach limit leaves 0.2 mm
+    constexpr double kEnough_m = 1e-5;  // the knee bend in the reach limit leaves at least 0.2 mm
     std::vector<double> limits_m;
     for (int i = 0; i <= kPerSample * (kSamples + 1); ++i)
         limits_m.push_back(reach_limit_m(body, now_s_ + interval_s() * i / kPerSample));

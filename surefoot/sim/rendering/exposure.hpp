@@ -8,7 +8,7 @@
 
 namespace surefoot::sim {
 
-/// How a camera chooses its exposure. The renderer's grey values hold for `exposure_s` and gain 1.
+/// Settings of a camera's exposure. The renderer's grey values hold for `exposure_s` and gain 1.
 /// ASSUMPTION: the control parameters are typical of small cameras; nobody measured them on a ZED.
 struct ExposureConfig {
     double exposure_s = 0.008;  ///< fixed value, or the reference of the automatic control

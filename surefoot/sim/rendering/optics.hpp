@@ -13,8 +13,8 @@ namespace surefoot::sim {
 enum class EyePoint : std::uint8_t { left, right, both };
 inline constexpr const char* kCameraSideNames[] = {"left", "right", "both"};
 
-/// Effects of the lens: vignetting in the corners, a Gaussian point spread, and a greasy finger
-/// mark with a larger point spread.
+/// Effects of the lens: a Gaussian point spread, and a greasy finger mark with a larger point
+/// spread. ImagingConfig sets the vignetting.
 struct OpticsConfig {
     double smear_sigma_px = 0.0;   ///< sigma of the spot, in each direction; 0 = ideal lens
     double smudge_sigma_px = 0.0;  ///< sigma of the spot under the finger mark; 0 = clean lens

@@ -31,7 +31,7 @@ struct CastBlock {
 };
 
 /// Finds position and size of a block, the primitives that may be hit from its pixels while its
-/// rows are exposed, and the plane if provably only one is hit.
+/// rows are exposed, and the plane if all rays provably meet one plane face.
 void find_primitives(const Scene& scene,
                      const RayField& rays,
                      const ImageViews& views,

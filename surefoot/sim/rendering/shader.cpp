@@ -87,7 +87,8 @@ Shader::Shader(const Scene& scene, std::uint64_t seed)
 
 void Shader::add_face(const Surface& surface, const Material& material) {
     const FaceFrame& frame = surface.frame;
-    // The face number shifts the pattern. It counts the faces of the scene, or those of one solid.
+    // The face number shifts the pattern. The number counts the faces of the scene or, with
+    // `same_look`, the faces of one solid.
     int number = static_cast<int>(faces_.size());
     if (material.same_look) number -= scene_->first_surface(surface.primitive);
     Face face;

@@ -41,7 +41,7 @@ struct Figures {
 /// (band, margin, sway) grow where limits shrink. The user becomes taller by `taller_m`.
 [[nodiscard]] Figures stricter(const Figures& figures, double share, double taller_m);
 
-/// Region that the rules read around `T_field_body` = identity, enlarged by `slack_m`.
+/// Region that the rules read for base_link at the origin of the field, plus `slack_m`.
 [[nodiscard]] Rect region_of(const Figures& figures, double slack_m);
 
 }  // namespace surefoot::sim::rules

@@ -26,8 +26,8 @@ enum class Danger : std::uint8_t {
     step_up,           ///< ground under a landing foot is higher than this movement class allows
     step_down,         ///< ground under a landing foot is lower than this movement class allows
     tilt,              ///< a landing foot would tilt too steeply [deg]
-    roughness,         ///< a patch of the sole is too far from the plane of the foot
-    obstacle_in_way,   ///< an object in the path of a swinging foot (value: its height)
+    roughness,         ///< ground under a patch of the sole is too far from the fitted plane
+    obstacle_in_way,   ///< an object in the path of a foot (value: height of top or underside)
     body_hits,         ///< a solid in the space of the body (value: height of its underside)
     overhang_too_low,  ///< like body_hits, but the underside is above the hips
     disconnected,      ///< the landing ground is not connected to the ground under the feet

@@ -15,7 +15,8 @@ using Eigen::Vector2d;
 
 /// A surface is buried if another solid begins at the surface or below and ends above the surface.
 constexpr double kTouch_m = 1e-9;
-/// Queries of tiles are slightly wider than the tiles, so that no rim on a tile border is lost.
+/// Queries of tiles are slightly wider than the tiles, so that a solid that ends on a tile border
+/// is not lost.
 constexpr double kTileMargin_m = 1e-5;
 constexpr int kTileSamples = 16;
 /// Tolerance of sample indices. Samples on the border of an area belong to the area.

@@ -9,7 +9,7 @@
 
 namespace surefoot::sim {
 
-/// Ground and obstacles on one vertical line, for a machine on a level. Heights: world frame.
+/// Ground and obstacles on one vertical line, for a machine at a given level [world].
 struct GroundSample {
     /// The highest surface up to the reach above the level, or the lowest surface if every surface
     /// is higher. NaN without any ground.

@@ -168,7 +168,7 @@ class Cylinder {
 /// Every primitive offers
 ///   intersect       shortens `hits` of rays that meet it at a distance > 0 (unit directions; a
 ///                   NaN ray misses). A batch gives the same bits as single rays.
-///   column          the part of a vertical line that is solid, rims included
+///   column          the part of a vertical line that is solid, border included
 ///   highest_over    exact highest point over the inside of a cell
 ///   hull            corners of a convex solid that contains the primitive
 ///   only_face       the plane face that every ray of a beam meets first, if the proof is easy;

@@ -41,7 +41,7 @@ inline constexpr const char* kLabelNames[] = {"none",
                                               "overhang"};
 [[nodiscard]] const char* to_string(Label label) noexcept;
 
-/// A face of a primitive, as the scene numbers it.
+/// A face of a primitive; its index counts the faces of all primitives of the scene.
 struct Surface {
     FaceFrame frame;
     int primitive = 0;
@@ -65,7 +65,7 @@ struct Hit {
     SurfacePoint at;
 };
 
-/// An upward surface on a vertical line.
+/// Point where a vertical line meets an upward surface.
 struct SurfaceHeight {
     double z_m = 0.0;
     int surface = 0;

@@ -297,12 +297,13 @@ TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
         const auto bad = read_scene({"test.yaml", text_with(motion)}, "", 1);
         return bad ? std::string("accepted") : bad.error().message;
     };
-    EXPECT_NE(error_of(way).find("a trolley climbs 1:2 at most"), std::string::npos)
+    EXPECT_NE(error_of(way).find("motion_model trolley climbs 1:2 at most"), std::string::npos)
         << error_of(way);
-    EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is allowed for a hand only"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of("  height_m: 1.8\n" + way).find("height_m is allowed for motion_model hand only"),
+        std::string::npos);
     EXPECT_NE(error_of("  motion_model: hand\n  height_m: 0.1\n" + way)
-                  .find("height_m is 0.1; for a hand"),
+                  .find("height_m is 0.1; for motion_model hand"),
               std::string::npos);
 }
 

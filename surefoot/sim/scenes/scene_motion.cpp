@@ -247,7 +247,8 @@ void check_free(SceneReader& reader,
 MotionScript read_motion(SceneReader& reader, const SceneNode& node) {
     SceneNode group = node;
     for (SceneNode& value : group.items) {
-        // Until 0.1 the key had this name. Version 0.3 will refuse it (docs/migration.md).
+        // Files of version 0.1 give this key the name `carrier`. Version 0.3 will refuse this name
+        // (docs/migration.md).
         if (value.key == "carrier" && group.find("motion_model") == nullptr)
             value.key = "motion_model";
     }

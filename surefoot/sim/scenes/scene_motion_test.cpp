@@ -117,7 +117,7 @@ TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {"script: descend_backwards, riser_m: 0.3, steps_ahead: 2, motion_model: rex",
          "'riser_m' is 0.3; it must be 0 to 0.2"},
         {"script: approach, motion_model: rex, speed_m_s: 1, distance_m: 1",
-         "cannot be followed: simulator: speed_m_s is 1; a rex moves at 0.02 to 0.1"},
+         "cannot be followed: simulator: speed_m_s is 1; motion_model rex moves at 0.02 to 0.1"},
         {"waypoints: [{x_m: 0, y_m: 0, move: jump}]",
          "'move' is 'jump'; it must be one of auto, ahead, back, side"}};
     for (const auto& [motion, message] : motions) {

@@ -207,10 +207,10 @@ struct FlightSpec {
     double rise_m = kRequired;
     double going_m = kRequired;
     double width_m = kRequired;
-    double landing_m = 0.0;           ///< landing depth; 0 = the last tread up is a normal tread
+    double landing_m = 0.0;           ///< landing depth; 0 = no landing
     double base_m = 0.0;              ///< depth of the solid below the lower end of the flight
     double nosing_m = 0.0;            ///< overhang of each tread over its riser
-    double tread_thickness_m = 0.04;  ///< tread thickness; used with a nosing or without risers
+    double tread_thickness_m = 0.04;  ///< thickness of a tread with a nosing or without a riser
     bool open = false;                ///< true: the flight has no risers
     double rise_variation_m = 0.0;    ///< largest deviation of a rise; the sum of rises is exact
     void describe(ConfigVisitor& visitor);

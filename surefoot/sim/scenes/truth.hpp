@@ -50,7 +50,7 @@ enum class DemReduce : std::uint8_t {
                                const Lattice& lattice,
                                DemReduce reduce = DemReduce::highest);
 
-/// For a map that separates a surface from overhead objects. Returns `dem_m`; in cells with a known
+/// Truth of maps that separate surface and overhead objects. Returns `dem_m`; in cells with a known
 /// `clearance_m` it returns the surface at the cell centre nearest to `height_m` [m, world].
 [[nodiscard]] Image<float> dem_below_overhead(Image<float> dem_m,
                                               const Scene& scene,
@@ -67,7 +67,7 @@ struct EdgeConfig {
     int margin_cells = 2;  ///< cells at this distance are masked too (larger of |dx|, |dy|)
 };
 
-/// 1 if a cell is at or within the margin of a height discontinuity, or of the end of the
+/// Returns 1 for a cell at or within the margin of a height discontinuity, or of the end of the
 /// ground.
 [[nodiscard]] Image<std::uint8_t> edge_mask(const Image<float>& dem_m,
                                             const EdgeConfig& config = {});
@@ -75,12 +75,12 @@ struct EdgeConfig {
 struct VisibilityConfig {
     double range_m = 2.5;    ///< largest straight distance from the left camera
     int min_frames = 1;      ///< smallest number of frames that must see a cell
-    double margin_px = 0.0;  ///< ignored pixels at the image border
+    double margin_px = 0.0;  ///< width of the ignored image border
     int frame_stride = 1;    ///< use every n-th pose only
 };
 
-/// 1 if both cameras see the highest surface at the cell's centre at once, in at least `min_frames`
-/// frames: inside both images, in range, not hidden.
+/// Returns 1 if both cameras see the highest surface at the cell's centre at once, in at least
+/// `min_frames` frames: inside both images, in range, not hidden.
 [[nodiscard]] Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
                                                   const Lattice& lattice,
                                                   const VisibilityConfig& config,

@@ -190,12 +190,13 @@ void AnalyticStereoConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    90.0,
                    "angle of incidence from which all pixels are lost");
-    visitor.number("least_contrast",
-                   least_contrast,
-                   0.0,
-                   1.0,
-                   "contrast of a texture below which pixels are lost; at half of this contrast, "
-                   "half of them");
+    visitor.number(
+        "least_contrast",
+        least_contrast,
+        0.0,
+        1.0,
+        "lowest contrast of a texture that causes no loss of pixels; at half of this contrast, "
+        "half of the pixels are lost");
 }
 
 Result<AnalyticStereo> AnalyticStereo::make(const Scene& scene,

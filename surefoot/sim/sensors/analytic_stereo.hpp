@@ -32,7 +32,7 @@ namespace surefoot::sim {
 /// figure of the project's accuracy tables. ASSUMPTION: every other default, until measured on
 /// rendered kerbs and stairs.
 struct AnalyticStereoConfig {
-    int stride = 1;                 ///< use every n-th row and column
+    int stride = 1;                 ///< distance between used rows and columns [px]; 1 = all
     double sigma_px = 0.25;         ///< one sigma of the white and correlated noise together
     double correlated_share = 0.5;  ///< share of the noise variance that is correlated
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
@@ -52,7 +52,7 @@ struct AnalyticStereoConfig {
     double fade_incidence_deg = 75.0;  ///< incidence from which pixels begin to be lost
     double max_incidence_deg = 85.0;   ///< incidence from which all pixels are lost
     double least_contrast =
-        0.1;  ///< contrast of the texture below which pixels are lost; at half of it, half of them
+        0.1;  ///< lowest contrast that loses no pixels; half of it loses half of the pixels
 
     void describe(ConfigVisitor& visitor);
 };
@@ -78,7 +78,7 @@ class AnalyticStereo {
         Image<float> disparity_px;  ///< exact, in output pixels; NaN without a surface
         Image<std::int32_t> surface;
         Image<float> fixed;           ///< noise of unit variance attached to the surface
-        Image<float> missing_chance;  ///< 1 for pixels that can never be matched
+        Image<float> missing_chance;  ///< probability of no match; 1 = never matched
         ShadowMap shadows;
     };
     /// `frame` selects the noise.

@@ -8,7 +8,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kCamera_m = 2.0;  ///< height of the camera; half of the largest board is below it
+constexpr double kCamera_m = 2.0;  ///< height of the camera; a board of up to 4 m stays above z = 0
 constexpr double kThickness_m = 0.02;
 constexpr double kWallBehind_m = 1.5;
 constexpr double kWallHalf_m = 20.0;

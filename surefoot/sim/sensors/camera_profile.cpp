@@ -9,7 +9,7 @@ ProfileFigures figures_of(CameraProfile profile) {
     switch (profile) {
         case CameraProfile::ideal: return {};
         case CameraProfile::zed:
-            return {.noise_dn = 5.4,  // with the camera's own noise of 1.0: 5.5
+            return {.noise_dn = 5.4,  // together with the camera's own noise of 1.0: 5.5
                     .noise_size_px = 1.3,
                     .smear_sigma_px = 1.0,
                     .contrast = 1.2,
@@ -17,13 +17,13 @@ ProfileFigures figures_of(CameraProfile profile) {
                                     .right_pitch_rad = 0.00037,
                                     .right_focal_share = 0.0006}};
         case CameraProfile::zed_alone:
-            return {.noise_dn = 0.98,  // with the camera's own noise of 1.0: 1.4
+            return {.noise_dn = 0.98,  // together with the camera's own noise of 1.0: 1.4
                     .noise_size_px = 1.3,
                     .smear_sigma_px = 0.8,
                     .contrast = 1.0,
                     .calibration = figures_of(CameraProfile::zed).calibration};
         case CameraProfile::euroc:
-            return {.noise_dn = 2.29,  // with the camera's own noise of 1.0: 2.5
+            return {.noise_dn = 2.29,  // together with the camera's own noise of 1.0: 2.5
                     .noise_size_px = 1.6,
                     .smear_sigma_px = 1.0,
                     .contrast = 1.0,

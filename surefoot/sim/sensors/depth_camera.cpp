@@ -100,12 +100,13 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    90.0,
                    "largest angle of incidence at which a depth is measured");
-    visitor.number(
-        "least_return",
-        least_return,
-        0.0,
-        1.0,
-        "share of returned light below which pixels are lost; at half of this share, half of them");
+    visitor.number("least_return",
+                   least_return,
+                   0.0,
+                   1.0,
+                   "lowest share of returned light that causes no loss of pixels; at half of this "
+                   "share, half of the "
+                   "pixels are lost");
     visitor.boolean("mixes_edges",
                     mixes_edges,
                     "true: pixels on an edge lie between the two surfaces, as with time of flight");

@@ -39,11 +39,11 @@ enum class ImuKind : std::uint8_t {
     consumer,   ///< the defaults of ImuNoiseConfig
     adis16448,  ///< the IMU of the EuRoC recordings (their calibration)
     mpu6050,    ///< also the inertial part of the MPU-9150; same class as the IMU of the DUO
-    bmi055,     ///< phone class, 12-bit accelerometer
+    bmi055,     ///< IMU of the phone class, with a 12-bit accelerometer
 };
 inline constexpr const char* kImuNames[] = {"none", "consumer", "adis16448", "mpu6050", "bmi055"};
 
-/// Errors of a sensor according to its data sheet.
+/// Returns the errors of an IMU; `none` and `consumer` give the defaults.
 [[nodiscard]] ImuNoiseConfig imu_noise_of(ImuKind kind);
 
 /// A random walk with steps of unit variance. Any index is computed without the steps before it

@@ -37,7 +37,7 @@ struct LaserScannerConfig {
     double noise_floor_m = 0.575e-3;
     double noise_growth = 2.94e-5;         ///< share of the range, on a white surface seen head-on
     double beam_exit_m = 0.003;            ///< diameter of the beam at the scanner
-    double beam_divergence_rad = 0.19e-3;  ///< growth of the diameter with range
+    double beam_divergence_rad = 0.19e-3;  ///< growth of the diameter per metre of range
 
     void describe(ConfigVisitor& visitor);
 };
@@ -56,7 +56,7 @@ struct ScanColumn {
 };
 
 /// Scans a scene from a station. Mirrors and glass return nothing (ASSUMPTION). A beam that hits
-/// several surfaces measures the mean of their ranges, weighted by its area and their brightness.
+/// several surfaces measures the mean of their ranges, weighted by beam area and returned light.
 /// Immutable after construction.
 class LaserScanner {
   public:

@@ -153,8 +153,8 @@ void bridge_run(const float* disparity_px, int first, int end, int width, Shadow
     }
 }
 
-/// Marks pixels hidden from the right camera. Goes from right to left. `seen` is the leftmost
-/// column of the right image that is already occupied.
+/// Marks the pixels of a row that are hidden from the right camera, from right to left. `seen` is
+/// the leftmost column of the right image that is already occupied.
 void occlude_row(const Image<float>& disparity_px, int v, ShadowMap& out) {
     const float* d = disparity_px.row(v);
     const int width = disparity_px.width();
