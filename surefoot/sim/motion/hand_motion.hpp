@@ -13,8 +13,8 @@ namespace surefoot::sim {
 
 /// A camera that a walking person carries. All amplitudes are an ASSUMPTION: ordinary walking has
 /// 1.8-2 steps a second and 30-40 mm of vertical motion, peak to peak. The defaults are at the
-/// lower ends, because arms damp the motion. Peaks of the vertical acceleration are then 1.9-2.3
-/// m/s^2; its rms is 1.4 m/s^2. Every amplitude varies by 10 % with the seed.
+/// lower ends, because arms damp the motion. The vertical acceleration then has peaks of 2.0 m/s^2
+/// and an rms of 1.4 m/s^2. Every amplitude varies by 10 % with the seed.
 struct HandConfig {
     double height_m = 1.30;   ///< height of base_link above the ground, in front of the chest
     double speed_m_s = 1.0;   ///< walking speed; slow, because the person watches a screen

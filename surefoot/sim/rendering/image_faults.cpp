@@ -61,12 +61,11 @@ void ImageFaultConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "probability per frame that the lower rows come from the previous frame");
-    visitor.number(
-        "freeze_probability",
-        freeze_probability,
-        0.0,
-        1.0,
-        "probability per frame that the images stop changing for the next freeze_frames frames");
+    visitor.number("freeze_probability",
+                   freeze_probability,
+                   0.0,
+                   1.0,
+                   "probability per frame that the images stop changing for freeze_frames frames");
     visitor.integer(
         "freeze_frames", freeze_frames, 1, kMaxFreezeFrames, "number of frames in one freeze");
 }

@@ -23,7 +23,7 @@ struct ImagingConfig {
 
 /// Gaussian numbers, a function of (image, pixel) alone, so that the order of evaluation does not
 /// matter. Unit variance. The quantile table of the normal distribution has 2^14 entries, so no
-/// value exceeds 4.0 sigma.
+/// value exceeds 4.1 sigma.
 class PixelNoise {
   public:
     PixelNoise();

@@ -36,7 +36,7 @@ struct AnalyticStereoConfig {
     double sigma_px = 0.25;         ///< one sigma of the white and correlated noise together
     double correlated_share = 0.5;  ///< share of the noise variance that is correlated
     double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
-    double fixed_share = 0.3;       ///< share of the correlated variance that sticks to the surface
+    double fixed_share = 0.3;       ///< share of the correlated variance attached to the surface
     double fixed_size_m = 0.09;     ///< correlation length on the surface: 30 px at 1 m
     double locking_px = 0.05;       ///< amplitude of the pull towards whole disparities
     double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Number of columns in memory: enough for the threads of a desktop computer. At full resolution
-/// they need 15 MB.
+/// Number of columns in memory: enough for the threads of a desktop computer. At the default
+/// resolution they need about 17 MB.
 constexpr int kBatch = 16;
 /// Weights of a mean over a disc, from its centre and four points at sqrt(2/3) of the radius. The
 /// mean is exact for polynomials of third degree (Abramowitz and Stegun 25.4.61).
