@@ -29,9 +29,9 @@ class CommandedMotion final : public Motion {
     [[nodiscard]] double duration_s() const override;
     [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
-    /// Starts the movement of a joystick code at `time_s`. Returns an error and changes nothing if
-    /// the machine has no such movement, if the previous step has not ended by then, or if the legs
-    /// cannot make this step on the ground.
+    /// Starts the movement of a joystick code at `time_s`. Returns an error and changes nothing in
+    /// three cases. The machine has no such movement. The previous step has not ended by then. The
+    /// legs cannot make this step on the ground.
     [[nodiscard]] Result<StepEvent> step(int command, double time_s);
     [[nodiscard]] std::vector<StepEvent> steps() const;
     /// Drops steps that ended before `time_s`, so that memory stays bounded on long walks. Earlier

@@ -15,8 +15,8 @@ namespace surefoot::sim {
 /// Turns on the spot by `turn_rad` (positive: left) and back again.
 [[nodiscard]] MotionScript turn_round_script(MotionModel motion_model, double turn_rad);
 
-/// Sees a table ahead, walks until the table is `left_m` away, turns round there and walks backward
-/// to it, as a user does to sit down or to lean against it.
+/// Walks to a table that is ahead until it is `left_m` away. Then turns round and walks backward to
+/// it, as a user does to sit down.
 [[nodiscard]] MotionScript back_to_table_script(MotionModel motion_model,
                                                 double table_x_m,
                                                 double left_m);

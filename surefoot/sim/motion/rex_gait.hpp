@@ -47,14 +47,14 @@ struct FootState {
 /// foot moves the whole way, because nobody can stand on half a tread.
 ///
 /// The trace gives the path, pitch and bob of base_link. In every sample the standing leg carries
-/// the pelvis, and the pitch of the pelvis makes the sole flat (between two standing feet: a mean
-/// by load). These values scale with the step length. The shift of weight is added. The pelvis
-/// sinks where a leg would be too short. All curves are cubic B-splines of the samples, so the
-/// acceleration is continuous. The sharp transition is the foot strike: a pulse of 0.12 s, then
-/// ringing. Foot poses are exact and legs follow by inverse kinematics, so a standing foot never
-/// slips. A foot that stays behind lifts its heel before it swings, as in the trace. Roll, yaw,
-/// ringing and pulse are movements of the frame above the hips; the pelvis does not make them. `at`
-/// includes these movements; `pelvis` and `joints` do not.
+/// the pelvis, and the pitch of the pelvis makes its sole flat. With two standing feet, path and
+/// pitch are means weighted by load. These values scale with the step length. The shift of weight
+/// is added. The pelvis sinks where a leg would be too short. All curves are cubic B-splines of the
+/// samples, so the acceleration is continuous. The sharp transition is the foot strike: a pulse of
+/// 0.12 s, then ringing. Foot poses are exact and legs follow by inverse kinematics, so a standing
+/// foot never slips. A foot that stays behind lifts its heel before it swings, as in the trace.
+/// Roll, yaw, ringing and pulse are movements of the frame above the hips; the pelvis does not make
+/// them. `at` includes these movements; `pelvis` and `joints` do not.
 class RexMotion final : public Motion {
   public:
     /// Returns a usage error if the legs cannot reach a step or, on level ground, a joint leaves

@@ -23,8 +23,8 @@ inline constexpr double kUpperLeg_m = 0.430;
 inline constexpr double kLowerLeg_m = 0.416;
 inline constexpr double kAnkleHeight_m = 0.144;  ///< height of the ankle above the sole
 inline constexpr double kToes_m = 0.240;         ///< distance ahead of the ankle: 0.366 - 0.126 m
-/// Half of the pelvis width of 0.470 m. The ankle is straight below: the foot is centred 0.180 m
-/// beside base_link, is 0.190 m wide, and its inner edge is 0.150 m from the ankle.
+/// Half of the pelvis width of 0.470 m. The ankle is straight below. The foot is centred 0.180 m
+/// beside base_link and 0.190 m wide. Its inner edge is 0.150 m from the ankle.
 inline constexpr double kHip_y_m = 0.235;
 /// Distance of the ankles behind the hips in the stand of the gait trace. In the machine file the
 /// ankles are below base_link (heels 0.126 m behind), so the hip axis is ahead of base_link.

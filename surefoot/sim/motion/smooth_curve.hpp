@@ -25,7 +25,7 @@ struct Jet {
 [[nodiscard]] double eased(double u) noexcept;
 
 /// Uniform cubic B-spline over time; the control values are the samples of a curve. Its second
-/// derivative is continuous. The curve smooths single outliers by [1 4 1] / 6 and stays in the
+/// derivative is continuous. The curve smooths single outliers by [1 4 1] / 6. It stays in the
 /// range of four neighbouring samples (de Boor, "A Practical Guide to Splines", 1978). The first
 /// and the last sample are repeated, so that the curve rests on them at both ends.
 class SmoothCurve {

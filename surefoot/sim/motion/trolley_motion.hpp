@@ -19,8 +19,8 @@ struct TrolleyConfig {
 };
 
 /// Motion of base_link through waypoints at constant height above the ground. Position and yaw
-/// between two waypoints follow one progress function s(t): the speed rises as the smoothstep 3u^2
-/// - 2u^3, stays, and falls the same way, so acceleration is continuous. The body stands still
+/// between two waypoints follow one progress function s(t). The speed rises as the smoothstep 3u^2
+/// - 2u^3, stays, and falls the same way. So the acceleration is continuous. The body stands still
 /// before the start and after the end. It is level at the waypoints. On a slope the tilt grows and
 /// vanishes smoothly over 0.3 m, so place waypoints at the foot and at the top of a ramp.
 class TrolleyMotion final : public Motion {

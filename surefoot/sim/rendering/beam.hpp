@@ -11,7 +11,7 @@ struct Sphere {
     double radius_m = 0.0;
 };
 
-/// All rays of a block of pixels: a cone in the world frame whose tip may be anywhere in a small
+/// All rays of a block of pixels: a cone in the world frame. Its tip may be anywhere in a small
 /// ball, because the rows are exposed one after another. The tests below are conservative: true is
 /// proved for every ray, false may mean "not proved". From 90 deg of half angle on, all give false.
 class Beam {
@@ -35,8 +35,8 @@ class Beam {
     [[nodiscard]] bool outside(std::span<const Eigen::Vector3d> polygon_m, double above_m) const;
 
   private:
-    /// Sine of the half angle of a cone from the middle of the ball that contains every point where
-    /// a ray meets a plane; above 1 if no such cone exists.
+    /// Sine of the half angle of a cone from the middle of the ball. The cone contains every point
+    /// where a ray meets the plane. Above 1 if no such cone exists.
     [[nodiscard]] double sine_of_hits(double above_m) const;
 
     Eigen::Vector3d tip_m_;

@@ -22,7 +22,7 @@ struct ImagingConditions {
 
 /// Renders the image of a sheet in front of a camera analytically, without mesh or texture. Every
 /// pixel is the mean over its square area. Edges are sampled `kEdgeSamples` times in each
-/// direction, so an edge is right to about 1 / (2 kEdgeSamples) px in one pixel and far better over
+/// direction. So an edge is right to about 1 / (2 kEdgeSamples) px in one pixel and far better over
 /// several. Deterministic: the same seed gives the same bytes for every executor.
 inline constexpr int kEdgeSamples = 16;
 [[nodiscard]] GreyImage render_board(const PrintedSheet& sheet,

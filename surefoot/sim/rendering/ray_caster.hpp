@@ -30,8 +30,8 @@ struct CastBlock {
     std::optional<FacePlane> plane;  ///< plane of the face that all rays provably meet first
 };
 
-/// Finds position and size of a block, the primitives that may be hit from its pixels while its
-/// rows are exposed, and the plane if all rays provably meet one plane face.
+/// Finds position and size of a block, and the primitives that its pixels may hit during the
+/// exposure of its rows. Sets the plane if all rays provably meet one plane face.
 void find_primitives(const Scene& scene,
                      const RayField& rays,
                      const ImageViews& views,

@@ -10,8 +10,8 @@
 
 namespace surefoot::sim {
 
-/// The viewing ray of every pixel of a camera, computed once from its lens model, and a bounding
-/// cone of each pixel block, which lets the caster skip whole primitives.
+/// The viewing ray of every pixel of a camera, computed once from its lens model. A bounding cone
+/// of each pixel block lets the caster skip whole primitives.
 class RayField {
   public:
     static constexpr int kBlock = 16;  ///< side of a square block [px]

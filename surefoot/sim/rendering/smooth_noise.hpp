@@ -10,8 +10,8 @@
 
 namespace surefoot::sim {
 
-/// Gaussian noise that changes slowly over an image: independent numbers on a lattice, low-passed
-/// by the cubic B-spline in both directions and scaled to variance 1 everywhere. Its correlation
+/// Gaussian noise that changes slowly over an image. The cubic B-spline low-passes independent
+/// numbers on a lattice in both directions. The variance is scaled to 1 everywhere. The correlation
 /// along a row or a column falls to 1/e at `length_px`. The lattice has a random offset, so that no
 /// pixel is special. The values depend on (seed, pixel) alone.
 class SmoothNoise {

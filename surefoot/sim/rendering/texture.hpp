@@ -166,8 +166,8 @@ struct TextureBatch {
     }
 };
 
-/// The textures of a scene. Far and grazing surfaces are averaged over the pixel footprint: up to
-/// four samples along its long axis, each from the mip level that fits the short axis.
+/// The textures of a scene. Far and grazing surfaces are averaged over the pixel footprint with up
+/// to four samples along its long axis. The mip level of each sample fits the short axis.
 class Textures {
   public:
     Textures(const std::vector<Material>& materials, std::uint64_t seed);

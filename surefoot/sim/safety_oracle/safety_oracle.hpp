@@ -81,7 +81,7 @@ struct SafetyAnswer {
 /// - Body: no solid is in the path of a part of the body, widened by the sway.
 /// - The landing ground is joined to the standing ground without a jump above the limit of "Way".
 /// The path is straight and the turn is even. A movement of class stair, if the machine file
-/// enables it, must place the whole foot like any other movement: rules for treads are not here.
+/// enables it, must place the whole foot like any other movement. Rules for treads are not here.
 ///
 /// Precondition: machine.problem() == nullptr.
 [[nodiscard]] SafetyAnswer judge(const Scene& scene,

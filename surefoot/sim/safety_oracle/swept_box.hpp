@@ -8,10 +8,10 @@
 
 namespace surefoot::sim {
 
-/// The area that a rectangle in base_link passes over while base_link moves from one planar pose to
+/// The area that a rectangle in base_link passes over. base_link moves from one planar pose to
 /// another, on a straight line at a constant turn rate. A move without a turn is exact. A turn is
-/// cut into pieces of half a degree, and the rectangle slides straight in each piece (error of 2.6
-/// mm for a corner 0.6 m from base_link).
+/// cut into pieces of half a degree. The rectangle slides straight in each piece (error of 2.6 mm
+/// for a corner 0.6 m from base_link).
 class SweptBox {
   public:
     /// `box` is in base_link; the poses are in frame a, in which `covers` takes points.

@@ -20,9 +20,9 @@ struct GroundSample {
     double top_m = -std::numeric_limits<double>::infinity();
 };
 
-/// Scene geometry sampled every 5 mm on a lattice in a yawed frame: sample (i, j) is at (i, j) *
-/// spacing in that frame, so that mirrored and rotated worlds are sampled alike. The samples are
-/// exact; an object thinner than the spacing can fall between them.
+/// Scene geometry sampled every 5 mm on a lattice in a yawed frame. Sample (i, j) is at (i, j) *
+/// spacing in that frame. So mirrored and rotated worlds are sampled alike. The samples are exact;
+/// an object thinner than the spacing can fall between them.
 class GroundField {
   public:
     static constexpr double kSpacing_m = 0.005;

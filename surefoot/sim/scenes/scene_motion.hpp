@@ -19,8 +19,8 @@ namespace surefoot::sim {
 /// function. Call it in the order of the walk.
 [[nodiscard]] GroundHeight ground_of(const Scene& scene);
 
-/// Fails if base_link or a camera on the usual mount enters a solid anywhere on the path, or if a
-/// foot of a walking machine is set into a solid.
+/// Fails if base_link or a camera on the usual mount enters a solid anywhere on the path. Also
+/// fails if a foot of a walking machine is set into a solid.
 void check_way(SceneReader& reader,
                const SceneNode& group,
                const SceneBuilder& builder,

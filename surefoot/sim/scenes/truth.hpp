@@ -44,8 +44,8 @@ enum class DemReduce : std::uint8_t {
 };
 
 /// Height of the highest surface of each cell [m, world]; NaN without ground. A primitive that
-/// overlaps a cell by less than a micrometre does not count, so that a riser on a cell border
-/// leaves the cell in front of it at the height of the floor.
+/// overlaps a cell by less than a micrometre does not count. So a riser on a cell border leaves the
+/// cell in front of it at the height of the floor.
 [[nodiscard]] Image<float> dem(const Scene& scene,
                                const Lattice& lattice,
                                DemReduce reduce = DemReduce::highest);
@@ -79,8 +79,8 @@ struct VisibilityConfig {
     int frame_stride = 1;    ///< use every n-th pose only
 };
 
-/// Returns 1 if both cameras see the highest surface at the cell's centre at once, in at least
-/// `min_frames` frames: inside both images, in range, not hidden.
+/// Returns 1 if both cameras see the highest surface at the cell's centre at once in at least
+/// `min_frames` frames. Seen: inside both images, in range, not hidden.
 [[nodiscard]] Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
                                                   const Lattice& lattice,
                                                   const VisibilityConfig& config,

@@ -70,8 +70,8 @@ class AnalyticStereo {
                                                      const camera::RectifiedRig& rig,
                                                      const AnalyticStereoConfig& config,
                                                      std::uint64_t seed);
-    /// The camera of the depth images: the `rig` of `make` for stride 1, otherwise a smaller camera
-    /// with proportionally shorter focal lengths and disparities in its own pixels.
+    /// The camera of the depth images: for stride 1 the `rig` of `make`. Otherwise a smaller camera
+    /// with proportionally shorter focal lengths; disparities are in its own pixels.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
     /// Exact view of the left camera. Keep the object from frame to frame to reuse its memory.
     struct View {

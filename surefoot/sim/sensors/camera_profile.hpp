@@ -17,7 +17,7 @@ inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "
 /// rotation of the ZED's right camera was measured on corners of the same recording. `zed_alone`
 /// has the errors of the ZED only. In a clutter scene like the recording it scatters as the
 /// recording does for the seeds of the fit, and a quarter more for other seeds. `zed` is for plain
-/// scenes: it adds the remaining scatter as noise, fitted to OpenCV's matcher (our matcher agrees
+/// scenes. It adds the remaining scatter as noise, fitted to OpenCV's matcher (our matcher agrees
 /// with the recording at twice that noise). `zed` is the harsher profile; use it for claims.
 struct ProfileFigures {
     double noise_dn = 0.0;       ///< noise in addition to the noise of the camera

@@ -15,8 +15,8 @@ namespace surefoot::sim {
 
 inline constexpr double kGravity_m_s2 = 9.81;
 
-/// Errors of an inertial sensor: white noise by density, a bias that is drawn once per seed and
-/// then follows a random walk, saturation at the range limits, and quantisation. The defaults have
+/// Errors of an inertial sensor: white noise by density, bias, saturation at the range limits, and
+/// quantisation. The bias is drawn once per seed and then follows a random walk. The defaults have
 /// the order of a consumer MEMS part with a steady bias.
 struct ImuNoiseConfig {
     double gyro_density_rad_s_sqrt_hz = 1.5e-4;

@@ -73,7 +73,7 @@ camera::StereoRig zed(const Mode& mode, bool rolling) {
 
 /// DUO MLX: 752x480, baseline 30 mm, 170 deg, global shutter, IMU of 6 axes at 100 Hz. ASSUMPTION:
 /// 170 deg from corner to corner with angles proportional to the distance from the centre (f =
-/// 446.06 px / 85 deg); a lens of 2 mm on pixels of 6 um would have f = 333 px.
+/// 446.06 px / 85 deg). A lens of 2 mm on pixels of 6 um would have f = 333 px.
 camera::StereoRig duo_mlx() {
     constexpr int kWidth = 752;
     constexpr int kHeight = 480;
