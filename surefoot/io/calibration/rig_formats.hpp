@@ -11,8 +11,8 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/io/calibration/rig_file.hpp"
 
-/// Reads and writes calibration files of other programs. Returned rigs have no problem(). Writers
-/// refuse a rig that the format cannot store, and name the unsupported part.
+/// Reads and writes calibration files of other programs. Reads return valid rigs. Writers refuse
+/// cameras that the format cannot store; lost_in() names the other parts that they leave out.
 namespace surefoot::io {
 
 enum class RigFormat {

@@ -89,11 +89,11 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
                     20'000,
                     "live cameras: colour temperature of the white balance in kelvin; 0 leaves the "
                     "white balance unchanged");
-    visitor.enumeration(
-        "auto",
-        automatic,
-        kAutoNames,
-        "live cameras: automatic exposure, gain and white balance; keep leaves them unchanged");
+    visitor.enumeration("auto",
+                        automatic,
+                        kAutoNames,
+                        "live cameras: on or off switches automatic exposure, gain and white "
+                        "balance on or off; keep leaves these three settings unchanged");
     visitor.enumeration("format",
                         format,
                         kFormatNames,

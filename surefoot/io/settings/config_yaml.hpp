@@ -42,7 +42,7 @@ struct ConfigEntry {
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe,
                                      Notes* notes = nullptr);
-/// Sets a key, given as a separate argument, to a value. An error begins with the key.
+/// Sets one key to a value, with the same checks. Errors name the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);
