@@ -113,7 +113,7 @@ CalibrationKind kind_of_text(std::string_view text) {
             return CalibrationKind::middlebury;
         if (content.starts_with("delta_f:")) return CalibrationKind::kitti_sensors;
     }
-    // calib_imu_to_velo.txt holds only the time and a motion, as bare numbers.
+    // calib_imu_to_velo.txt has the keys calib_time, R and T, but no key that only KITTI uses.
     if (text.starts_with("calib_time:") && text.find("\nR: ") != text.npos)
         return CalibrationKind::kitti_sensors;
     return CalibrationKind::unknown;

@@ -80,15 +80,15 @@ struct RosTexts {
     std::string right;
 };
 [[nodiscard]] Result<RosTexts> format_ros_rig(const camera::StereoRig& rig);
-/// "stereo/right.yaml" for "stereo/left.yaml": replaces the last "left"; no value without "left".
+/// Returns "right.yaml" for "left.yaml" (replaces the last "left"); no value without "left".
 [[nodiscard]] std::optional<std::string> ros_partner(const std::string& left_path);
 
 /// Reads Stereolabs' SN<serial>.conf: sections LEFT_CAM_x, RIGHT_CAM_x for each resolution x and
 /// STEREO. Their calibration tool writes Baseline = -T.x, TY = T.y, TZ = T.z [mm] and the rotation
-/// vector (RX, CV or RY, RZ) of x_right = R x_left + T: Baseline is positive in the file, T.x is
-/// negative. A complete LEFT_DISTO replaces the lens of every section: eight coefficients
-/// (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4 other than 0 are refused.
-/// `size` selects the section; a file of one resolution needs no `size`.
+/// vector (RX, CV or RY, RZ). With x_right = R x_left + T, T.x is negative and Baseline is
+/// positive. A complete LEFT_DISTO or RIGHT_DISTO replaces the lens of every section of this
+/// camera: eight coefficients (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4
+/// other than 0 are refused. `size` selects the section; a file of one resolution needs no `size`.
 [[nodiscard]] Result<RigFile> parse_zed_rig(std::string_view text,
                                             const std::string& file,
                                             std::optional<ImageSize> size = {});

@@ -71,10 +71,11 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
     if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
         words.size() != header.fields.size() + 1) {
-        return input_error(fmt::format("{} has {} values for {} fields; each field needs one value",
-                                       words[0],
-                                       words.size() - 1,
-                                       header.fields.size()));
+        return input_error(fmt::format(
+            "{} has {} values for {} fields; give one value for each field, and at most 256 fields",
+            words[0],
+            words.size() - 1,
+            header.fields.size()));
     }
     for (std::size_t i = 0; i < header.fields.size(); ++i) {
         Field& field = header.fields[i];
@@ -178,7 +179,8 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         header.points = cells;
         return header;
     }
-    return at_line(file, lines.number(), "truncated PCD header: 'DATA' is missing");
+    return at_line(
+        file, lines.number(), "truncated PCD header: 'DATA' is missing; copy the file again");
 }
 
 /// Calls `use` with a zero of the field's type.
@@ -374,7 +376,7 @@ std::vector<std::string> notes_of(const Header& header) {
     return notes;
 }
 
-/// Returns the records of a binary body. Checks the sizes before it allocates memory.
+/// Returns the unpacked records of a compressed body. Checks the sizes before it allocates memory.
 Result<std::string> unpacked_body(const Header& header, const std::string& file) {
     const std::uint64_t needed = *header.points * header.stride();
     if (header.body.size() < 8)

@@ -126,7 +126,8 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
         if (!property) return property.error();
         header.elements.back().properties.push_back(std::move(property).value());
         if (header.elements.back().properties.size() <= kMaxProperties) return {};
-        return input_error(fmt::format("an element has more than {} properties", kMaxProperties));
+        return input_error(fmt::format("an element has more than {} properties, which is the limit",
+                                       kMaxProperties));
     }
     return input_error(fmt::format("unexpected header line beginning with {}", quoted(words[0])));
 }
@@ -145,7 +146,8 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         const Status status = parse_header_line(split(*line), header);
         if (!status) return at_line(file, lines.number(), status.error().message);
     }
-    return at_line(file, lines.number(), "truncated PLY header: 'end_header' is missing");
+    return at_line(
+        file, lines.number(), "truncated PLY header: 'end_header' is missing; copy the file again");
 }
 
 /// Reads values from the body in any of the three encodings.
@@ -313,7 +315,7 @@ bool skip_element(ValueReader& values, const Element& element) {
 Error too_short(const std::string& file, const Element& element, std::size_t bytes) {
     return input_error(
         fmt::format("{}: truncated or damaged PLY: the header announces {} '{}', but {} bytes of "
-                    "data are too few",
+                    "data are too few; copy the file again",
                     file,
                     element.count,
                     element.name,

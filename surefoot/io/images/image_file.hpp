@@ -32,7 +32,7 @@ using DepthCodes = Image<std::uint16_t>;
 struct ImageHeader {
     int width = 0;
     int height = 0;
-    int bits = 8;      ///< bits per channel after decoding: 8 or 16
+    int bits = 8;      ///< bits per channel: 8 or 16; JPEG: as stored
     int channels = 1;  ///< number of stored channels, alpha included; a palette counts as 3
 };
 

@@ -180,7 +180,7 @@ Result<VideoMode> LiveCamera::chosen_mode(V4l2Device& device) const {
         return chosen;
     }
     return usage_error(
-        fmt::format("{}: has no YUYV or MJPEG mode of {} x {} px{}{}; it has {}",
+        fmt::format("{}: the camera has no YUYV or MJPEG mode of {} x {} px{}{}; it has {}",
                     info_.path,
                     width,
                     rig_.left.height,

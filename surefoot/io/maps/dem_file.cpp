@@ -224,12 +224,12 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
     const std::int64_t cells = std::int64_t{geometry->nx} * geometry->ny;
     // Each value needs at least a digit and a blank. A damaged header must not allocate memory.
     if (cells > static_cast<std::int64_t>(body.size() + 1) / 2) {
-        return input_error(
-            fmt::format("{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes",
-                        file,
-                        geometry->nx,
-                        geometry->ny,
-                        body.size()));
+        return input_error(fmt::format(
+            "{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes; copy the file again",
+            file,
+            geometry->nx,
+            geometry->ny,
+            body.size()));
     }
     Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kNanF), {}};
     WordReader words(body);
@@ -255,11 +255,13 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
         }
     }
     if (const std::string_view extra = words.next(); !extra.empty()) {
-        return input_error(fmt::format("{}: found {} after the {} x {} cells",
-                                       file,
-                                       quoted(extra),
-                                       geometry->nx,
-                                       geometry->ny));
+        return input_error(
+            fmt::format("{}: found {} after the {} x {} cells; correct ncols and nrows, or remove "
+                        "the extra values",
+                        file,
+                        quoted(extra),
+                        geometry->nx,
+                        geometry->ny));
     }
     return dem;
 }

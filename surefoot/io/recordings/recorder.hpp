@@ -56,7 +56,7 @@ class Recorder {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Summary of a recording for `info`, computed without decoding images.
+/// Summary of a recording for `surefoot info`. A video is decoded to its end for this.
 struct RecordingInfo {
     std::string kind;
     camera::StereoRig rig;

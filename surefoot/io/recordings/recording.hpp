@@ -14,8 +14,8 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/recordings/pairing.hpp"
 
-/// Indexes recordings on disk before any image is opened. Each layout has an indexer. All indexers
-/// return the same kind of list, from which RecordingSource makes frames.
+/// Indexes recordings on disk and opens only a few images for this. Each layout has an indexer. All
+/// indexers return the same kind of list, from which RecordingSource makes frames.
 namespace surefoot::io {
 
 struct OpenOptions {

@@ -11,7 +11,7 @@
 
 /// Converts configuration objects to YAML and back. Works with every type that has `void
 /// describe(ConfigVisitor&)`. Strict: an unknown key, a wrong type or a value out of range is a
-/// usage error with file and line, and the object stays unchanged. Keys may have the names of the
+/// usage error that names the key, and the object stays unchanged. Keys may have the names of the
 /// previous version (renamed_keys.hpp); `notes`, if given, receives a sentence with the new name.
 namespace surefoot::io {
 
