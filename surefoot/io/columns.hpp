@@ -23,7 +23,7 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
 /// decimal commas ("0,5 1,5 2,5"). No value if the separator is clear.
 [[nodiscard]] std::optional<std::string> separator_problem(std::string_view line);
 
-/// Whether the line begins with '#' or "//".
+/// Returns true if the line begins with '#' or "//".
 [[nodiscard]] bool is_comment(std::string_view line) noexcept;
 
 /// One column of a header line.
@@ -36,7 +36,7 @@ struct Column {
 /// Returns the columns that a header line names; the line may be a comment.
 [[nodiscard]] std::vector<Column> columns_of(std::string_view line, char separator);
 
-/// 0, 1 or 2 for a column named x, y or z (also "x_m"; ParaView's "points:0" and "points_0").
+/// Returns 0, 1 or 2 for x, y or z (also "x_m", and ParaView's "points:0" and "points_0").
 [[nodiscard]] std::optional<int> axis_named(std::string_view key) noexcept;
 
 /// Returns the column numbers of x, y and z; no value unless each occurs exactly once.

@@ -110,7 +110,9 @@ Result<std::vector<std::string>> list_files(const std::string& folder,
             names.push_back(name);
         }
     }
-    if (error) return input_error(fmt::format("{}: cannot list: {}", folder, error.message()));
+    if (error)
+        return input_error(
+            fmt::format("{}: cannot list the files of this folder: {}", folder, error.message()));
     std::sort(names.begin(), names.end(), natural_less);
     return names;
 }
@@ -160,7 +162,8 @@ Result<AppendFile> AppendFile::open(const std::string& path, int flags) {
                0666);
     if (descriptor < 0) return cannot_write(path, errno);
     AppendFile file(path, descriptor);
-    file.size_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));  // 0: a device
+    file.size_ =
+        std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));  // a device has no size
     return file;
 }
 

@@ -11,10 +11,10 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/files/input_file.hpp"
 
-/// Reads and writes whole files; every error names the reason of the operating system.
+/// Reads and writes whole files. Every error names the file and the reason.
 namespace surefoot::io {
 
-/// The namespace `files` reads regular files only, with a size limit per format.
+/// Largest sizes of files that are read, one limit per kind of file.
 namespace limits = files::limits;
 using files::read_file;
 

@@ -9,7 +9,7 @@
 
 #include "surefoot/core/result.hpp"
 
-/// Reads raw little-endian float32 values (".f32"), the format of the conformance vectors.
+/// Reads and writes little-endian float32 values (".f32"), the format of the conformance vectors.
 namespace surefoot::io {
 
 /// Fails if the size is not a whole number of floats, or is not `count`, if `count` is given.

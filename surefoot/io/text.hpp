@@ -19,7 +19,7 @@ namespace surefoot::io {
 /// Parses a number of a data file. Common words for a missing value ("null", "na", "n/a", "none",
 /// "-nan(ind)", "1.#QNAN") become NaN.
 [[nodiscard]] std::optional<double> parse_value(std::string_view text) noexcept;
-/// Whether the text has a decimal comma: digits with a comma among them, as in "1,5" and ",25E-01".
+/// Returns true for a decimal comma: digits with a comma among them, as in "1,5" and ",25E-01".
 [[nodiscard]] bool has_decimal_comma(std::string_view text) noexcept;
 /// Explains why a word of a data file is not a number; names decimal commas.
 [[nodiscard]] std::string why_no_number(std::string_view word);
@@ -48,7 +48,7 @@ namespace surefoot::io {
 [[nodiscard]] std::string_view unquoted(std::string_view text) noexcept;
 /// Replaces white space by '_', because headers of data files need names of one word.
 [[nodiscard]] std::string one_word(std::string_view name);
-/// Formats a value for an error message: one line, printable, at most 40 characters.
+/// Formats a value for an error message: one line, printable, only the first 40 characters.
 [[nodiscard]] std::string quoted(std::string_view value);
 
 /// Sorts "frame2" before "frame10": runs of digits compare as numbers.

@@ -9,7 +9,7 @@
 
 namespace surefoot::io {
 
-/// Error for a file that cannot be written, with the reason of the operating system (errno).
+/// Returns the error for a file that cannot be written; `error` is the errno with the reason.
 [[nodiscard]] Error cannot_write(const std::string& path, int error);
 
 /// Writes all bytes to an open file at `offset`, in as many calls as needed; `path` is for errors.

@@ -19,7 +19,7 @@ constexpr const char* kReadFormats =
     "ORB-SLAM2/3 stereo settings, ZED SN*.conf, KITTI calib.txt and calib_cam_to_cam.txt, "
     "Middlebury calib.txt, and EuRoC folders";
 
-/// The program searches this many lines at the start of a file for a format; files can be long.
+/// kind_of_text reads only this many lines at the start of a text, because files can be long.
 constexpr int kHeadLines = 200;
 
 bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {
@@ -47,8 +47,8 @@ bool any_key_starts_with(const YamlNode& root, std::initializer_list<const char*
     });
 }
 
-/// Returns true for a line like "P0: 7.2e+02 0 ...", with numbers after the colon. OpenCV writes
-/// "P1: !!opencv-matrix".
+/// Returns true for a line like "P0: 7.2e+02 0 ...", where a number follows the colon. Returns
+/// false for "P1: !!opencv-matrix" of an OpenCV file.
 bool is_kitti_line(std::string_view line) {
     if (line.size() < 3 || line[0] != 'P' || line[1] < '0' || line[1] > '3' || line[2] != ':')
         return false;
@@ -113,7 +113,7 @@ CalibrationKind kind_of_text(std::string_view text) {
             return CalibrationKind::middlebury;
         if (content.starts_with("delta_f:")) return CalibrationKind::kitti_sensors;
     }
-    // calib_imu_to_velo.txt holds only the time and a motion, as bare numbers.
+    // calib_imu_to_velo.txt has the keys calib_time, R and T, but no key that only KITTI uses.
     if (text.starts_with("calib_time:") && text.find("\nR: ") != text.npos)
         return CalibrationKind::kitti_sensors;
     return CalibrationKind::unknown;
@@ -184,7 +184,7 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
         case CalibrationKind::opencv_camera:
             return looks_like(
                 "a rig needs the matrices of both cameras, and R and T from stereoCalibrate. "
-                "Calibrate both at once ('surefoot calibrate stereo')");
+                "Calibrate both cameras at once ('surefoot calibrate stereo')");
         case CalibrationKind::opencv_xml:
             return looks_like(
                 "only YAML and JSON files of OpenCV are read. Write the matrices again, to a file "

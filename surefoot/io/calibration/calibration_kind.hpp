@@ -7,9 +7,9 @@
 
 #include "surefoot/io/settings/yaml_tree.hpp"
 
-/// Detects the format of a calibration file. Only this header distinguishes formats. Every command
-/// that reads a rig or a machine file uses this header, so no reader checks a file against the keys
-/// of another format.
+/// Detects the format of a calibration file by its content. The readers of rigs and of
+/// machine files use this header, so that no reader checks a file against the keys of another
+/// format.
 namespace surefoot::io {
 
 enum class CalibrationKind : std::uint8_t {
@@ -37,7 +37,7 @@ enum class CalibrationKind : std::uint8_t {
     unknown
 };
 
-/// Detects formats other than YAML by their text; returns `unknown` for all other formats.
+/// Detects formats other than YAML by their text; returns `unknown` for YAML and other texts.
 [[nodiscard]] CalibrationKind kind_of_text(std::string_view text);
 /// Detects the format by the keys of a YAML (or JSON) document.
 [[nodiscard]] CalibrationKind kind_of_document(const YamlNode& root);

@@ -19,11 +19,11 @@ struct NamedNode {
 struct OpenCvNames {
     NamedNode left_matrix, right_matrix;          ///< for example K1, M1, cameraMatrixL or mtxL
     NamedNode left_distortion, right_distortion;  ///< for example D1, distL or left_distortion
-    NamedNode R, T;  ///< x_right = R x_left + T; R may be a rotation vector
+    NamedNode R, T;  ///< x_right = R x_left + T [m]; R may be a rotation vector
     NamedNode width, height, size;
 };
 
-/// Finds the matrices. Ignores case, '_', '-' and '.' in keys. Each camera may have a group.
+/// Finds the matrices. Ignores case and punctuation of keys. A group may hold the keys of a camera.
 [[nodiscard]] OpenCvNames find_opencv_names(const YamlNode& root);
 
 }  // namespace surefoot::io

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EuRoC ASL format after Burri et al. 2016, "The EuRoC micro aerial vehicle datasets". T_BS maps
-// sensor coordinates into body coordinates. The reader ignores other keys (comment, noise
-// densities).
+// sensor coordinates into body coordinates. The reader ignores keys that a rig does not need
+// (comment, noise densities).
 #include <fmt/format.h>
 
 #include "surefoot/io/calibration/rig_file.hpp"
@@ -68,7 +68,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
         }
         return make_pinhole(k, coefficients);
     }
-    if (distortion == "rational_polynomial") {  // extension of EuRoC with ROS's name
+    if (distortion == "rational_polynomial") {  // extension of EuRoC; the name comes from ROS
         if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",

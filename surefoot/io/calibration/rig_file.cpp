@@ -102,10 +102,11 @@ Result<RigFile> read_folder(const std::string& path, std::optional<ImageSize> si
         const std::string file = join_path(path, name);
         if (is_file(file)) return read_rig_file(file, size);
     }
-    return input_error(fmt::format(
-        "{}: this folder has no calibration: no cam0/sensor.yaml and cam1/sensor.yaml (EuRoC), no "
-        "left.yaml and right.yaml (ROS), and no rig.yaml. Give the calibration file itself",
-        path));
+    return input_error(
+        fmt::format("{}: this folder has no calibration: no cam0/sensor.yaml and cam1/sensor.yaml "
+                    "(EuRoC), no left.yaml and right.yaml (ROS), no rig.yaml, calib.txt, "
+                    "calib_cam_to_cam.txt or camchain.yaml. Give the calibration file itself",
+                    path));
 }
 
 /// Parses a YAML or JSON document of a recognised kind, except formats with two files.
@@ -248,10 +249,11 @@ Result<std::vector<std::string>> write_rig(const std::string& path,
         format == RigFormat::surefoot ? Result<std::string>(format_rig_yaml(rig))
         : format == RigFormat::opencv ? format_opencv_rig(rig)
         : format == RigFormat::kalibr ? format_kalibr_rig(rig)
-        : format == RigFormat::zed
-            ? format_zed_rig(rig)
-            : Result<std::string>(output_error(fmt::format(
-                  "{} files can be read but not written; choose another format", name_of(format))));
+        : format == RigFormat::zed    ? format_zed_rig(rig)
+                                      : Result<std::string>(output_error(
+                                         fmt::format("{} files can be read but not written; choose "
+                                                        "surefoot, opencv, kalibr, ros or zed",
+                                                     name_of(format))));
     if (!text) return output_error(fmt::format("{}: {}", path, text.error().message));
     if (Status status = write_file(path, *text); !status) return status.error();
     return Files{path};

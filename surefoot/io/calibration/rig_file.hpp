@@ -11,7 +11,7 @@
 
 /// Reads rigs from rig.yaml, EuRoC sensor.yaml, KITTI calib.txt, OpenCV calibration files and the
 /// formats of rig_formats.hpp. Every returned rig has passed StereoRig::problem(). Every error
-/// names file, line and key.
+/// names the file; an error in a key also names line and key.
 namespace surefoot::io {
 
 struct ImageSize {
@@ -32,7 +32,7 @@ struct ImageSize {
 /// Keys of both forms: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
 [[nodiscard]] Result<camera::StereoRig> parse_rig_yaml(std::string_view text,
                                                        const std::string& file);
-/// Formats a rig in the full form. Reading it gives the same rig (poses to 1e-15).
+/// Formats a rig in the full form. parse_rig_yaml reads the same rig back (poses to 1e-15).
 [[nodiscard]] std::string format_rig_yaml(const camera::StereoRig& rig);
 [[nodiscard]] Status write_rig_yaml(const std::string& path, const camera::StereoRig& rig);
 
@@ -41,7 +41,7 @@ struct EurocCamera {
     camera::Camera camera;
     Pose T_body_camera;
     double rate_hz = 0.0;
-    double readout_s = 0.0;  ///< rolling shutter; extension of EuRoC, 0 if the file has none
+    double readout_s = 0.0;  ///< readout time of a rolling shutter; extension of EuRoC, default 0
 };
 /// Reads sensor.yaml of a camera: T_BS, resolution, pinhole intrinsics and the distortion
 /// (radial-tangential, equidistant, rational_polynomial as an extension of EuRoC, or none).
@@ -52,8 +52,8 @@ struct EurocCamera {
 [[nodiscard]] Result<camera::ImuMount> parse_euroc_imu(std::string_view text,
                                                        const std::string& file);
 [[nodiscard]] std::string format_euroc_imu(const camera::ImuMount& imu);
-/// Reads the rig of a "mav0" folder with cam0, cam1 and an optional imu0. Without its own
-/// sensor.yaml the IMU is in the body frame.
+/// Reads the rig of a "mav0" folder with cam0, cam1 and an optional imu0. An IMU with data.csv but
+/// without sensor.yaml has the body frame.
 [[nodiscard]] Result<camera::StereoRig> read_euroc_rig(const std::string& mav_folder);
 
 /// Projection matrices of KITTI's calib.txt, 3x4 row by row.
@@ -72,21 +72,21 @@ struct KittiCalibration {
 
 /// Reads OpenCV FileStorage YAML or JSON: camera matrices and distortion under any usual name (see
 /// surefoot/io/calibration/opencv_names.hpp). R (or a rotation vector) and T [m] mean x_right = R
-/// x_left + T. The image size is optional. Four coefficients are a fisheye lens if the file says
-/// "fisheye: 1" or "model: fisheye".
+/// x_left + T. `size` is used if the file has no image size. "fisheye: 1" or "model: fisheye" in
+/// the file marks fisheye lenses with four coefficients.
 [[nodiscard]] Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                                          const std::string& file,
                                                          std::optional<ImageSize> size = {});
 
 /// Reads any format above or in rig_formats.hpp: an EuRoC folder (mav0 or its parent), a folder
-/// with ROS's left.yaml and right.yaml or with a rig.yaml, or a file recognised by its content.
-/// `size` helps formats without an image size and selects the section of a ZED file; the rig of
-/// another format may still have another size. R and T that are missing in an OpenCV intrinsics.yml
-/// come from extrinsics.yml beside it. read_rig_file also returns the notes.
+/// with ROS's left.yaml and right.yaml or a calibration under its usual name, or a file. `size`
+/// helps formats without an image size and selects the section of a ZED file; other formats ignore
+/// `size`. If an OpenCV file has no R and no T, the keys of extrinsics.yml in the same folder are
+/// added. read_rig_file also returns the notes.
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});
 
-/// Marks a rig as rectified if it has no distortion, equal intrinsics and a baseline along x.
+/// Marks a camera pair as rectified if StereoRig::problem() accepts it as a rectified pair.
 void mark_if_rectified(camera::StereoRig& rig);
 
 }  // namespace surefoot::io

@@ -116,7 +116,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     EXPECT_EQ(bad("baseline_m", "basline_m"),
               "rig.yaml:4: unknown key 'basline_m'; did you mean 'baseline_m'?");
     EXPECT_EQ(bad("350.0", ".nan"), "rig.yaml:5: focal_px: nan is outside 0 .. 1000000");
-    EXPECT_EQ(bad("350.0", "0"), "rig.yaml:5: focal_px: 0 must be above 0");
+    EXPECT_EQ(bad("350.0", "0"), "rig.yaml:5: focal_px: focal length 0 must be above 0 px");
     EXPECT_TRUE(contains(bad("350.0", "-3"), "rig.yaml:5: focal_px: -3 is outside"));
     EXPECT_TRUE(contains(bad("350.0", "inf"), "focal_px: inf is outside"));
     EXPECT_TRUE(contains(bad("0.12", "'0,12'"), "rig.yaml:4: baseline_m: '0,12' is not a number"));

@@ -11,8 +11,8 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/io/calibration/rig_file.hpp"
 
-/// Reads and writes calibration files of other programs. Returned rigs have no problem(). Writers
-/// refuse a rig that the format cannot store, and name the unsupported part.
+/// Reads and writes calibration files of other programs. Reads return valid rigs. Writers refuse
+/// cameras that the format cannot store; lost_in() names the other parts that they leave out.
 namespace surefoot::io {
 
 enum class RigFormat {
@@ -29,7 +29,7 @@ enum class RigFormat {
 };
 [[nodiscard]] const char* name_of(RigFormat format) noexcept;
 
-/// A rig, with notes about the contents of its file that a rig cannot store.
+/// A rig and its format, with notes about assumptions, unused contents and unusual values.
 struct RigFile {
     camera::StereoRig rig;
     RigFormat format = RigFormat::surefoot;
@@ -37,8 +37,8 @@ struct RigFile {
 };
 
 /// Reads any calibration file of read_rig or of the formats below. The content decides the format
-/// (surefoot/io/calibration/calibration_kind.hpp). For an unknown file the error names the most
-/// similar format.
+/// (surefoot/io/calibration/calibration_kind.hpp), except that every .conf file is a ZED file. The
+/// error for an unknown file lists the known formats.
 [[nodiscard]] Result<RigFile> read_rig_file(const std::string& path,
                                             std::optional<ImageSize> size = {});
 /// Parses the text of a file. ROS calibrations consist of two files and are an error here.
@@ -59,9 +59,9 @@ struct RigFile {
 
 /// Reads Kalibr's camchain.yaml: cam0 is the left camera, cam1 the right camera; camera_model
 /// pinhole with radtan (k1 k2 p1 p2), equidistant or none. T_cn_cnm1 maps cam0 into cam1, T_cam_imu
-/// the IMU into the camera (OpenVINS: T_imu_cam, camera into IMU). Without T_cn_cnm1 the poses of
-/// the IMU in both cameras replace it. With an IMU, base_link lies at the left camera, with body
-/// axes. The file has no IMU rate; 200 Hz are assumed.
+/// maps the IMU into the camera (OpenVINS stores the inverse, T_imu_cam). The poses of the IMU in
+/// both cameras replace a missing T_cn_cnm1. With an IMU, base_link lies at the left camera, with
+/// body axes. The file has no IMU rate; 200 Hz are assumed.
 [[nodiscard]] Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file);
 [[nodiscard]] Result<std::string> format_kalibr_rig(const camera::StereoRig& rig);
 
@@ -80,22 +80,22 @@ struct RosTexts {
     std::string right;
 };
 [[nodiscard]] Result<RosTexts> format_ros_rig(const camera::StereoRig& rig);
-/// Returns "stereo/right.yaml" for "stereo/left.yaml" (replaces the last "left" of the name).
+/// Returns "right.yaml" for "left.yaml" (replaces the last "left"); no value without "left".
 [[nodiscard]] std::optional<std::string> ros_partner(const std::string& left_path);
 
 /// Reads Stereolabs' SN<serial>.conf: sections LEFT_CAM_x, RIGHT_CAM_x for each resolution x and
 /// STEREO. Their calibration tool writes Baseline = -T.x, TY = T.y, TZ = T.z [mm] and the rotation
-/// vector (RX, CV or RY, RZ) of x_right = R x_left + T: Baseline is positive in the file, T.x is
-/// negative. A complete LEFT_DISTO replaces the lens of every section: eight coefficients
-/// (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4 other than 0 are refused.
-/// `size` selects the section; a file of one resolution needs no `size`.
+/// vector (RX, CV or RY, RZ). With x_right = R x_left + T, T.x is negative and Baseline is
+/// positive. A complete LEFT_DISTO or RIGHT_DISTO replaces the lens of every section of this
+/// camera: eight coefficients (rational), or k1 .. k4 alone (fisheye). Thin-prism terms s1 .. s4
+/// other than 0 are refused. `size` selects the section; a file of one resolution needs no `size`.
 [[nodiscard]] Result<RigFile> parse_zed_rig(std::string_view text,
                                             const std::string& file,
                                             std::optional<ImageSize> size = {});
 [[nodiscard]] Result<std::string> format_zed_rig(const camera::StereoRig& rig);
 
 /// Reads stereo settings of ORB-SLAM2 (LEFT.* and RIGHT.*, or Camera.bf of rectified images) and of
-/// ORB-SLAM3 (Camera1.*, Camera2.*, Stereo.T_c1_c2). A depth factor gives a rig of one camera.
+/// ORB-SLAM3 (Camera1.*, Camera2.*, Stereo.T_c1_c2). With a depth factor, the rig has one camera.
 [[nodiscard]] Result<RigFile> parse_orbslam_rig(std::string_view text, const std::string& file);
 
 /// Reads calib.txt of Middlebury's stereo sets. The images are rectified, but their principal
@@ -105,7 +105,7 @@ struct RosTexts {
                                                    std::optional<ImageSize> size = {});
 
 /// Reads the grey cameras of KITTI raw calib_cam_to_cam.txt, or the colour cameras if the file has
-/// only these. The rig is rectified, or raw if `size` is that of the raw images.
+/// only these. The rig is for the rectified images, or for the raw images if `size` is their size.
 [[nodiscard]] Result<RigFile> parse_kitti_raw_rig(std::string_view text,
                                                   const std::string& file,
                                                   std::optional<ImageSize> size = {});

@@ -425,7 +425,7 @@ TEST(RigZed, TheRightCameraLiesToTheRight) {
     ASSERT_TRUE(rectifier.ok());
     EXPECT_GT(rectifier->rig().point(600.0, 300.0, 35.0).z(), 2.0);
     ASSERT_EQ(file->notes.size(), 1U);
-    EXPECT_EQ(file->notes[0], "left out: [misc]");
+    EXPECT_EQ(file->notes[0], "unknown sections are left out: [misc]");
 }
 
 TEST(RigZed, TheSizePicksTheSection) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads calib_cam_to_cam.txt of KITTI's raw recordings, after Geiger et al. 2013, "Vision meets
-// robotics". For each camera i the file has the raw image (S K D), the pose (x_i = R_i x_0 + T_i
-// [m]) and the rectified image (S_rect P_rect). The common "synced+rectified" recordings contain
-// rectified images.
+// robotics". For each camera i the file describes the raw image (keys S, K, D), the pose (x_i = R_i
+// x_0 + T_i [m]) and the rectified image (S_rect, P_rect). The common "synced+rectified" recordings
+// contain rectified images.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -39,8 +39,8 @@ bool require(YamlReader& yaml, const NamedNode& found, const char* what, const N
         yaml.root(),
         what,
         other.node != nullptr
-            ? fmt::format("not found; the key of the other camera is '{}'. The two keys may "
-                          "differ only in 1 and 2, left and right, or l and r",
+            ? fmt::format("not found; the key of the other camera is '{}'. Use the same name for "
+                          "both keys, except for 1 and 2, left and right, or l and r",
                           other.key)
             : "not found under any of its usual names; use OpenCV's names M1, D1, M2, D2, R and T");
     return false;

@@ -62,10 +62,10 @@ TEST(RigVariants, OpenCvMatricesAreFoundUnderTheNamesOfTutorials) {
 }
 
 TEST(RigVariants, OpenCvSaysWhichCameraIsMissing) {
-    EXPECT_EQ(
-        message(opencv(replaced(opencv_file(kUsualNames), "M2:", "N2:"))),
-        "stereo.yml:3: camera matrix of the right camera: not found; the key of the other "
-        "camera is 'M1'. The two keys may differ only in 1 and 2, left and right, or l and r");
+    EXPECT_EQ(message(opencv(replaced(opencv_file(kUsualNames), "M2:", "N2:"))),
+              "stereo.yml:3: camera matrix of the right camera: not found; the key of the other "
+              "camera is 'M1'. Use the same name for both keys, except for 1 and 2, left and "
+              "right, or l and r");
     EXPECT_TRUE(
         contains(message(opencv(replaced(opencv_file(kUsualNames), "D1:", "E1:"))),
                  "distortion of the left camera: not found; the key of the other camera is 'D2'"));

@@ -99,7 +99,7 @@ void read_two_cameras(YamlReader& yaml, RigFile& out, ImageSize size) {
     const std::string type = read_type(yaml);
     const std::string left = left_prefix(root);
     out.rig.left = {read_lens(yaml, left, type), size.width, size.height};
-    // In a rectified pair both cameras share one lens.
+    // Rectified settings without Camera2 have one lens for both cameras.
     const bool one_lens = type == "Rectified" && root.find("Camera2.fx") == nullptr;
     out.rig.right =
         camera::Camera{read_lens(yaml, one_lens ? left : "Camera2", type), size.width, size.height};

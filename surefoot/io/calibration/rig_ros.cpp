@@ -39,7 +39,7 @@ const RosKeys& keys_of(const YamlNode& root) {
 struct RosCamera {
     camera::Camera camera;
     Pose T_rectified_raw;
-    double x_m = 0.0;          ///< x of the camera centre in the rectified frame
+    double x_m = 0.0;          ///< x of the camera centre in the rectified frame [m]
     bool has_rotation = true;  ///< false if R is all zero ("not rectified")
     std::vector<std::string> notes;
 };
@@ -139,11 +139,11 @@ void read_rectification(YamlReader& yaml, const RosKeys& keys, RosCamera& out) {
         return;
     }
     if (P[7] != 0.0) {
-        yaml.fail(
-            projection,
-            keys.P,
-            fmt::format("element (1, 3) is {}; cameras on top of each other are not supported",
-                        P[7]));
+        yaml.fail(projection,
+                  keys.P,
+                  fmt::format("element (1, 3) is {}, but must be 0; cameras on top of each other "
+                              "are not supported",
+                              P[7]));
     }
     out.x_m = -P[3] / P[0];
 }
@@ -168,8 +168,8 @@ void shift_and_shrink(camera::Camera& camera, int x_px, int y_px, double bin_x, 
         camera.model);
 }
 
-/// Applies binning_x, binning_y and roi, which select a part of the image that K belongs to.
-/// Applies `roi` first (in pixels of that image; all 0 = the whole image), then binning.
+/// Applies roi and binning to the image that K belongs to. First roi selects a part of this image
+/// [px] (all 0 = the whole image). Then binning_x and binning_y shrink this part.
 void apply_window(YamlReader& yaml, RosCamera& out) {
     const YamlNode& root = yaml.root();
     camera::Camera& camera = out.camera;
@@ -305,10 +305,10 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
     const double baseline_m = r->x_m - l->x_m;
     if (!(baseline_m > 0.0)) {
         return input_error(
-            fmt::format("{}: projection_matrix: element (0, 3) says that this camera lies {} m to "
-                        "the right of the left camera. In the file of the right camera this "
-                        "element must be -fx * baseline, below 0. If it is 0, the cameras were "
-                        "calibrated one by one; if it is above 0, the cameras are swapped",
+            fmt::format("{}: projection_matrix: element (0, 3) gives a baseline of {} m, but a "
+                        "baseline must be above 0 m. In the file of the right camera this element "
+                        "must be -fx * baseline. If the element is 0, the cameras were calibrated "
+                        "one by one; if it is above 0, the cameras are swapped",
                         right.file,
                         baseline_m));
     }

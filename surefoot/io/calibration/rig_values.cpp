@@ -14,7 +14,7 @@
 namespace surefoot::io {
 namespace {
 
-/// Limit of R^T R - I. A rotation that was printed with four digits stays below this limit.
+/// Limit of the elements of R^T R - I. A rotation printed with four digits stays below this limit.
 constexpr double kRotationTolerance = 1e-3;
 
 }  // namespace
@@ -43,8 +43,8 @@ Pose pose_from_rows(YamlReader& yaml,
     if (!(error < kRotationTolerance) || !(R.determinant() > 0.0) || !last_row) {
         yaml.fail(node,
                   key,
-                  fmt::format("not a rigid motion: R^T R differs from 1 by {:.3g} (limit {}), R is "
-                              "a reflection, or the last row is not 0 0 0 1",
+                  fmt::format("not a rigid motion: R^T R must equal 1 (error {:.3g}, limit {}), R "
+                              "must not be a reflection, and the last row must be 0 0 0 1",
                               error,
                               kRotationTolerance));
         return {};
@@ -75,13 +75,16 @@ std::vector<double> read_focal(YamlReader& yaml, const YamlNode& node, std::stri
     constexpr double kMaxFocal_px = 1e6;
     if (node.is_scalar()) {
         const double focal_px = yaml.number(node, key, 0.0, kMaxFocal_px);
-        if (!(focal_px > 0.0)) yaml.fail(node, key, fmt::format("{} must be above 0", focal_px));
+        if (!(focal_px > 0.0))
+            yaml.fail(node, key, fmt::format("focal length {} must be above 0 px", focal_px));
         return {focal_px, focal_px};
     }
     std::vector<double> focal_px = yaml.numbers(node, key, 2);
     for (const double f : focal_px) {
         if (!(f > 0.0 && f <= kMaxFocal_px)) {
-            yaml.fail(node, key, fmt::format("focal length {} must be above 0 px", f));
+            yaml.fail(node,
+                      key,
+                      fmt::format("focal length {} must be above 0 and at most 1000000 px", f));
         }
     }
     return focal_px;
@@ -156,7 +159,7 @@ RectifiedMatrices rectified_matrices(const camera::StereoRig& rig) {
         return out;
     };
     const auto projection = [&r](double baseline_m) {
-        const double shift = baseline_m == 0.0 ? 0.0 : -r.fx_px * baseline_m;  // no "-0"
+        const double shift = baseline_m == 0.0 ? 0.0 : -r.fx_px * baseline_m;  // prints 0, not -0
         return std::vector<double>{
             r.fx_px, 0.0, r.cx_px, shift, 0.0, r.fy_px, r.cy_px, 0.0, 0.0, 0.0, 1.0, 0.0};
     };
@@ -274,7 +277,7 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
 }
 
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
-    // A common IMU rate, used only to detect gaps.
+    // A common IMU rate. Odometry does not use this rate, but the time stamps of the samples.
     constexpr double kAssumedImuRate_hz = 200.0;
     out.rig.T_body_left = T_body_optical();
     const bool known = rate_hz > 0.0;

@@ -12,12 +12,12 @@
 /// Helpers that the rig readers share; private to them.
 namespace surefoot::io {
 
-/// Largest side of a camera image in a rig file.
+/// Largest side of a camera image in a rig file [px].
 inline constexpr int kMaxRigSide_px = 1 << 15;
 
-/// Reads [width, height].
+/// Reads [width, height] in px.
 [[nodiscard]] ImageSize read_size(YamlReader& yaml, const YamlNode& node, std::string_view key);
-/// Reads a rigid 4x4 matrix, 16 numbers row by row; tolerates a rotation rounded to 1e-3.
+/// Reads a rigid 4x4 matrix, 16 numbers row by row; R^T R may differ from 1 by less than 1e-3.
 [[nodiscard]] Pose read_pose(YamlReader& yaml, const YamlNode& node, std::string_view key);
 [[nodiscard]] Pose pose_from_rows(YamlReader& yaml,
                                   const YamlNode& node,
@@ -27,7 +27,7 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
 [[nodiscard]] std::string format_list(const std::vector<double>& values);
 /// Formats the 16 matrix numbers of a pose.
 [[nodiscard]] std::string format_pose_rows(const Pose& pose);
-/// Reads one focal length or a pair, each above 0.
+/// Reads one focal length or a pair [px], each above 0.
 [[nodiscard]] std::vector<double> read_focal(YamlReader& yaml,
                                              const YamlNode& node,
                                              std::string_view key);
@@ -71,7 +71,7 @@ void check_focal(YamlReader& yaml,
 struct RectifiedMatrices {
     std::vector<double> R_left, R_right;  ///< 3x3, x_rectified = R x_raw
     std::vector<double> P_left, P_right;  ///< 3x4; P_right(0, 3) = -fx * baseline [px m]
-    std::vector<double> Q;                ///< 4x4, maps (u, v, disparity, 1) to (X, Y, Z, W) [m]
+    std::vector<double> Q;  ///< 4x4, maps (u, v, disparity, 1) to W (x, y, z, 1), point in m
 };
 /// Computes Surefoot's rectification (camera::Rectifier). `rig` must be valid and a pair.
 [[nodiscard]] RectifiedMatrices rectified_matrices(const camera::StereoRig& rig);
@@ -87,8 +87,8 @@ void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out);
 /// Returns the rig, the error of the reader, or the problem of the rig with the file name.
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const YamlReader& yaml);
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& file);
-/// Final step for every file of another program. Checks the rig, marks rectified rigs, and adds a
-/// note if the baseline is unusual.
+/// Final step for calibration files. Checks the rig, marks rectified rigs, and adds notes if the
+/// focal length or the baseline is unusual.
 [[nodiscard]] Result<RigFile> checked_file(RigFile out, const std::string& file);
 
 }  // namespace surefoot::io

@@ -90,7 +90,8 @@ camera::Camera read_camera(YamlReader& yaml,
     return camera;
 }
 
-/// Reads the short form (baseline_m, focal_px, principal_px): two equal cameras without distortion.
+/// Reads the short form (baseline_m, focal_px, principal_px): two equal cameras without distortion,
+/// or one RGB-D camera.
 void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoRig& rig) {
     const YamlNode& root = yaml.root();
     for (const char* key : {"left", "right", "T_left_right"}) {
@@ -115,7 +116,7 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     rig.right = rig.left;
     const YamlNode* baseline = required_of_pair(yaml, "baseline_m");
     if (baseline == nullptr) return;
-    constexpr double kLargest = 1e12;  // for any unit; baseline_problem has the limit
+    constexpr double kLargest = 1e12;  // accepts any unit; baseline_problem checks the limit
     const double baseline_m = yaml.number(*baseline, "baseline_m", -kLargest, kLargest);
     if (const auto problem = camera::baseline_problem(baseline_m))
         yaml.fail(*baseline, "baseline_m", *problem);
@@ -232,7 +233,8 @@ std::string format_rig_yaml(const camera::StereoRig& rig) {
     std::string out;
     if (!rig.name.empty()) out += fmt::format("name: {}\n", quoted_scalar(rig.name));
     out += fmt::format(
-        "layout: {}\nresolution: [{}, {}]   # px, one camera\nrate_hz: {}\nreadout_s: {}   # rolling "
+        "layout: {}\nresolution: [{}, {}]   # px, one camera\nrate_hz: {}\nreadout_s: {}   # "
+        "rolling "
         "shutter, 0 = global\nrectified: {}\n",
         rig.right ? "separate" : "rgbd",
         rig.left.width,

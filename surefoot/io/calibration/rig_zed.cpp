@@ -39,7 +39,8 @@ std::string size_text(ImageSize size) {
     return fmt::format("{}x{}", size.width, size.height);
 }
 
-/// Reads numbers of a ZED file. Keeps the first missing or wrong number; later calls return 0.
+/// Reads numbers of a ZED file. Keeps the error of the first missing or wrong number; later calls
+/// return 0.
 class ZedReader {
   public:
     explicit ZedReader(const IniFile& ini) : ini_(ini) {}
@@ -174,7 +175,8 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
                !zed.error() && problem) {
         zed.fail(fmt::format("[STEREO] Baseline = {}, in millimetres: {}", baseline_mm, *problem));
     }
-    const double y_mm = value("TY");  // in order: reports the first missing key
+    const double y_mm =
+        value("TY");  // read in this order, so that the first missing key is reported
     const double z_mm = value("TZ");
     const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(
@@ -185,7 +187,7 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
     return T_right_left.inverse();
 }
 
-/// Adds one note for sections that were not used.
+/// Adds one note for sections with unknown names.
 void note_unknown(const IniFile& ini, RigFile& out) {
     std::vector<std::string> unknown;
     for (const auto& [name, values] : ini.sections) {
@@ -194,7 +196,7 @@ void note_unknown(const IniFile& ini, RigFile& out) {
         unknown.push_back("[" + name + "]");
     }
     if (unknown.empty()) return;
-    out.notes.push_back(fmt::format("left out: {}", fmt::join(unknown, ", ")));
+    out.notes.push_back(fmt::format("unknown sections are left out: {}", fmt::join(unknown, ", ")));
 }
 
 std::string format_disto(const char* side, const camera::CameraModel& model) {
@@ -264,13 +266,15 @@ Result<std::string> format_zed_rig(const camera::StereoRig& rig) {
     if (Status status = check_pair(rig, "ZED"); !status) return status.error();
     const Mode* mode = mode_of(rig.left);
     if (mode == nullptr) {
-        return output_error(
-            fmt::format("a ZED file cannot store a calibration for images of {}x{} px",
-                        rig.left.width,
-                        rig.left.height));
+        return output_error(fmt::format(
+            "a ZED file cannot store a calibration for images of {}x{} px; choose another format",
+            rig.left.width,
+            rig.left.height));
     }
     if (is_kannala_brandt(rig.left.model) || is_kannala_brandt(rig.right->model)) {
-        return output_error("a ZED file for stereo cameras holds pinhole lenses, not fisheyes");
+        return output_error(
+            "a ZED file for stereo cameras stores only pinhole lenses, but this rig has a fisheye "
+            "lens; choose another format");
     }
     const bool rational = is_rational(rig.left.model) || is_rational(rig.right->model);
     const Pose T_right_left = rig.T_left_right.inverse();

@@ -18,8 +18,8 @@ struct CloudRows {
     std::function<std::string(std::uint64_t)> head;  ///< returns the header for this number of rows
 };
 
-/// Detects the rows from the first bytes of a file of `size` bytes. No value if the file is damaged
-/// or its points are not such rows (text, compressed, lists).
+/// Detects the rows from the first bytes of a file of `size` bytes. Returns no value if the file is
+/// damaged or its points are not such rows (text, compressed PCD, lists in PLY).
 [[nodiscard]] std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size);
 [[nodiscard]] std::optional<CloudRows> las_rows(std::string_view head, std::uint64_t size);

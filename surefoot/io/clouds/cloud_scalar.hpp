@@ -43,7 +43,7 @@ struct CloudScalar {
     /// types hold no fraction, no NaN and no value beyond their range.
     [[nodiscard]] bool add(double value);
     /// Appends a number written as text; whole numbers are exact. Returns false if the text is not
-    /// a number or the type cannot hold the number. Missing values (parse_value) become NaN.
+    /// a number or the type cannot hold the number. Missing values (parse_value) count as NaN.
     [[nodiscard]] bool add(std::string_view word);
 
     /// Returns a scalar with the same name and type, without values.

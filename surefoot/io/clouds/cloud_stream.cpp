@@ -195,8 +195,8 @@ Result<std::optional<Eigen::Vector3f>> ShiftedReader::shifted(const Eigen::Vecto
     const Eigen::Vector3d off_m = p_m - *shift_m_;
     if (off_m.cwiseAbs().maxCoeff() > kFar_m) {
         return input_error(fmt::format(
-            "{}: the point ({:g}, {:g}, {:g}) m is more than 100 km from the other points, which "
-            "begin near ({:g}, {:g}, {:g}) m: remove stray points, or check the unit",
+            "{}: the point ({:g}, {:g}, {:g}) m is more than 100 km away from the origin of the "
+            "other points, ({:g}, {:g}, {:g}) m: remove stray points, or check the unit",
             path_,
             p_m.x(),
             p_m.y(),

@@ -14,8 +14,8 @@
 namespace surefoot::io {
 
 /// Reads the points of a cloud file block by block, for clouds larger than the memory. Binary PLY
-/// and PCD, LAS and text (one point per line) are read in pieces. Compressed PCD, lists, and text
-/// PLY, PCD and VTK are read whole and returned in pieces. Reads the formats of `read_cloud`.
+/// and PCD, LAS, and text with one point per line are read in pieces. All other files of read_cloud
+/// are read whole: VTK, text PLY and PCD, compressed PCD, PLY with lists.
 class CloudStream {
   public:
     [[nodiscard]] static Result<CloudStream> open(const std::string& path);
@@ -41,8 +41,8 @@ class CloudStream {
     }
     /// Returns the number of points, if the file states the number.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
-    /// Contents of the file that the blocks so far do not hold, one sentence each; the blocks
-    /// themselves have no notes.
+    /// Returns notes about contents of the file that the blocks read so far do not hold, one
+    /// sentence each. The blocks themselves have no notes.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
@@ -55,9 +55,9 @@ class CloudStream {
     class Whole;
 };
 
-/// Origin for float coordinates. A float has 24 bits and resolves 0.06 mm at 1 km, but only half a
-/// metre in a national grid. From 1 km on, an axis therefore starts at the multiple of 100 m
-/// nearest to the first point. This shift changes no digit of a coordinate that was a float.
+/// Origin for float coordinates. A float resolves 0.06 mm at 1 km, but only half a metre in a
+/// national grid. From 1 km on, an axis therefore starts at the multiple of 100 m nearest to the
+/// first point. Near this point the shift changes no digit of a coordinate that was a float.
 [[nodiscard]] Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m);
 
 /// Points as floats relative to a shift.
@@ -67,8 +67,8 @@ struct ShiftedCloud {
     std::int64_t skipped = 0;               ///< number of left-out points (not finite)
 };
 
-/// Reads points into floats block by block. The shift comes from the first finite point, unless the
-/// caller gives one. Fails on errors of the stream and on a point more than 100 km from the shift.
+/// Converts points to floats block by block. The shift comes from the first finite point, unless
+/// the caller gives a shift. Fails on a point more than 100 km from the shift along an axis.
 class ShiftedReader {
   public:
     ShiftedReader(std::string path, std::optional<Eigen::Vector3d> shift_m)
@@ -90,7 +90,7 @@ class ShiftedReader {
     std::int64_t skipped_ = 0;
 };
 
-/// Reads a whole file; needs 12 bytes of memory per point.
+/// Reads all points of a file; the result takes 12 bytes of memory per point.
 [[nodiscard]] Result<ShiftedCloud> read_shifted(
     const std::string& path, const std::optional<Eigen::Vector3d>& shift_m = std::nullopt);
 

@@ -16,7 +16,8 @@
 namespace surefoot::io {
 namespace {
 
-/// Returns a comment that fills the space of missing digits of a point count.
+/// Returns a comment line that is `times` characters shorter for each digit of the point count. The
+/// header thus keeps its length.
 std::string filler(const char* comment, std::int64_t points, int times) {
     constexpr int kDigits = 20;
     const int digits = static_cast<int>(std::to_string(points).size());

@@ -30,9 +30,9 @@ constexpr std::size_t kHeader14 = 375;
 struct RecordFormat {
     std::size_t bytes;     ///< size of all fields [bytes]
     std::size_t time;      ///< byte offset of the GPS time; 0 = no GPS time
-    std::size_t colour;    ///< byte offset of red
-    std::size_t infrared;  ///< byte offset of the near-infrared channel
-    std::size_t waves;     ///< byte offset of the wave packet
+    std::size_t colour;    ///< byte offset of red; 0 = no colours
+    std::size_t infrared;  ///< byte offset of the near-infrared channel; 0 = no such channel
+    std::size_t waves;     ///< byte offset of the wave packet; 0 = no wave packets
 };
 // Point formats 0 to 10, from tables 7 to 17 of the specification.
 constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
@@ -48,7 +48,7 @@ constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
                                                     {67, 22, 30, 36, 38}}};
 constexpr std::size_t kIntensity = 12;
 constexpr std::size_t kReturns = 14;
-constexpr std::size_t kFirstWideFormat = 6;  ///< from here on, records have another layout
+constexpr std::size_t kFirstWideFormat = 6;  ///< formats from 6 on have another record layout
 constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format number
 
 struct Header {
@@ -68,7 +68,8 @@ Error damaged(const std::string& file, const std::string& what) {
 /// Reads the header. `bytes` is the beginning of a file of `size` bytes.
 Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const std::string& file) {
     if (!bytes.starts_with("LASF")) return damaged(file, "not a LAS file ('LASF' is missing)");
-    if (bytes.size() < kSmallestHeader) return damaged(file, "truncated LAS header");
+    if (bytes.size() < kSmallestHeader)
+        return damaged(file, "truncated LAS header; copy the file again");
     const char* data = bytes.data();
     const auto header_bytes = load_le<std::uint16_t>(data + kHeaderSize);
     const auto format = load_le<std::uint8_t>(data + kFormat);
@@ -209,7 +210,7 @@ std::vector<std::string> notes_of(const Header& header,
     return notes;
 }
 
-/// Reads colours. They have 16 bits, but many writers use only the lower eight. Returns whether a
+/// Reads colours. They have 16 bits, but many writers use only the lower eight. Returns true if a
 /// colour uses more than eight bits.
 bool add_colours(const Header& header, std::string_view records, PointCloud& cloud) {
     const std::size_t at = kFormats[header.format].colour;

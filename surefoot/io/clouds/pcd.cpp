@@ -61,7 +61,7 @@ std::optional<std::uint64_t> parse_count(std::string_view word, std::uint64_t ma
     return static_cast<std::uint64_t>(*value);
 }
 
-/// Whether the key names the fields; before version 0.6 FIELDS was called COLUMNS.
+/// Returns true if the key names the fields: FIELDS, or COLUMNS in versions below 0.6.
 bool names_fields(std::string_view key) {
     return key == "FIELDS" || key == "COLUMNS";
 }
@@ -71,10 +71,11 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
     if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
         words.size() != header.fields.size() + 1) {
-        return input_error(fmt::format("{} has {} values for {} fields; each field needs one value",
-                                       words[0],
-                                       words.size() - 1,
-                                       header.fields.size()));
+        return input_error(fmt::format(
+            "{} has {} values for {} fields; give one value for each field, and at most 256 fields",
+            words[0],
+            words.size() - 1,
+            header.fields.size()));
     }
     for (std::size_t i = 0; i < header.fields.size(); ++i) {
         Field& field = header.fields[i];
@@ -89,7 +90,11 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
         } else if (const auto count = parse_count(word, 65536); words[0] == "COUNT" && count) {
             field.count = *count;
         } else {
-            return input_error(fmt::format("{} {} is not a valid value", words[0], quoted(word)));
+            return input_error(
+                fmt::format("{} {} is not a valid value; TYPE is I, U or F, SIZE is 1, 2, 4 or 8, "
+                            "COUNT is 0 to 65536",
+                            words[0],
+                            quoted(word)));
         }
     }
     return {};
@@ -104,7 +109,8 @@ Status parse_viewpoint(const std::vector<std::string_view>& words, Header& heade
         v[i] = *value;
     }
     const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
-    // Some writers leave the quaternion at zero; then the viewpoint is ignored.
+    // Some writers leave the quaternion at zero. A quaternion whose length is not 1 is ignored with
+    // its viewpoint.
     if (std::abs(rotation.norm() - 1.0) > 0.01) return {};
     header.T_cloud_sensor = Pose{rotation.normalized(), {v[0], v[1], v[2]}};
     if (!header.T_cloud_sensor->all_finite()) header.T_cloud_sensor.reset();
@@ -120,7 +126,8 @@ Status parse_data_line(const std::vector<std::string_view>& words, Header& heade
     } else if (kind == "binary_compressed") {
         header.data = Header::Data::compressed;
     } else {
-        return input_error(fmt::format("unknown DATA {}", quoted(kind)));
+        return input_error(fmt::format(
+            "unknown DATA {}; expected ascii, binary or binary_compressed", quoted(kind)));
     }
     return {};
 }
@@ -135,7 +142,9 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
     if (key == "DATA") return parse_data_line(words, header);
     if (key == "WIDTH" || key == "HEIGHT" || key == "POINTS") {
         const auto value = words.size() == 2 ? parse_count(words[1], kMaxPoints) : std::nullopt;
-        if (!value) return input_error(fmt::format("{} must be 0 .. {}", key, kMaxPoints));
+        if (!value)
+            return input_error(
+                fmt::format("{} must be a whole number from 0 to {}", key, kMaxPoints));
         if (key == "WIDTH") header.width = *value;
         if (key == "HEIGHT") header.height = *value;
         if (key == "POINTS") header.points = *value;
@@ -170,7 +179,8 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         header.points = cells;
         return header;
     }
-    return at_line(file, lines.number(), "truncated PCD header: 'DATA' is missing");
+    return at_line(
+        file, lines.number(), "truncated PCD header: 'DATA' is missing; copy the file again");
 }
 
 /// Calls `use` with a zero of the field's type.
@@ -203,7 +213,7 @@ std::optional<int> axis_of(const Field& field) {
     return name[0] - 'x';
 }
 
-/// Where the cloud stores the values of a field.
+/// Names the part of the cloud that stores the values of a field.
 struct Role {
     enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
     std::size_t index = 0;  ///< index of the axis or of the scalar
@@ -314,7 +324,10 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
         const auto line = lines.next();
         if (!line) {
             return input_error(
-                fmt::format("{}: truncated PCD: {} of {} points", file, point, *header.points));
+                fmt::format("{}: truncated PCD: {} of {} points; copy the file again",
+                            file,
+                            point,
+                            *header.points));
         }
         const int number = header.last_line + lines.number();
         const std::vector<std::string_view> words = split(*line);
@@ -363,10 +376,13 @@ std::vector<std::string> notes_of(const Header& header) {
     return notes;
 }
 
-/// Returns the records of a binary body. Checks the sizes before it allocates memory.
+/// Returns the unpacked records of a compressed body. Checks the sizes before it allocates memory.
 Result<std::string> unpacked_body(const Header& header, const std::string& file) {
     const std::uint64_t needed = *header.points * header.stride();
-    if (header.body.size() < 8) return input_error(file + ": truncated PCD: no compressed sizes");
+    if (header.body.size() < 8)
+        return input_error(
+            file +
+            ": truncated PCD: the sizes of the compressed data are missing; copy the file again");
     const auto packed = load_le<std::uint32_t>(header.body.data());
     const auto unpacked = load_le<std::uint32_t>(header.body.data() + 4);
     if (unpacked != needed) {
@@ -379,11 +395,16 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
                         unpacked));
     }
     if (packed > header.body.size() - 8) {  // bytes after `packed` are padding
-        return input_error(fmt::format(
-            "{}: truncated PCD: {} of {} compressed bytes", file, header.body.size() - 8, packed));
+        return input_error(
+            fmt::format("{}: truncated PCD: {} of {} compressed bytes; copy the file again",
+                        file,
+                        header.body.size() - 8,
+                        packed));
     }
     auto data = unpack_lzf(header.body.substr(8, packed), unpacked);
-    if (!data) return input_error(fmt::format("{}: damaged compressed PCD data", file));
+    if (!data)
+        return input_error(
+            fmt::format("{}: damaged compressed PCD data; copy the file again", file));
     return *std::move(data);
 }
 
@@ -397,7 +418,8 @@ Status check_fields(const Header& header, const std::string& file) {
         }
     }
     if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1) return {};
-    return input_error(fmt::format("{}: PCD needs exactly one field each of x, y and z", file));
+    return input_error(
+        fmt::format("{}: a PCD file must have each of the fields x, y and z exactly once", file));
 }
 
 }  // namespace
@@ -417,14 +439,15 @@ Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file) {
         unpacked = std::move(body).value();
         data = unpacked;
     } else if (needed > data.size() + 1) {
-        return input_error(fmt::format("{}: truncated PCD: {} points need {} bytes, {} are there",
-                                       file,
-                                       *header->points,
-                                       needed,
-                                       data.size()));
-    } else if (!ascii && needed > data.size()) {
         return input_error(
-            fmt::format("{}: truncated PCD: {} of {} bytes", file, data.size(), needed));
+            fmt::format("{}: truncated PCD: {} points need {} bytes, but only {} follow the header",
+                        file,
+                        *header->points,
+                        needed,
+                        data.size()));
+    } else if (!ascii && needed > data.size()) {
+        return input_error(fmt::format(
+            "{}: truncated PCD: {} of {} bytes; copy the file again", file, data.size(), needed));
     }
     Collector collector(*header);
     if (ascii) {
@@ -457,7 +480,7 @@ std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
         while (const auto line = lines.next()) {
             const auto words = split(*line);
             const std::string_view key = words.empty() ? std::string_view() : words[0];
-            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, use POINTS
+            if (key == "WIDTH" || key == "POINTS") {  // version 0.5 has POINTS but no WIDTH
                 with_count += fmt::format("{} {}", key, count);
             } else {
                 with_count += key == "HEIGHT" ? "HEIGHT 1" : std::string(*line);

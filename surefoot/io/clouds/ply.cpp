@@ -85,7 +85,8 @@ Error at_line(const std::string& file, int line, const std::string& what) {
 /// Parses one "property ..." line.
 Result<Property> parse_property(const std::vector<std::string_view>& words) {
     const bool list = words.size() == 5 && words[1] == "list";
-    if (!list && words.size() != 3) return input_error("expected 'property type name'");
+    if (!list && words.size() != 3)
+        return input_error("expected 'property TYPE NAME' or 'property list COUNT_TYPE TYPE NAME'");
     const auto type = type_named(words[list ? 3 : 1]);
     const auto count_type = list ? type_named(words[2]) : std::nullopt;
     if (!type || (list && (!count_type || *count_type >= Type::f32))) {
@@ -105,7 +106,9 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
         } else if (words[1] == "binary_big_endian") {
             header.encoding = Header::Encoding::big;
         } else {
-            return input_error(fmt::format("unknown format {}", quoted(words[1])));
+            return input_error(fmt::format(
+                "unknown format {}; expected ascii, binary_little_endian or binary_big_endian",
+                quoted(words[1])));
         }
         return {};
     }
@@ -123,7 +126,8 @@ Status parse_header_line(const std::vector<std::string_view>& words, Header& hea
         if (!property) return property.error();
         header.elements.back().properties.push_back(std::move(property).value());
         if (header.elements.back().properties.size() <= kMaxProperties) return {};
-        return input_error(fmt::format("an element has more than {} properties", kMaxProperties));
+        return input_error(fmt::format("an element has more than {} properties, which is the limit",
+                                       kMaxProperties));
     }
     return input_error(fmt::format("unexpected header line beginning with {}", quoted(words[0])));
 }
@@ -142,7 +146,8 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         const Status status = parse_header_line(split(*line), header);
         if (!status) return at_line(file, lines.number(), status.error().message);
     }
-    return at_line(file, lines.number(), "truncated PLY header: 'end_header' is missing");
+    return at_line(
+        file, lines.number(), "truncated PLY header: 'end_header' is missing; copy the file again");
 }
 
 /// Reads values from the body in any of the three encodings.
@@ -188,7 +193,7 @@ class ValueReader {
     WordReader words_;
 };
 
-/// Where the cloud stores the values of one vertex property.
+/// Names the part of the cloud that stores the values of one vertex property.
 struct Target {
     enum class Kind { x, y, z, red, green, blue, scalar, none } kind = Kind::none;
     std::size_t scalar = 0;
@@ -208,8 +213,8 @@ ScalarValues no_values(Type type) {
     return std::vector<float>();
 }
 
-/// Finds three numeric properties with these names. No value unless each occurs once. `type`:
-/// required type.
+/// Finds three numeric properties with these names. Returns no value unless each occurs once.
+/// `type`: type that all three must have, if given.
 std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
                                                       const std::array<std::string_view, 3>& names,
                                                       std::optional<Type> type) {
@@ -228,8 +233,8 @@ std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
     return at;
 }
 
-/// Returns the targets of all properties. No value unless x, y and z (or X, Y and Z) each occur
-/// once.
+/// Returns the targets of all properties. Returns no value unless x, y and z (or X, Y and Z) each
+/// occur once.
 std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud& cloud) {
     auto axes = three_named(vertex, {"x", "y", "z"}, std::nullopt);
     if (!axes) axes = three_named(vertex, {"X", "Y", "Z"}, std::nullopt);
@@ -310,7 +315,7 @@ bool skip_element(ValueReader& values, const Element& element) {
 Error too_short(const std::string& file, const Element& element, std::size_t bytes) {
     return input_error(
         fmt::format("{}: truncated or damaged PLY: the header announces {} '{}', but {} bytes of "
-                    "data are too few",
+                    "data are too few; copy the file again",
                     file,
                     element.count,
                     element.name,

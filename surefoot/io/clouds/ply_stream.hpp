@@ -23,8 +23,8 @@ class PlyStream {
     PlyStream(PlyStream&& other) noexcept;
     PlyStream& operator=(PlyStream&& other) noexcept;
 
-    /// Appends whole points, property after property. If the disk is full, the points that do not
-    /// fit are removed again.
+    /// Appends whole points; `values` lists all properties of each point. If writing fails (full
+    /// disk), all points of this call are removed again.
     [[nodiscard]] Status add(std::span<const float> values);
     /// Closes the file and reports late errors of the operating system.
     [[nodiscard]] Status close();

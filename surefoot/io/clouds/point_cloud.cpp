@@ -53,14 +53,15 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 namespace {
 
 /// Checks the first bytes and refuses a file that is not a cloud, before the program reads
-/// gigabytes. Every cloud format begins with text; LAS begins with four letters.
+/// gigabytes. Every cloud format begins with text, also LAS: its first four bytes are "LASF".
 Status check_beginning(const std::string& path) {
     auto file = files::InputFile::open(path, limits::kCloudBytes);
     if (!file) return file.error();
     const Result<std::string> head = file->read_at(0, 4);
     if (!head) return head.error();
     if (head->find('\0') == head->npos) return {};
-    return input_error(path + ": not a cloud: it begins with zero bytes; check the file");
+    return input_error(path +
+                       ": not a cloud: its first four bytes contain a zero byte; check the file");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace surefoot::io {
 struct PointCloud {
     std::vector<Eigen::Vector3d> points_m;  ///< NaN = no measurement (organised clouds)
     int width = 0;                          ///< columns if organised; otherwise number of points
-    int height = 1;            ///< rows; above 1 if organised: (u, v) is at v * width + u
+    int height = 1;            ///< rows; above 1 if organised: (u, v) has index v * width + u
     std::vector<Rgb> colours;  ///< one colour per point, or empty
     std::vector<CloudScalar> scalars;
     /// Viewpoint, if the file has one (PCD's VIEWPOINT). The points keep the frame of the file: the
@@ -36,10 +36,10 @@ struct PointCloud {
 /// Options for writing a cloud.
 struct CloudFormat {
     bool binary = true;
-    bool double_precision = false;  ///< write doubles, for large coordinates (float: 24 bits)
+    bool double_precision = false;  ///< coordinates as doubles; a float has only 24 bits
 };
 
-/// Whether the extension is a text cloud with one point per line: .xyz .asc .txt .csv .pts.
+/// Returns true for the extension of a text cloud (one point per line): .xyz .asc .txt .csv .pts.
 [[nodiscard]] bool is_text_cloud(std::string_view extension) noexcept;
 
 /// Reads a cloud by its extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv .pts as text.
@@ -56,8 +56,8 @@ struct CloudFormat {
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
 
-/// Parses PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF). Padding fields and COUNT > 1 are
-/// skipped. Also reads X Y Z, COLUMNS instead of FIELDS, and a header without WIDTH.
+/// Parses PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF). Padding and fields with COUNT
+/// other than 1 are skipped. Accepts X Y Z, COLUMNS as FIELDS, and a missing WIDTH.
 [[nodiscard]] Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_pcd(const PointCloud& cloud, const CloudFormat& format = {});
 [[nodiscard]] Status write_pcd(const std::string& path,
@@ -74,7 +74,7 @@ struct CloudFormat {
 /// Parses text, one point per line. Blanks, tabs, commas or semicolons separate fields. A header
 /// line, with or without '#' or '//', names the columns; x, y and z are found by name. Without a
 /// header x, y and z are the first three columns. Further columns become scalars; an empty field is
-/// NaN. A single number in a line before the points is their count. Errors name the line.
+/// NaN. A single number in a line before the points is their count. Errors in a line name the line.
 [[nodiscard]] Result<PointCloud> parse_text_cloud(std::string_view text, const std::string& file);
 [[nodiscard]] std::string format_text_cloud(const PointCloud& cloud);
 [[nodiscard]] Status write_text_cloud(const std::string& path, const PointCloud& cloud);

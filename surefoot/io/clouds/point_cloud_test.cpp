@@ -179,9 +179,9 @@ TEST(Pcd, RefusesWhatIsDamagedWithFileAndReason) {
                "\nHEIGHT 1\nPOINTS " + points + "\nDATA " + data + "\n";
     };
     EXPECT_TRUE(contains(message(parse_pcd(header("1000000000000", "binary"), "a.pcd")),
-                         "a.pcd:5: WIDTH must be 0 .. "));
+                         "a.pcd:5: WIDTH must be a whole number from 0 to "));
     EXPECT_TRUE(contains(message(parse_pcd(header("1000000000", "binary") + "abc", "a.pcd")),
-                         "need 12000000000 bytes, 3 are there"));
+                         "need 12000000000 bytes, but only 3 follow the header"));
     EXPECT_TRUE(
         contains(message(parse_pcd(header("2", "ascii") + "1 2 3\n", "a.pcd")), "truncated"));
     EXPECT_TRUE(contains(message(parse_pcd(header("1", "ascii") + "1 2 x    \n", "a.pcd")),
@@ -189,7 +189,7 @@ TEST(Pcd, RefusesWhatIsDamagedWithFileAndReason) {
     EXPECT_TRUE(contains(message(parse_pcd("FIELDS x y\n", "a.pcd")), "'DATA' is missing"));
     EXPECT_TRUE(contains(
         message(parse_pcd("FIELDS x x y\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nDATA ascii\n", "a.pcd")),
-        "exactly one field each"));
+        "each of the fields x, y and z exactly once"));
     std::string bomb = header("357913941", "binary_compressed");
     store_le(bomb, std::uint32_t{4});
     store_le(bomb, std::uint32_t{4294967292U});

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxColumns = 256;
 constexpr double kExact = 9007199254740992.0;  // 2^53
 
-/// Whether the word is a whole number that a double may not hold exactly.
+/// Returns true if the word is a whole number that a double may not hold exactly.
 bool is_long_number(std::string_view word) {
     constexpr std::size_t kDigits = 16;
     if (word.size() < kDigits || word.find_first_of(".eE") != word.npos) return false;
@@ -66,7 +66,7 @@ Result<PointCloud> TextCloudParser::parse(std::string_view text) {
 Status TextCloudParser::finish() const {
     if (announced_.value_or(0) > points_) {
         return input_error(
-            fmt::format("{}: the file announces {} points, but has {}: it is cut off",
+            fmt::format("{}: the file announces {} points, but has only {}; copy the file again",
                         file_,
                         *announced_,
                         points_));
@@ -134,7 +134,7 @@ Status TextCloudParser::take_head(std::string_view content, bool comment) {
 Status TextCloudParser::take_count() {
     const auto count = parse_int64(fields_[0]);
     if (*count < 0 || announced_.value_or(0) > points_ || (columns_ != 0 && !announced_)) {
-        return input_error(fmt::format("1 number where {} are expected",
+        return input_error(fmt::format("the line has 1 number, but {} are expected",
                                        columns_ == 0 ? "x y z" : std::to_string(columns_)));
     }
     constexpr std::int64_t kMost = std::int64_t{1} << 60;
@@ -159,7 +159,8 @@ Status TextCloudParser::choose_columns(std::string_view content) {
     if (head_ && fields_.size() == head_->columns.size() + 1 && fields_.back().empty())
         fields_.pop_back();
     if (fields_.size() < 3) {
-        return input_error(fmt::format("{} numbers where x y z are expected", fields_.size()));
+        return input_error(fmt::format("the line has {} numbers, but a point needs at least x y z",
+                                       fields_.size()));
     }
     if (fields_.size() > kMaxColumns) {
         return input_error(fmt::format(
@@ -215,8 +216,8 @@ void TextCloudParser::name_scalars(const std::vector<std::string>& names) {
 Status TextCloudParser::take_point(PointCloud& cloud) {
     if (fields_.size() == columns_ + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() != columns_) {
-        return input_error(
-            fmt::format("{} numbers where {} are expected", fields_.size(), columns_));
+        return input_error(fmt::format(
+            "the line has {} numbers, but the first point has {}", fields_.size(), columns_));
     }
     Eigen::Vector3d point_m;
     for (int axis = 0; axis < 3; ++axis) {
@@ -244,7 +245,7 @@ Status TextCloudParser::take_scalar(std::string_view word, CloudScalar& scalar) 
     if (parse_value(word)) {
         return input_error(
             fmt::format("{} in the column {} is not a whole number of 64 bits, but the first value "
-                        "of the column is one",
+                        "of the column is such a number",
                         quoted(word),
                         quoted(scalar.name)));
     }

@@ -15,7 +15,7 @@
 namespace surefoot::io {
 
 /// Reads a text cloud in pieces of whole lines, for files larger than the memory. The header and
-/// the first point define the layout of all lines. `parse_text_cloud` describes the lines.
+/// the first point define the layout of all lines. See `parse_text_cloud` for the lines.
 ///
 /// Scalars are doubles. A column whose first value is a whole number beyond 2^53 (nanoseconds since
 /// 1970) holds 64-bit whole numbers. A later value of another kind is then an error.
@@ -23,7 +23,7 @@ class TextCloudParser {
   public:
     explicit TextCloudParser(std::string file) : file_(std::move(file)) {}
 
-    /// Returns the points of further lines; may be empty. Errors name file and line.
+    /// Returns the points of the next lines; the cloud may be empty. Errors name file and line.
     [[nodiscard]] Result<PointCloud> parse(std::string_view lines);
     /// Returns an error if there were no points, or fewer points than the file announces.
     [[nodiscard]] Status finish() const;

@@ -20,7 +20,9 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
     LineReader lines(bytes);
     const auto first = lines.next();
     if (!first || !first->starts_with("# vtk DataFile Version"))
-        return input_error(fmt::format("{}:1: not a VTK file ('# vtk DataFile Version')", file));
+        return input_error(fmt::format(
+            "{}:1: not a VTK file (its first line must begin with '# vtk DataFile Version')",
+            file));
     (void)lines.next();  // the title can be any text
     const auto encoding = lines.next();
     if (!encoding || trimmed(*encoding) != "ASCII") {
@@ -51,12 +53,11 @@ Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file) {
     // Each number takes at least two bytes. This check prevents an allocation for a damaged count.
     const auto room = static_cast<std::int64_t>((points->text.size() + 1) / 6);
     if (points->count > room) {
-        return input_error(
-            fmt::format("{}: truncated or damaged VTK: {} points do not fit into {} "
-                        "bytes",
-                        file,
-                        points->count,
-                        points->text.size()));
+        return input_error(fmt::format(
+            "{}: truncated or damaged VTK: {} points do not fit into {} bytes; copy the file again",
+            file,
+            points->count,
+            points->text.size()));
     }
     PointCloud cloud;
     cloud.points_m.reserve(static_cast<std::size_t>(points->count));

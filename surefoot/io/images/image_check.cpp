@@ -50,7 +50,7 @@ Result<ImageHeader> checked_size(ImageHeader header, const std::string& file) {
 }
 
 Result<ImageHeader> parse_ihdr(std::string_view data, const std::string& file) {
-    if (data.size() != 13) return damaged(file, "PNG header has the wrong length");
+    if (data.size() != 13) return damaged(file, "the PNG header has the wrong length");
     const auto width = load<std::uint32_t>(data.data(), std::endian::big);
     const auto height = load<std::uint32_t>(data.data() + 4, std::endian::big);
     if (width > 1U << 24 || height > 1U << 24) {
@@ -64,14 +64,14 @@ Result<ImageHeader> parse_ihdr(std::string_view data, const std::string& file) {
     header.height = static_cast<int>(height);
     header.bits = data[8] == 16 ? 16 : 8;
     header.channels = colour <= 6 ? kChannels[colour] : 0;
-    if (header.channels == 0) return damaged(file, "PNG header has an unknown colour type");
+    if (header.channels == 0) return damaged(file, "the PNG header has an unknown colour type");
     return checked_size(header, file);
 }
 
 /// Checks all chunks. A chunk has length (big-endian), type, data, and CRC of type and data.
 Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
     std::size_t at = kPngSignature.size();
-    Result<ImageHeader> header = damaged(file, "PNG without a header");
+    Result<ImageHeader> header = damaged(file, "the PNG has no header");
     bool has_pixels = false;
     for (bool first = true; bytes.size() - at >= 12; first = false) {
         const auto length = load<std::uint32_t>(bytes.data() + at, std::endian::big);
@@ -92,7 +92,7 @@ Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
         has_pixels = has_pixels || type == "IDAT";
         if (type == "IEND") {
             return has_pixels ? header
-                              : Result<ImageHeader>(damaged(file, "PNG without any pixels"));
+                              : Result<ImageHeader>(damaged(file, "the PNG has no pixels"));
         }
         at += 12 + length;
     }
@@ -107,7 +107,7 @@ constexpr bool is_frame_header(int marker) noexcept {  // SOF0 to SOF15, except 
 /// Checks the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
 Result<ImageHeader> check_jpeg(std::string_view bytes, const std::string& file) {
     std::size_t at = 2;
-    Result<ImageHeader> header = damaged(file, "JPEG without a size");
+    Result<ImageHeader> header = damaged(file, "the JPEG has no header with its size");
     while (bytes.size() - at >= 2) {
         if (bytes[at] != '\xff') return damaged(file, fmt::format("damaged JPEG at byte {}", at));
         const int marker = static_cast<std::uint8_t>(bytes[at + 1]);

@@ -27,16 +27,18 @@ Result<cv::Mat> decode(std::string_view bytes, const std::string& file) {
         image.release();
     }
     if (image.empty() || (image.channels() != 1 && image.channels() != 3)) {
-        return input_error(
-            fmt::format("{}: damaged image, it cannot be decoded; record it again", file));
+        return input_error(fmt::format(
+            "{}: the image is damaged and cannot be decoded; record the image again", file));
     }
     return image;
 }
 
 Result<cv::Mat> decode_checked(std::string_view bytes, const std::string& file, int bits) {
     if (bytes.size() > (std::size_t{1} << 30)) {
-        return input_error(fmt::format(
-            "{}: the file has {} bytes, which is too large for an image", file, bytes.size()));
+        return input_error(
+            fmt::format("{}: the file has {} bytes; at most 1073741824 bytes (1 GiB) are supported",
+                        file,
+                        bytes.size()));
     }
     const Result<ImageHeader> header = check_image(bytes, file);
     if (!header) return header.error();
@@ -150,8 +152,8 @@ Result<DepthCodes> read_depth_codes(const std::string& path) {
 }
 
 Result<std::string> format_png(const GreyImage& image) {
-    // imencode only reads, but a Mat needs a mutable pointer. The two functions below cast for the
-    // same reason.
+    // imencode only reads, but a Mat needs a mutable pointer. format_png for depth codes casts for
+    // the same reason.
     return encode(
         cv::Mat(image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data())),
         image);

@@ -21,7 +21,7 @@ struct Rgb {
 using RgbImage = Image<Rgb>;
 using DepthCodes = Image<std::uint16_t>;
 
-/// Brightness of a colour: BT.601 in 15-bit fixed point (0.299, 0.587, 0.114 of 32768; sum 32768).
+/// Returns the brightness of a colour: BT.601 (0.299 R + 0.587 G + 0.114 B) in 15-bit fixed point.
 [[nodiscard]] constexpr std::uint8_t grey_bt601(std::uint8_t r,
                                                 std::uint8_t g,
                                                 std::uint8_t b) noexcept {
@@ -32,11 +32,11 @@ using DepthCodes = Image<std::uint16_t>;
 struct ImageHeader {
     int width = 0;
     int height = 0;
-    int bits = 8;      ///< bits per channel after decoding: 8 or 16
+    int bits = 8;      ///< bits per channel: 8 or 16; JPEG: as stored
     int channels = 1;  ///< number of stored channels, alpha included; a palette counts as 3
 };
 
-/// Largest decoded image [pixels]; so a damaged header cannot exhaust the memory.
+/// Largest decoded image [pixels], so that a damaged header cannot exhaust the memory.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 /// Reads the header and checks the rest: PNG chunks with their checksums up to IEND, JPEG up to its

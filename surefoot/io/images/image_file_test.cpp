@@ -312,7 +312,7 @@ TEST(DemFile, CellsOfEqualSidesAndDecimalCommasInWords) {
     EXPECT_TRUE(contains(message(parse_esri_grid(head + "cellsize 1\n,5\n", "a.asc")),
                          "a.asc:6: ',5' has a decimal comma"));
     EXPECT_TRUE(contains(message(parse_esri_grid(grid_of("", "1 2 3\n4 5,5 6\n"), "a.asc")),
-                         "a.asc:7: value 2 of row 2"));
+                         "a.asc:7: cannot read value 2 of row 2"));
 }
 
 TEST(DemFile, AValueThatIsTheMarkComesBackBesideIt) {

@@ -89,11 +89,11 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
                     20'000,
                     "live cameras: colour temperature of the white balance in kelvin; 0 leaves the "
                     "white balance unchanged");
-    visitor.enumeration(
-        "auto",
-        automatic,
-        kAutoNames,
-        "live cameras: automatic exposure, gain and white balance; keep leaves them unchanged");
+    visitor.enumeration("auto",
+                        automatic,
+                        kAutoNames,
+                        "live cameras: on or off switches automatic exposure, gain and white "
+                        "balance on or off; keep leaves these three settings unchanged");
     visitor.enumeration("format",
                         format,
                         kFormatNames,
@@ -180,7 +180,7 @@ Result<VideoMode> LiveCamera::chosen_mode(V4l2Device& device) const {
         return chosen;
     }
     return usage_error(
-        fmt::format("{}: has no YUYV or MJPEG mode of {} x {} px{}{}; it has {}",
+        fmt::format("{}: the camera has no YUYV or MJPEG mode of {} x {} px{}{}; it has {}",
                     info_.path,
                     width,
                     rig_.left.height,

@@ -21,7 +21,8 @@ Result<GreyImage> grey_of_yuyv(const VideoBuffer& buffer, const VideoMode& mode)
     // The last line may have no padding after its last pixel.
     const std::size_t needed = stride * (height - 1) + 2 * static_cast<std::size_t>(mode.width);
     if (buffer.bytes.size() < needed)
-        return input_error(fmt::format("{} of {} bytes", buffer.bytes.size(), needed));
+        return input_error(
+            fmt::format("the image has only {} of {} bytes", buffer.bytes.size(), needed));
     GreyImage image(mode.width, mode.height);
     for (int v = 0; v < mode.height; ++v) {
         const std::uint8_t* in = buffer.bytes.data() + stride * static_cast<std::size_t>(v);

@@ -18,14 +18,14 @@ enum class FormatChoice : std::uint8_t { any, yuyv, mjpeg };
 
 /// Settings of a live camera.
 struct CameraConfig {
-    double exposure_ms = 0.0;  ///< exposure time; 0 = unchanged
+    double exposure_ms = 0.0;  ///< exposure time [ms]; 0 = unchanged
     int gain = -1;             ///< gain in the driver's units; -1 = unchanged
     int white_balance_k = 0;   ///< colour temperature [K]; 0 = unchanged
     AutoControl automatic = AutoControl::keep;
     FormatChoice format = FormatChoice::any;
-    double readout_ms = 0.0;    ///< time from first to last row; 0 = global shutter
-    double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened
-    double reconnect_s = 10.0;  ///< longest time without a frame until the run ends
+    double readout_ms = 0.0;    ///< time from first to last row [ms]; 0 = global shutter
+    double timeout_s = 1.0;     ///< longest time without a frame until the device is reopened [s]
+    double reconnect_s = 10.0;  ///< longest time without a frame until the run ends [s]
     int max_damaged = 30;       ///< number of unusable frames in a row that ends the run
 
     void describe(ConfigVisitor& visitor);
@@ -33,7 +33,7 @@ struct CameraConfig {
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Address "DEVICE[@WIDTHxHEIGHT@RATE]", for example "/dev/video0@1344x376@30". Width and height
+/// Address "DEVICE[@WIDTHxHEIGHT[@RATE]]", for example "/dev/video0@1344x376@30". Width and height
 /// are those of the whole image with both cameras side by side, as the driver lists them.
 struct LiveAddress {
     std::string device;
@@ -51,8 +51,8 @@ struct LiveAddress {
 /// * Stamps are `CLOCK_MONOTONIC`, in the middle of the exposure of the middle row:
 ///       start-of-exposure stamps:  t + exposure / 2 + readout / 2
 ///       end-of-frame stamps:       t - exposure / 2 - readout / 2
-///   `exposure` is the configured value. An automatic exposure is unknown and counts as 0, so that
-///   stamps can be off by up to half an exposure.
+///   `exposure` is the configured or manual value of the camera. An automatic exposure is unknown
+///   and counts as 0, so that stamps can be off by up to half an exposure.
 /// * A device that disappears or is silent for `timeout_s` is closed and reopened until frames come
 ///   or `reconnect_s` has passed. These times are sums of the waits: the library reads no
 ///   clock.
@@ -103,11 +103,11 @@ class LiveCamera final : public camera::FrameSource {
     camera::SourceInfo info_;
     CameraConfig config_;
     std::function<bool()> stop_;
-    std::optional<V4l2Device> device_;  // declared after system_: is closed first
+    std::optional<V4l2Device> device_;  // declared after system_, so that it is destroyed first
     VideoMode mode_;
     std::int64_t exposure_ns_ = 0;  ///< exposure time in use; 0 = not known
     std::string lost_because_;
-    int silent_ms_ = 0;  ///< waiting time since the last usable frame
+    int silent_ms_ = 0;  ///< waiting time since the last usable frame [ms]
     int waited_ms_ = 0;  ///< part of silent_ms_ since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;

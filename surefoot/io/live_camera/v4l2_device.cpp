@@ -19,7 +19,7 @@ namespace {
 
 /// Limit for lists of the driver: the list of a faulty driver may never end.
 constexpr std::uint32_t kMaxListed = 256;
-/// Drivers round the frame interval to a value that the sensor supports.
+/// Relative tolerance of the frame rate: drivers round it to a rate that the sensor supports.
 constexpr double kRateTolerance = 0.02;
 
 template <std::size_t size>

@@ -30,8 +30,8 @@ struct VideoControl {
     int min = 0;
     int max = 0;
     int step = 1;
-    std::optional<int> value;  ///< current value; none if it cannot be read now
-    bool writable = false;     ///< false also while an automatic mode controls it
+    std::optional<int> value;  ///< current value; no value if it cannot be read now
+    bool writable = false;     ///< false also while an automatic mode sets the value
 };
 
 /// An image in the driver's memory; valid until it is returned to the driver.
@@ -46,8 +46,8 @@ struct VideoBuffer {
     std::uint32_t slot = 0;
 };
 
-/// A V4L2 capture device (single-planar, memory-mapped streaming): query, set, stream. Source:
-/// kernel documentation "Video for Linux API", Part I, chapters 1 and 3. The destructor closes it.
+/// Controls a V4L2 capture device (single-planar, memory-mapped streaming). Source: kernel
+/// documentation "Video for Linux API", Part I, chapters 1 and 3. The destructor closes the device.
 class V4l2Device {
   public:
     /// `system` must outlive the device.

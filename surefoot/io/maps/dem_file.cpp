@@ -23,8 +23,8 @@ constexpr double kFinest_m = 1e-4;  ///< smallest side of a cell; `surefoot dem`
 constexpr double kCoarsest_m = 1000.0;
 constexpr double kFarthest_m = 1e9;  ///< largest coordinate; a double resolves 1 um there
 constexpr std::int64_t kMaxSide = 1 << 20;
-/// Values of at least this magnitude mean "no data". The usual mark is the smallest float,
-/// -3.4028235e38, and no layer has such values.
+/// Values of at least this magnitude mean "no data". The usual mark is the lowest float,
+/// -3.4028235e38. No layer has measured values of this size.
 constexpr double kMaxValue = 1e30;
 
 bool is_cell_size(double side_m) {
@@ -46,7 +46,7 @@ struct Header {
     bool y_is_center = false;
 };
 
-/// Reads one "key value" pair; returns false if the word is not a key, because the data begin.
+/// Stores the value of a header key; returns false if the key is unknown.
 bool take_pair(const std::string& key, double value, Header& header) {
     if (key == "ncols") {
         header.columns = value;
@@ -112,7 +112,7 @@ Result<Header> parse_header(std::string_view text,
     return header;
 }
 
-/// Checks that cells given by dx and dy are square.
+/// Sets the cell size from dx and dy, which must be equal. Does nothing if the header has cellsize.
 Status take_cell_size(Header& header, const std::string& file) {
     constexpr double kSame = 1e-9;
     if (header.cell || (!header.dx && !header.dy)) return {};
@@ -224,12 +224,12 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
     const std::int64_t cells = std::int64_t{geometry->nx} * geometry->ny;
     // Each value needs at least a digit and a blank. A damaged header must not allocate memory.
     if (cells > static_cast<std::int64_t>(body.size() + 1) / 2) {
-        return input_error(
-            fmt::format("{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes",
-                        file,
-                        geometry->nx,
-                        geometry->ny,
-                        body.size()));
+        return input_error(fmt::format(
+            "{}: truncated ESRI grid: {} x {} cells do not fit in {} bytes; copy the file again",
+            file,
+            geometry->nx,
+            geometry->ny,
+            body.size()));
     }
     Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kNanF), {}};
     WordReader words(body);
@@ -240,7 +240,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
             const auto value = parse_value(word);
             if (!value || std::isinf(*value)) {
                 return input_error(fmt::format(
-                    "{}:{}: value {} of row {} (of {} x {} cells): {}",
+                    "{}:{}: cannot read value {} of row {} (of {} x {} cells): {}",
                     file,
                     word.empty() ? line_of(text, text.substr(text.size())) : line_of(text, word),
                     ix + 1,
@@ -255,11 +255,13 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
         }
     }
     if (const std::string_view extra = words.next(); !extra.empty()) {
-        return input_error(fmt::format("{}: found {} after the {} x {} cells",
-                                       file,
-                                       quoted(extra),
-                                       geometry->nx,
-                                       geometry->ny));
+        return input_error(
+            fmt::format("{}: found {} after the {} x {} cells; correct ncols and nrows, or remove "
+                        "the extra values",
+                        file,
+                        quoted(extra),
+                        geometry->nx,
+                        geometry->ny));
     }
     return dem;
 }

@@ -8,7 +8,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
-/// Reads grids with a value per cell: ESRI ASCII, or grey images (brightness is the height).
+/// Reads grids with a value per cell: ESRI ASCII, or grey images (grey is the height).
 namespace surefoot::io {
 
 /// A layer with its position; NaN = unknown.
@@ -19,12 +19,12 @@ struct Dem {
 };
 
 /// Reads an ESRI ASCII grid: ncols nrows xllcorner|xllcenter yllcorner|yllcenter, cellsize or equal
-/// dx and dy, [NODATA_value], then rows from the largest y down. Unknown: NODATA within float
-/// precision, nan, null, and every value of at least 1e30, because writers print the smallest float
-/// with different digits. Use this function for layers that are not heights.
+/// dx and dy, [NODATA_value], then rows from the largest y down. Unknown cells: NODATA within float
+/// precision, nan, null, and every magnitude of at least 1e30, because writers print the lowest
+/// float (-3.4e38) with different digits. Heights need parse_height_grid.
 [[nodiscard]] Result<Dem> parse_esri_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_esri_grid(const std::string& path);
-/// Reads heights: impossible heights are unknown too (surefoot/io/maps/height_rules.hpp).
+/// Reads heights and makes impossible heights unknown (surefoot/io/maps/height_rules.hpp).
 [[nodiscard]] Result<Dem> parse_height_grid(std::string_view text, const std::string& file);
 [[nodiscard]] Result<Dem> read_height_grid(const std::string& path);
 /// Formats values with 9 significant digits, enough to read the same float back.
@@ -34,8 +34,8 @@ struct Dem {
                                      const grid::GridGeometry& geometry,
                                      const grid::Layer& values);
 
-/// Reads a height image: grey 255 (or 65535) means `full_height_m`, grey 0 means 0 m. One cell per
-/// pixel of `scale_m`, lower left corner at (0, 0), top row at the largest y. Impossible heights
+/// Reads a height image: grey 255 (or 65535) means `full_height_m`, grey 0 means 0 m. A pixel is a
+/// cell of side `scale_m`; lower left corner at (0, 0), top row at largest y. Impossible heights
 /// are unknown (surefoot/io/maps/height_rules.hpp); a full height beyond kMaxHeight_m is an error.
 [[nodiscard]] Result<Dem> parse_dem_image(std::string_view bytes,
                                           const std::string& file,

@@ -79,7 +79,7 @@ Ends ends_of(std::span<const float> heights_m) {
     return e;
 }
 
-/// Returns a value that marks "no data"; no value if there is none.
+/// Returns a height that marks "no data"; no value if the layer has no such height.
 std::optional<double> find_mark(std::span<const float> heights_m) {
     const Ends e = ends_of(heights_m);
     if (!(e.lowest <= e.highest)) return std::nullopt;

@@ -55,7 +55,7 @@ std::optional<std::string> load_name(std::string_view field) {
     return std::string(field.substr(0, end));
 }
 
-/// Every NaN is written as the same four bytes.
+/// Replaces every NaN by the same NaN, so that all NaN have the same four bytes in the file.
 template <typename T>
 T canonical(T value) {
     if constexpr (std::is_same_v<T, float>) {

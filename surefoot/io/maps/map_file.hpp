@@ -12,8 +12,8 @@
 /// Reads and writes regions of an elevation map. docs/reference/map_format.md defines every byte.
 namespace surefoot::io {
 
-/// A newer major version is an error. A newer minor version may add header fields and layers, which
-/// the reader skips.
+/// A file of another major version is an error. A newer minor version may add header fields and
+/// layers, which the reader skips.
 inline constexpr std::uint16_t kMapFileMajor = 1;
 inline constexpr std::uint16_t kMapFileMinor = 0;
 

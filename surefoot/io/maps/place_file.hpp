@@ -8,11 +8,11 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/place_recognition/place.hpp"
 
-/// Reads and writes recognisable places. docs/reference/place_format.md defines every byte.
+/// Reads and writes remembered places. docs/reference/place_format.md defines every byte.
 namespace surefoot::io {
 
-/// A newer major version is an error. A newer minor version may add fields to the header, to
-/// keyframes and to features, which the reader skips.
+/// A file of another major version is an error. A newer minor version may add fields to the header,
+/// to keyframes and to features, which the reader skips.
 inline constexpr std::uint16_t kPlaceFileMajor = 1;
 inline constexpr std::uint16_t kPlaceFileMinor = 0;
 

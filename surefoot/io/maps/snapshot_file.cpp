@@ -37,7 +37,7 @@ auto stored(T value) {
     }
 }
 
-/// Number of the last enumerator.
+/// Returns the number of the last enumerator of an enum.
 constexpr std::uint8_t last_of(grid::EvidenceSource) {
     return 2;
 }

@@ -103,10 +103,10 @@ Result<std::unique_ptr<camera::FrameSource>> with_imu(std::unique_ptr<camera::Fr
             fmt::format("--imu {}: {} has its own IMU; remove the option --imu", imu_path, path));
     }
     if (!source->rig().imu) {
-        return usage_error(
-            fmt::format("--imu {}: the rig of {} does not say where its IMU is; add it to rig.yaml",
-                        imu_path,
-                        path));
+        return usage_error(fmt::format(
+            "--imu {}: the rig of {} does not say where its IMU is; add the key 'imu' to rig.yaml",
+            imu_path,
+            path));
     }
     Result<ImuStream> imu = ImuStream::open(imu_path);
     if (!imu) return imu.error();

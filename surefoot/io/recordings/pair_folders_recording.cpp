@@ -123,7 +123,7 @@ std::vector<std::string_view> words_of(std::string_view text, const std::string&
 }
 
 /// Reads the rig of KITTI raw. Images of the rectified size belong to P_rect of the two cameras;
-/// images of another size are raw.
+/// for another size read_rig chooses the calibration.
 Result<camera::StereoRig> raw_kitti_rig(const std::string& path,
                                         const Layout& layout,
                                         ImageSize size) {
@@ -280,7 +280,7 @@ Status listed_stamps(const std::string& path,
 }
 
 /// Sets the stamps from the first available source: --rate, times.txt or timestamps.txt, the stamps
-/// in the names, the rate of the rig.
+/// in the names, a constant rate (KITTI: 10 Hz; other folders: rate of the rig, else 15 Hz).
 Status set_stamps(const std::string& folder,
                   const OpenOptions& options,
                   const PairOfFolders& pair,

@@ -20,7 +20,7 @@ using Partners = std::vector<std::optional<std::size_t>>;
 /// Returns a fifth of the median time between frames; 0 for fewer than two stamps.
 [[nodiscard]] std::int64_t fifth_of_frame_time_ns(std::vector<std::int64_t> times_ns);
 
-/// Reads stamps from file names without extension, if all names hold a stamp: seconds with a point
+/// Stamps from file names without extension. All names must hold a stamp: seconds with a point
 /// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970, at most
 /// kMaxStamp_ns.
 struct NameStamps {

@@ -56,25 +56,25 @@ class Recorder {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Summary of a recording for `info`, computed without decoding images.
+/// Summary of a recording for `surefoot info`. A video is decoded to its end for this.
 struct RecordingInfo {
     std::string kind;
     camera::StereoRig rig;
     int frames = 0;
-    int unpaired = 0;           ///< frames of one camera without a partner
+    int unpaired = 0;           ///< left (or colour) images without a partner
     int missing_images = 0;     ///< number of listed files that do not exist
     std::string first_missing;  ///< first listed file that does not exist
     int bad_stamps = 0;         ///< number of stamps that do not increase
     double duration_s = 0.0;    ///< time from the first to the last stamp
-    double rate_hz = 0.0;       ///< rate from the median interval; 0 for fewer than two frames
-    int gaps = 0;               ///< number of intervals longer than 1.5 times the median
+    double rate_hz = 0.0;  ///< median rate; with fewer than two frames 0 or the rate of the rig
+    int gaps = 0;          ///< number of intervals longer than 1.5 times the median
     double longest_gap_s = 0.0;
     std::int64_t bytes = 0;  ///< size of all images
     int imu_samples = 0;
     double imu_rate_hz = 0.0;
     /// Video only: frame count of the container; `frames` counts the decodable frames.
     std::optional<int> announced_frames = {};
-    std::string incomplete = {};    ///< first unreadable frame of a video; empty = none
+    std::string incomplete = {};    ///< first error while reading a video; empty = no error
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
     double largest_pair_difference_s = 0.0;
     std::vector<std::string> notes = {};  ///< notes for the user about opening the recording

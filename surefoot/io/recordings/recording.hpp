@@ -14,8 +14,8 @@
 #include "surefoot/io/calibration/rig_file.hpp"
 #include "surefoot/io/recordings/pairing.hpp"
 
-/// Indexes recordings on disk before any image is opened. Each layout has an indexer. All indexers
-/// return the same kind of list, from which RecordingSource makes frames.
+/// Indexes recordings on disk and opens only a few images for this. Each layout has an indexer. All
+/// indexers return the same kind of list, from which RecordingSource makes frames.
 namespace surefoot::io {
 
 struct OpenOptions {
@@ -25,9 +25,9 @@ struct OpenOptions {
     /// Largest difference between the stamps of both images of a frame. Default: a fifth of the
     /// frame time; for TUM RGB-D the 20 ms of the benchmark.
     std::optional<double> pair_tolerance_s = {};
-    std::optional<double> depth_codes_per_m = {};  ///< RGB-D; default kDepthCodesPerMetre
+    std::optional<double> depth_codes_per_m = {};  ///< scale of depth images (RGB-D)
     /// Bits of the largest value in 16-bit images (9..16); the upper 8 of them are used. Default:
-    /// as many bits as the first, the middle and the last image need.
+    /// the fewest of 10, 12, 14 and 16 bits that hold the first, middle and last image.
     std::optional<int> image_bits = {};
     bool skip_broken = false;  ///< continue after unusable frames (skip_broken_frames)
 };
@@ -51,10 +51,10 @@ struct Recording {
     camera::StereoRig rig;
     std::vector<FrameEntry> frames;
     std::vector<ImuSample> imu;     ///< IMU samples with strictly increasing stamps
-    int unpaired = 0;               ///< images without a partner of the other camera
+    int unpaired = 0;               ///< left (or colour) images without a partner
     double pair_tolerance_s = 0.0;  ///< pairing tolerance of the stamps; 0 = not paired by stamps
-    double largest_pair_difference_s = 0.0;         ///< between the two images of a frame
-    float depth_codes_per_m = kDepthCodesPerMetre;  ///< of the depth images; RGB-D only
+    double largest_pair_difference_s = 0.0;         ///< of the stamps of the two images of a frame
+    float depth_codes_per_m = kDepthCodesPerMetre;  ///< scale of the depth images; RGB-D only
     int image_bits = 8;                             ///< used bits; more than 8 = 16-bit images
 };
 
@@ -64,18 +64,18 @@ struct Recording {
 [[nodiscard]] Status read_euroc_imu(const std::string& folder, Recording& recording);
 /// Indexes left and right images in two folders: image_0 + image_1, image_l + image_r, image_2 +
 /// image_3 (KITTI odometry; calib.txt, times.txt), image_00 + image_01, image_02 + image_03 (KITTI
-/// raw; data/, timestamps.txt), cam0 + cam1 without lists, left + right. Or: left* and right* in
-/// one folder. docs/get_started/own_camera.md explains pairs and stamps.
+/// raw; data/, timestamps.txt), cam0 + cam1 without lists, left + right and similar names. Or:
+/// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
-/// Whether a folder contains left and right images in one of these layouts.
+/// Returns true if a folder contains left and right images in one of these layouts.
 [[nodiscard]] bool has_pair_folders(const std::string& folder);
 /// Indexes images that show the left camera in the left half and the right camera in the right
-/// half, in natural order. The folder has a rig.yaml; the rate is that of the rig, or 15 Hz.
+/// half, in natural order. Rate: `options.rate_hz`, else the rate of the rig, else 15 Hz.
 [[nodiscard]] Result<Recording> index_side_by_side(const std::string& folder,
                                                    const OpenOptions& options);
 /// Indexes TUM RGB-D: associations.txt, or rgb.txt and depth.txt associated within 20 ms; depth
-/// codes are 1/5000 m. Uses Kinect intrinsics (525, 525, 319.5, 239.5) unless a rig replaces them.
+/// codes are 1/5000 m or mm. Uses Kinect intrinsics (525, 525, 319.5, 239.5) if no rig is given.
 [[nodiscard]] Result<Recording> index_tum_rgbd(const std::string& folder,
                                                const OpenOptions& options);
 
@@ -91,7 +91,7 @@ struct CsvRow {
 };
 [[nodiscard]] Result<std::vector<CsvRow>> parse_euroc_frames(std::string_view text,
                                                              const std::string& file);
-/// Parses IMU rows: stamp_ns, angular velocity [rad/s], specific force [m/s^2]; stamps increase.
+/// Parses rows: stamp_ns, angular velocity [rad/s], specific force [m/s^2]; stamps must increase.
 [[nodiscard]] Result<std::vector<ImuSample>> parse_euroc_imu_samples(std::string_view text,
                                                                      const std::string& file);
 /// Parses "stamp_s file" rows of TUM's rgb.txt and depth.txt.
@@ -128,8 +128,8 @@ void fit_rig(camera::StereoRig& rig,
 void set_pair_tolerance(const OpenOptions& options,
                         std::int64_t otherwise_ns,
                         Recording& recording);
-/// Pairs stamps within the tolerance of the recording. Counts the unpaired images and the largest
-/// difference; the notes report both.
+/// Pairs stamps within the tolerance of the recording. Stores the number of unpaired left images
+/// and the largest difference; notes report both.
 [[nodiscard]] Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                                    const std::vector<std::int64_t>& right_ns,
                                    Recording& recording);
@@ -175,10 +175,10 @@ class RecordingSource final : public camera::FrameSource {
 /// Opens any recording: a folder of the layouts above, or a side-by-side video file.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(
     const std::string& path, const OpenOptions& options = {});
-/// Whether the extension of the name is that of a video file.
+/// Returns true if the extension of the name is that of a video file.
 [[nodiscard]] bool is_video_name(const std::string& path);
-/// Opens a side-by-side video with rig.yaml in the same folder. Stamps come from the first
-/// available source: `options.rate_hz`, the times of the container, the rate of the rig, 15 Hz.
+/// Opens a side-by-side video. The rig is `options.rig_file`, else rig.yaml beside the video.
+/// Stamps: `options.rate_hz`, else times of the container, else rate of the rig, else 15 Hz.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
                                                                       const OpenOptions& options);
 

@@ -43,9 +43,10 @@ Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
     const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
-        return input_error(fmt::format(
-            "the left 3x3 part of the matrix is not a rotation (R^T R differs from 1 by {:.3g})",
-            error));
+        return input_error(
+            fmt::format("the left 3x3 part of the matrix is not a rotation: R^T R differs from 1 "
+                        "by {:.3g} (limit 0.001), or the matrix is a reflection",
+                        error));
     }
     return Pose::from_matrix(T);
 }
@@ -84,8 +85,8 @@ std::vector<std::string> TrajectoryFile::notes() const {
     std::vector<std::string> notes;
     if (repeated > 0) {
         notes.push_back(
-            fmt::format("{} rows with a repeated time stamp are left out; the first one is kept "
-                        "(the others are at most {:.4f} m from it)",
+            fmt::format("{} rows with a repeated time stamp are left out; the first row of each "
+                        "stamp is kept (the other rows are at most {:.4f} m away)",
                         repeated,
                         repeated_apart_m));
     }
@@ -112,17 +113,18 @@ Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string
         const auto time_ns = stamped ? parse_stamp_ns(row.stamp, unit)
                                      : static_cast<std::int64_t>(index) * kKittiPeriod_ns;
         if (!time_ns) {
-            return at_line(
-                file,
-                row.line,
-                fmt::format("stamp {} is not a time in {}", quoted(row.stamp), unit.name));
+            return at_line(file,
+                           row.line,
+                           fmt::format("stamp {} must be a number below 9.2e18 ns (unit: {})",
+                                       quoted(row.stamp),
+                                       unit.name));
         }
         const auto pose = stamped ? pose_of_seven(row.numbers) : pose_of_twelve(row.numbers);
         if (!pose) return at_line(file, row.line, pose.error().message);
         if (const double far_m = pose->translation_m.cwiseAbs().maxCoeff(); far_m > kFarthest_m) {
             return at_line(file,
                            row.line,
-                           fmt::format("the position is {:g} m from the origin; at most {:g} m are "
+                           fmt::format("a coordinate of the position is {:g} m; at most {:g} m are "
                                        "allowed: check the unit",
                                        far_m,
                                        kFarthest_m));
@@ -131,8 +133,11 @@ Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string
         if (!stamped) out.row_of_pose.push_back(index);
     }
     if (out.poses.empty()) {
-        return input_error(fmt::format(
-            "{}: no poses in this trajectory ({} rows of numbers)", file, table->rows().size()));
+        return input_error(
+            fmt::format("{}: no poses in this trajectory ({} rows of numbers, and each row has NaN "
+                        "or infinity)",
+                        file,
+                        table->rows().size()));
     }
     if (stamped) sort_and_thin(out);
     return out;
@@ -142,10 +147,11 @@ Status give_stamps(std::span<const std::int64_t> times_ns,
                    const std::string& from,
                    TrajectoryFile& trajectory) {
     if (times_ns.size() < trajectory.rows) {
-        return input_error(fmt::format("{}: {} time stamps for {} poses; the numbers must be equal",
-                                       from,
-                                       times_ns.size(),
-                                       trajectory.rows));
+        return input_error(
+            fmt::format("{}: {} time stamps for {} poses; each pose needs a time stamp",
+                        from,
+                        times_ns.size(),
+                        trajectory.rows));
     }
     for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
         trajectory.poses[i].time_ns = times_ns[trajectory.row_of_pose[i]];
@@ -212,8 +218,9 @@ Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::
             return at_line(
                 file,
                 line_of[i],
-                fmt::format(
-                    "time stamp {} is not a time in {} of 0 or more", quoted(words[i]), unit.name));
+                fmt::format("time stamp {} must be a number from 0 to 9.2e18 ns (unit: {})",
+                            quoted(words[i]),
+                            unit.name));
         }
         times_ns.push_back(*time_ns);
     }

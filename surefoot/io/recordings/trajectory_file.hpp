@@ -39,10 +39,10 @@ struct TrajectoryFile {
 ///    header, or by its 17 columns,
 ///  - any table whose header names the stamp, the position and the quaternion,
 ///  - KITTI poses: twelve numbers, the upper 3x4 of T_world_camera row by row, without stamps.
-/// Blanks, tabs or commas separate; '#' lines are comments. The size of stamps selects their unit.
-/// Repeated stamps and rows that are not finite are left out and counted; rows are sorted by time.
-/// Errors name the line: a quaternion without length 1, a value that is not a number, other
-/// columns.
+/// Blanks, tabs, ',' or ';' separate numbers; '#' begins a comment line. The header or the size of
+/// the stamps gives their unit. Repeated stamps and rows that are not finite are left out and
+/// counted; rows are sorted by time. Errors name the line: a quaternion without length 1, a value
+/// that is not a number, other columns.
 [[nodiscard]] Result<TrajectoryFile> parse_trajectory(std::string_view text,
                                                       const std::string& file);
 /// Reads a trajectory file. KITTI poses get their stamps from times.txt in the same folder, if the

@@ -167,8 +167,10 @@ Status TrajectoryTable::choose_layout(char separator) {
         return {};
     }
     if (head_ && !is_comment(head_line_)) {
-        return input_error(fmt::format(
-            "{} numbers, but the header line names {} columns", words_.size(), head_->columns));
+        return input_error(
+            fmt::format("the line has {} numbers, but the header line names {} columns",
+                        words_.size(),
+                        head_->columns));
     }
     auto layout = layout_of(words_, separator);
     if (!layout) return layout.error();

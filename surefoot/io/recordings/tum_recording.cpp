@@ -147,7 +147,7 @@ Result<Recording> index_tum_rgbd(const std::string& folder, const OpenOptions& o
     if (recording.frames.empty()) {
         return input_error(
             fmt::format("{}: no frames: no two of the {} colour and {} depth images are within "
-                        "{:g} ms of each other",
+                        "{:g} ms of each other; give a larger --pair-tolerance",
                         folder,
                         found->colour.size(),
                         found->depth.size(),

@@ -30,7 +30,7 @@ DepthCodes codes_of(const Image<float>& depth_m) {
     return codes;
 }
 
-/// Returns the depth of each code; inverse of `codes_of`.
+/// Returns the depth of each code [m]; code 0 (unknown) gives 0 m.
 Image<float> depths_of(const DepthCodes& codes) {
     Image<float> depth_m(codes.width(), codes.height());
     for (std::size_t i = 0; i < codes.size(); ++i)

@@ -107,7 +107,7 @@ Result<std::optional<VideoFrame>> VideoFrames::Impl::decode() {
         if (!capture.read(image)) image.release();
     } catch (const cv::Exception&) {
         ended = true;  // a second call could repeat the same failure forever
-        return input_error(what + ": cannot be decoded");
+        return input_error(what + ": cannot be decoded; copy or record the file again");
     }
     if (image.empty()) return std::optional<VideoFrame>();
     if (image.depth() != CV_8U || (image.channels() != 1 && image.channels() != 3))
@@ -117,8 +117,8 @@ Result<std::optional<VideoFrame>> VideoFrames::Impl::decode() {
         VideoFrame{grey_of(image), times.next(get(cv::CAP_PROP_POS_MSEC), rate_hz())});
 }
 
-/// Whether the frames end before the announced end. OpenCV reports a decode failure like the end of
-/// the file, so the announced duration decides.
+/// Returns true if the frames end before the announced end. OpenCV reports a decode failure like
+/// the end of the file, so the announced duration decides.
 bool VideoFrames::Impl::breaks_off() {
     if (decoded >= count() || rate_hz() <= 0.0) return false;
     const double announced_s = count() / rate_hz();

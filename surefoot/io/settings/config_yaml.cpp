@@ -80,7 +80,7 @@ std::string begin_of_sentence(const std::string& where) {
 
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
-/// Checks all given values; assigns the values in a second pass.
+/// Checks all given values. Assigns the values only if `assign` is true.
 class AssignVisitor final : public PathVisitor {
   public:
     AssignVisitor(const GivenValues& given, bool assign) : given_(given), assign_(assign) {}

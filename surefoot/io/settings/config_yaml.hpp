@@ -11,7 +11,7 @@
 
 /// Converts configuration objects to YAML and back. Works with every type that has `void
 /// describe(ConfigVisitor&)`. Strict: an unknown key, a wrong type or a value out of range is a
-/// usage error with file and line, and the object stays unchanged. Keys may have the names of the
+/// usage error that names the key, and the object stays unchanged. Keys may have the names of the
 /// previous version (renamed_keys.hpp); `notes`, if given, receives a sentence with the new name.
 namespace surefoot::io {
 
@@ -42,7 +42,7 @@ struct ConfigEntry {
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe,
                                      Notes* notes = nullptr);
-/// Sets a key, given as a separate argument, to a value. An error begins with the key.
+/// Sets one key to a value, with the same checks. Errors name the key.
 [[nodiscard]] Status change_config(const std::string& key,
                                    const std::string& value,
                                    const DescribeConfig& describe);

@@ -26,8 +26,8 @@ struct IniFile {
     [[nodiscard]] const Section* find(std::string_view section) const;
     /// Returns the value; nullptr if the section has no such key.
     [[nodiscard]] const Value* find(std::string_view section, std::string_view key) const;
-    /// Returns a required finite number. A comma is an error: otherwise "0,5" from a file that was
-    /// written in another locale would be read as 0.
+    /// Returns a required finite number. A number with a comma, such as "0,5" from another locale,
+    /// is an error with its own message.
     [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
 };
 

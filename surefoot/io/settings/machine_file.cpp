@@ -36,8 +36,8 @@ GroundBox read_box(Group& group) {
     return box;
 }
 
-/// Reads the mount. The rotation is yaw, then pitch, then roll about the body's axes (REP-103);
-/// pitch is positive downward.
+/// Reads the mount. The rotation is Rz(yaw) Ry(pitch) Rx(roll), with body axes of REP-103; pitch is
+/// positive downward.
 void read_mount(Group& mount, MachineFile& out) {
     const Eigen::Vector3d position_m(mount.number("x_m", -2.0, 2.0),
                                      mount.number("y_m", -2.0, 2.0),
@@ -143,8 +143,8 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.attestation_radius_tenth_mm = group.length("attestation_radius_m", 0.0, 2.0);
 }
 
-/// Refuses limits that no gait of the class can reach. A foot cannot land higher than
-/// `swing_clearance`, the height to which the foot is lifted.
+/// Refuses a limit of class walk that its gait cannot reach. A foot cannot land higher than
+/// `swing_clearance`, the height to which the gait lifts the foot.
 void check_gait(Group& root, const GateLimits& limits) {
     constexpr double kTenthMmPerMetre = 1e4;
     const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];
@@ -182,7 +182,7 @@ void read_document(YamlReader& reader, Group& root, MachineFile& out) {
 }
 
 /// Gives keys with the names of version 0.1 the names of today (docs/migration.md). Returns a
-/// sentence for each.
+/// sentence for each renamed key.
 std::vector<std::string> use_current_names(YamlNode& document, const std::string& file) {
     constexpr std::string_view kFormer = "vouch_radius_m";
     constexpr std::string_view kCurrent = "attestation_radius_m";

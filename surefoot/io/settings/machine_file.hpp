@@ -26,9 +26,9 @@ struct MachineFile {
     std::string name;
     Machine machine;               ///< the part of the file that the gate needs
     Pose T_body_left;              ///< mount: pose of the left optical frame in base_link
-    double mount_pitch_deg = 0.0;  ///< pitch of the mount, downward positive
-    double speed_m_s = 0.0;        ///< fastest motion of base_link; 0 = unknown
-    double turn_deg_s = 0.0;       ///< fastest turn of base_link; 0 = unknown
+    double mount_pitch_deg = 0.0;  ///< pitch of the mount [deg], downward positive
+    double speed_m_s = 0.0;        ///< fastest motion of base_link [m/s]; 0 = unknown
+    double turn_deg_s = 0.0;       ///< fastest turn of base_link [deg/s]; 0 = unknown
     std::vector<JointRange> joints;
     std::vector<Deviation> deviations;  ///< limits laxer than rated, each signed by a person
     std::vector<std::string> notes;     ///< a sentence for each key that has a former name

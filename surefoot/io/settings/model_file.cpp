@@ -91,7 +91,7 @@ ModelPlace read_place(YamlGroup& group) {
     return place;
 }
 
-/// "#rrggbb"
+/// Parses a colour "#rrggbb"; no value for other text.
 std::optional<std::array<std::uint8_t, 3>> parse_color(std::string_view text) {
     constexpr std::size_t kLength = 7;
     if (text.size() != kLength || text.front() != '#') return std::nullopt;

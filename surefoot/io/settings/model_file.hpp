@@ -37,14 +37,14 @@ struct ModelLink {
     std::vector<ModelBox> boxes;
 };
 
-/// Attaches a link to another link; a moving joint turns it about an axis of the joint frame.
+/// Attaches a child link to a parent link; a moving joint turns the child about `axis`.
 struct ModelJoint {
     std::string name;
     std::string parent;
     std::string child;
     ModelPlace in_parent;
     bool moves = false;
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector in the joint frame
     double min_rad = 0.0;
     double max_rad = 0.0;
     double stand_rad = 0.0;  ///< angle to display if the real angle is unknown
@@ -60,8 +60,8 @@ struct MachineModel {
 
     /// Returns the moving joints in file order.
     [[nodiscard]] std::vector<const ModelJoint*> moving_joints() const;
-    /// Pose of a link in base_link for the given angles of the moving joints (in the order of
-    /// `moving_joints`). Precondition: the link exists.
+    /// Returns the pose of a link in base_link for the given angles of the moving joints (in the
+    /// order of `moving_joints`). Precondition: the link exists.
     [[nodiscard]] Pose T_base_link(std::string_view link,
                                    const std::vector<double>& angles_rad) const;
 };

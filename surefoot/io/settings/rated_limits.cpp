@@ -90,8 +90,8 @@ const YamlNode* node_at(const YamlNode& root, std::string_view key) {
     return node;
 }
 
-/// Returns the number in the file. No value if another check has already reported the number, or if
-/// its step class is disabled.
+/// Returns the number in the file. Returns no value if the number is missing or unreadable (another
+/// check reports this), or if its step class is disabled.
 std::optional<double> value_at(const YamlNode& root, std::string_view key) {
     for (const std::string_view group : {"limits.walk", "limits.stair"}) {
         if (!key.starts_with(group)) continue;
@@ -113,7 +113,7 @@ const RatedLimit* find_limit(std::string_view key) {
     return found == kRatedLimits.end() ? nullptr : &*found;
 }
 
-/// Whether the text is a date YYYY-MM-DD.
+/// Returns true if the text is a date YYYY-MM-DD.
 bool is_date(std::string_view text) {
     const auto parts = split(text, "-");
     if (text.size() != 10 || parts.size() != 3 || parts[0].size() != 4 || parts[1].size() != 2)
@@ -141,7 +141,7 @@ Deviation read_line(YamlGroup& line) {
     return deviation;
 }
 
-/// Describes the problem of an entry; no value if it is valid.
+/// Describes the problem of an entry; no value if the entry is valid.
 std::optional<std::string> problem_of(const Deviation& deviation,
                                       const std::vector<Deviation>& before,
                                       const YamlNode& document) {

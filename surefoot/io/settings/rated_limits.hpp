@@ -17,7 +17,7 @@ struct RatedLimit {
     const char* key;  ///< key in the file, for example "limits.tilt_deg"
     double rated;
     bool larger_allows_more;  ///< if false, a smaller value allows more
-    const char* reason;       ///< consequence of a laxer value
+    const char* reason;       ///< why the evidence does not cover a laxer value
 };
 [[nodiscard]] std::span<const RatedLimit> rated_limits() noexcept;
 

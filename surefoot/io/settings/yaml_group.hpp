@@ -19,12 +19,12 @@ class YamlGroup {
     /// group, which has no prefix.
     YamlGroup(YamlReader& reader, const YamlNode& node, std::string prefix, const char* document);
 
-    /// Whether an optional key exists.
+    /// Returns true if an optional key exists.
     [[nodiscard]] bool has(const char* key);
     double number(const char* key, double min, double max);
-    /// A length in metres, returned in units of 0.1 mm.
+    /// Reads a length in metres and returns it in units of 0.1 mm.
     std::int32_t length(const char* key, double min_m, double max_m);
-    /// A duration in milliseconds, returned in nanoseconds.
+    /// Reads a duration in milliseconds and returns it in nanoseconds.
     std::int64_t duration_ns(const char* key, int min_ms, int max_ms);
     int integer(const char* key, int min, int max);
     bool boolean(const char* key);
@@ -52,8 +52,8 @@ class YamlGroup {
     void fail(const char* key, const std::string& what);
     /// Reports a failure at a key of one group of a list.
     void fail_item(const char* list, std::size_t index, const char* key, const std::string& what);
-    /// Reports keys that were not read; call it last. A misspelled key explains more than the
-    /// missing key that it causes, so the misspelled key is reported first.
+    /// Reports unknown keys, then missing keys; call this function last. A misspelled key is
+    /// reported first, because it explains why another key is missing.
     void finish();
 
   private:

@@ -33,8 +33,12 @@ struct Converter {
         YamlNode out;
         out.line = std::max(in.Mark().line + 1, 1);
         if (depth > kMaxDepth)
-            fail(in.Mark(), fmt::format("nested deeper than {} levels", kMaxDepth));
-        if (++values > kMaxValues) fail(in.Mark(), fmt::format("more than {} values", kMaxValues));
+            fail(in.Mark(),
+                 fmt::format("the file is nested deeper than {} levels; reduce the nesting",
+                             kMaxDepth));
+        if (++values > kMaxValues)
+            fail(in.Mark(),
+                 fmt::format("the file has more than {} values, which is the limit", kMaxValues));
         if (error) return out;
         if (in.IsScalar()) {
             out.kind = YamlNode::Kind::scalar;
@@ -58,8 +62,9 @@ struct Converter {
                 return fail(entry.first.Mark(), "a key must be plain text");
             const std::string& key = entry.first.Scalar();
             if (out.items.size() >= kMaxKeys) {  // limit: the search for repeated keys is linear
-                return fail(entry.first.Mark(),
-                            fmt::format("more than {} keys in a group", kMaxKeys));
+                return fail(
+                    entry.first.Mark(),
+                    fmt::format("this group has more than {} keys, which is the limit", kMaxKeys));
             }
             if (out.find(key) != nullptr) {
                 return fail(entry.first.Mark(), fmt::format("key {} appears twice", quoted(key)));
@@ -112,8 +117,10 @@ const char* YamlNode::kind_name() const noexcept {
 
 Result<YamlNode> parse_yaml(std::string_view text, const std::string& file) {
     if (text.size() > kMaxYamlBytes) {
-        return input_error(fmt::format(
-            "{}: {} bytes; YAML files may have up to {}", file, text.size(), kMaxYamlBytes));
+        return input_error(fmt::format("{}: the file has {} bytes; a YAML file may have at most {}",
+                                       file,
+                                       text.size(),
+                                       kMaxYamlBytes));
     }
     if (text.find('\0') != text.npos) {
         return input_error(fmt::format("{}: not a YAML file (it holds binary data)", file));

@@ -27,7 +27,7 @@ struct YamlNode {
     [[nodiscard]] const YamlNode* find(std::string_view name) const noexcept;
     [[nodiscard]] bool is_mapping() const noexcept { return kind == Kind::mapping; }
     [[nodiscard]] bool is_scalar() const noexcept { return kind == Kind::scalar; }
-    /// Name of the kind in messages: "a number list", "a mapping", ...
+    /// Returns the name of the kind for messages: "a list", "a group of keys", ...
     [[nodiscard]] const char* kind_name() const noexcept;
 };
 
@@ -49,14 +49,14 @@ class YamlReader {
     /// Returns the value of a required key of `mapping`.
     const YamlNode* required(const YamlNode& mapping, std::string_view key);
 
-    /// A finite number within [min, max].
+    /// Reads a finite number within [min, max].
     double number(const YamlNode& node, std::string_view key, double min, double max);
     int integer(const YamlNode& node, std::string_view key, int min, int max);
     bool boolean(const YamlNode& node, std::string_view key);
     std::string text(const YamlNode& node, std::string_view key);
-    /// A list of `count` finite numbers; nested lists are flattened row by row.
+    /// Reads a list of `count` finite numbers; nested lists are flattened row by row.
     std::vector<double> numbers(const YamlNode& node, std::string_view key, std::size_t count);
-    /// A list of finite numbers of any length up to `max_count`.
+    /// Reads a list of finite numbers of any length up to `max_count`.
     std::vector<double> any_numbers(const YamlNode& node,
                                     std::string_view key,
                                     std::size_t max_count);
