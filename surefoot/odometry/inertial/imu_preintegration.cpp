@@ -9,8 +9,9 @@
 namespace surefoot::odometry {
 namespace {
 
-/// If the range is unknown, a reading counts as saturated when it stays exactly the same for this
-/// many samples. Its rate or force must be one that a machine in steady motion never has.
+/// A reading also counts as saturated if it stays exactly the same for this many samples, at a rate
+/// or force that a machine in steady motion never has. This test works even if the range is
+/// unknown.
 constexpr int kStuckSamples = 4;
 constexpr double kStuckRate_rad_s = 2.0;
 constexpr double kStuckForce_m_s2 = 15.0;

@@ -177,7 +177,7 @@ InertialSolution fuse(const InertialModel& model,
                       const InertialBelief& before,
                       const ImuMotion& motion,
                       const PoseEvidence& known) {
-    constexpr int kIterations = 8;  // nearly linear
+    constexpr int kIterations = 8;  // enough, because the problem is nearly linear
     PoseFactor factor{known};
     return solve(model, before, motion, known.T_odom_imu, kIterations, factor);
 }

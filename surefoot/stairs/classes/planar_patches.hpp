@@ -58,12 +58,12 @@ struct PatchMap {
     }
 };
 
-/// Divides the known ground into planes. Each block of cells is fitted alone, weighted by the
-/// cell variances. Regions grow from the flattest blocks over neighbours that lie on the region's
+/// Divides the known ground into planes. The cells are summed block by block, weighted by their
+/// variances. Regions grow from the flattest blocks over neighbours that lie on the region's
 /// plane so far. Regions on one plane are joined, and border blocks move to the better plane.
-/// Last, each cell takes the best plane of its block and the eight around it, so borders follow
-/// cells. Growth from the best seed: Besl and Jain 1988. Sums over blocks: Feng, Taguchi and
-/// Kamat 2014.
+/// Last, each cell takes the best plane of its block and the eight around it, so borders run
+/// between cells. Growth from the best seed: Besl and Jain 1988. Sums over blocks: Feng, Taguchi
+/// and Kamat 2014.
 ///
 /// A block with less than half of its cells known is no seed. Owns the working memory: maps of
 /// one size allocate nothing after the first few calls. The same map gives the same result.

@@ -149,7 +149,7 @@ void add_faces_near(const Terrain& terrain,
     constexpr double kLeast = 1.5;  ///< smallest excess of a row, in points of a level cell
     Rows rows(terrain, line, search);
     // Weights must not depend on the position. Distant level ground near the camera height shows
-    // fewer points, so a ratio to that number would pull the face towards it.
+    // fewer points, so `density_ratio` alone would pull the face towards distant ground.
     const auto level_px = [&](const Eigen::Vector2d& p_m, double z_m) {
         return terrain.view ? terrain.view->pixels_per_m2({p_m.x(), p_m.y(), z_m}) : 1.0;
     };
@@ -182,7 +182,8 @@ void add_face_points(const Terrain& terrain,
                      const BorderSearch& search,
                      std::vector<BorderPoint>& out) {
     if (terrain.density_ratio.empty()) return;
-    // The border from heights alone lies too early, so the window is centred on the face.
+    // The border from heights alone lies before the face. So each round centres the window on the
+    // face.
     BorderSearch centred = search;
     std::vector<BorderPoint> found;
     for (int round = 0; round < 3; ++round) {

@@ -34,9 +34,9 @@ struct BorderSearch {
 
 /// Walks from the upper ground across the edge, row by row (by column where the line runs along the
 /// rows). Adds the point between two cell centres where the ground falls below its level. The
-/// threshold is a tenth of the step, not half. Cells before and behind a distant riser hold points
-/// of its face, because depth noise moves these points by several cells. A cell keeps its highest
-/// point.
+/// threshold lies `below_m` under the upper level, see upper_tolerance_m(). Cells before and behind
+/// a distant riser hold points of its face, because depth noise moves these points by several
+/// cells. A cell keeps its highest point.
 void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
                        const BorderSearch& search,

@@ -26,9 +26,9 @@ struct RayBin {
 /// omits because it drops pixels beside depth jumps.
 class RayProfile {
   public:
-    /// Computes the bins, half a pixel each. Empty without `Terrain::view` and
-    /// `Terrain::disparity_px`, if the camera is not above and before the edge, or if too little of
-    /// the edge is visible. Valid until the next call.
+    /// Computes the bins, half a pixel each; bins with too few pixels have no data. Empty without
+    /// `Terrain::view` or `Terrain::disparity_px`, or if the camera is not above the upper ground
+    /// and before the edge. Valid until the next call.
     [[nodiscard]] std::span<const RayBin> observation(const Terrain& terrain, const Edge& edge);
     /// Angle between the rays of neighbouring bins, at the edge.
     [[nodiscard]] double bin_rad() const noexcept { return bin_rad_; }

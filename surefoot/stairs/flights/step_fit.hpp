@@ -22,8 +22,8 @@ namespace surefoot::stairs {
 class StepFitter {
   public:
     explicit StepFitter(const StairsConfig& config) : config_(config), profiler_(config) {}
-    /// Writes the edges of the flight that contains `seed`, lowest first; fewer than two if it has
-    /// no neighbours. Lines follow the cells (see StairsConfig::cell_reach).
+    /// Writes the edges of the flight that contains `seed`, lowest first; none if the flight has
+    /// fewer than two. Lines follow the cells (see StairsConfig::cell_reach).
     void fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>& out);
 
   private:

@@ -76,7 +76,7 @@ void place(Flight& flight) {
     flight.pose.yaw_rad = up ? std::atan2(-down.y(), -down.x()) : std::atan2(down.y(), down.x());
 }
 
-/// Copies the tracked edges into the flight; returns how many are left.
+/// Copies the tracked edges into the flight. Returns the number of edges that are still tracked.
 int refresh(const EdgeTracker& edges, Flight& flight) {
     int left = 0;
     for (Edge& edge : flight.edges) {
