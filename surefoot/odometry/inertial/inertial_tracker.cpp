@@ -20,7 +20,7 @@ constexpr int kAgreements = 20;  ///< this many frames in a row within the limit
 /// type than the calibration states.
 constexpr double kStartResidual_m = 0.02;
 constexpr double kStartResidual_rad = 0.02;
-/// Jitter alone never separates vision and IMU by more than this.
+/// Upper limits of the discord. Jitter alone never separates vision and IMU farther.
 constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
 constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimated discord

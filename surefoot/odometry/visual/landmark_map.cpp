@@ -8,7 +8,8 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Step in the image for measuring the local deformation: about the patch radius.
+/// Step in the image for measuring the local deformation: a little more than the radius of a patch
+/// template.
 constexpr double kWarpStep_px = 6.0;
 constexpr double kMinDepth_m = 0.05;
 /// An observation with a larger residual after an adjustment is a mismatch.

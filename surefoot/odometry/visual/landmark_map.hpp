@@ -19,7 +19,7 @@ struct Keyframe {
 
 /// Observation of a landmark by a keyframe.
 struct Sighting {
-    int keyframe = 0;  ///< id
+    int keyframe = 0;  ///< id of the keyframe
     StereoPixel pixel_px;
     double noise_factor = 1.0;
 };

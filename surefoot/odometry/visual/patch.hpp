@@ -10,8 +10,8 @@
 
 namespace surefoot::odometry {
 
-/// Image patch around a point, from the image in which the point was first seen. The patch alone
-/// suffices to find the point again.
+/// Image patch around a point, cut from one image (the host). The patch alone suffices to find the
+/// point again.
 struct HostPatch {
     static constexpr int kRadius = 13;
     static constexpr int kSize = 2 * kRadius + 1;

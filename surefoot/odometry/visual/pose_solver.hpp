@@ -80,7 +80,7 @@ inline constexpr int kMinimalPoseMatches = 5;
 struct VisualNormalEquations {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
-    double cost = 0.0;       ///< robust
+    double cost = 0.0;       ///< robust cost [sigma^2]
     double chi2 = 0.0;       ///< sum of squared residuals [sigma^2] inside the gate
     double square_px = 0.0;  ///< sum of squared pixel residuals inside the gate
     int rows = 0;
