@@ -162,7 +162,7 @@ void InertialConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    5.0,
                    "longest time for which the IMU alone continues the pose while the visual "
-                   "health is LOST");
+                   "odometry is lost");
 }
 
 }  // namespace surefoot::odometry

@@ -16,8 +16,8 @@ namespace surefoot::stairs {
 /// 6, ADA 504) with a margin.
 struct StairsConfig {
     double min_height_m = 0.04;  ///< smallest edge: a 75 mm kerb minus 3.4 sigma of 10 mm
-    double sigma_factor = 3.4;   ///< smallest edge height in sigma; p = 3e-4 that noise exceeds it
-    /// A matcher spreads a kerb over up to five cells of 25 mm. The value is one cell larger.
+    double sigma_factor = 3.4;   ///< smallest edge height in sigma; noise exceeds it with p = 3e-4
+    /// A matcher spreads a kerb over up to five cells of 25 mm. The default is one cell larger.
     double smear_m = 0.15;
     double min_length_m = 0.30;  ///< smallest length of an edge: 12 cells of 25 mm
     double fit_tolerance_m = 0.03;
@@ -32,8 +32,8 @@ struct StairsConfig {
     double max_riser_m = 0.23;
     double min_going_m = 0.15;
     double max_going_m = 0.55;
-    double min_width_m = 0.45;   ///< smallest width of a flight
-    double max_turn_deg = 40.0;  ///< largest angle between neighbouring edges; in spirals above 10
+    double min_width_m = 0.45;     ///< smallest width of a flight
+    double max_turn_deg = 40.0;    ///< largest turn between neighbouring edges; spirals exceed 10
     double max_facing_deg = 60.0;  ///< largest angle between a step's normal and the way to it
     double walk_step_m = 0.03;     ///< largest height difference that needs no step
     double kerb_m = 0.20;          ///< highest kerb

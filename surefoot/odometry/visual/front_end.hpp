@@ -26,7 +26,7 @@ class FrontEnd final : public Tracks {
   public:
     FrontEnd(const FrontEndConfig& config, const camera::Rectifier& rectifier);
 
-    /// Takes the images of a new frame. Returns false if the left image has another size.
+    /// Takes the images of a new frame. Returns false if the left image does not fit the rig.
     [[nodiscard]] bool load(const StereoFrame& frame, Executor& executor);
     /// Tracks the kept points by Lucas-Kanade, starting where `T_odom_camera` predicts them.
     void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
