@@ -32,8 +32,8 @@ constexpr double kTearing_s = 1.0;
 /// Time after a frame with too little depth in which poses are suspect. The cause may be swapped
 /// cameras, for which enough wrong points agree by chance in some frames.
 constexpr double kDepthAgain_s = 0.5;
-constexpr double kFewFollowed = 0.5;  ///< if a smaller share of the tracks agrees with the pose,
-                                      ///< track again
+/// If a smaller share of the tracks agrees with the pose, track again.
+constexpr double kFewFollowed = 0.5;
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -133,18 +133,18 @@ struct Odometry::Impl {
 
     Pose T_odom_camera;                           ///< pose of the last estimate
     Matrix6 covariance_camera = Matrix6::Zero();  ///< covariance if the landmarks are exact
-    Matrix6 lost_body = Matrix6::Zero();          ///< covariance of the motion since the last good
-                                                  ///< frame
-    Vector6 velocity = Vector6::Zero();           ///< velocity [m/s, rad/s] in the camera frame
-    std::int64_t time_ns = 0;                     ///< stamp of the previous frame
-    std::int64_t good_time_ns = 0;                ///< stamp of the last frame with a pose
-    Pose T_odom_good;                             ///< camera pose at `good_time_ns`
-    double sharpness = 0.0;                       ///< sharpness of the image at `good_time_ns`
-    double usual_gap_s = 0.0;                     ///< time between the two frames before this one
-    bool was_unsure = false;                      ///< the previous frame gave no pose
-    bool without_depth = false;                   ///< the present frame measured too little depth
-    std::optional<std::int64_t> torn_ns;          ///< stamp of the last torn image
-    std::optional<std::int64_t> shallow_ns;       ///< stamp of the last frame with too little depth
+    /// Covariance of the motion since the last good frame.
+    Matrix6 lost_body = Matrix6::Zero();
+    Vector6 velocity = Vector6::Zero();      ///< velocity [m/s, rad/s] in the camera frame
+    std::int64_t time_ns = 0;                ///< stamp of the previous frame
+    std::int64_t good_time_ns = 0;           ///< stamp of the last frame with a pose
+    Pose T_odom_good;                        ///< camera pose at `good_time_ns`
+    double sharpness = 0.0;                  ///< sharpness of the image at `good_time_ns`
+    double usual_gap_s = 0.0;                ///< time between the two frames before this one
+    bool was_unsure = false;                 ///< the previous frame gave no pose
+    bool without_depth = false;              ///< the present frame measured too little depth
+    std::optional<std::int64_t> torn_ns;     ///< stamp of the last torn image
+    std::optional<std::int64_t> shallow_ns;  ///< stamp of the last frame with too little depth
     MotionEstimate last;
     bool started = false;
     int frames = 0;

@@ -80,8 +80,8 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
 
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
     constexpr double kLeastShare = 0.25;
-    constexpr int kDeep_cells = 6;  ///< cells on each side, from the third on; nearer cells may mix
-                                    ///< both levels
+    /// Cells on each side, from the third on; nearer cells may mix both levels.
+    constexpr int kDeep_cells = 6;
     // Other ground lies behind an object that is narrower than the tested depth. Walkable floor
     // behind a bar does not make the bar walkable.
     constexpr double kSame_m = 0.06;

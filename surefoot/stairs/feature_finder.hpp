@@ -68,7 +68,7 @@ class FeatureFinder {
     grid::Layer walk_step_m_;  ///< reach_step_m of Reachability; NaN = unknown or not reachable
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
-    std::vector<Edge> guesses_;  ///< lines whose lower ground the map does not show
+    std::vector<Edge> guesses_;  ///< edges whose fall the map does not show
     std::vector<Edge> from_above_;
     std::vector<Edge> seen_;
     std::vector<std::vector<Edge>> chains_;  ///< edges of steps that were placed together

@@ -369,8 +369,8 @@ TEST(FeatureFinder, nothing_sensible_gives_nothing) {
 
 TEST(FeatureFinder, a_riser_at_the_border_of_the_map_does_not_invent_a_flight) {
     const TestFlight flight{.steps = 6};
-    const TestMap map(ground_of(flight), 0.0, {2.45, 0.0});  // the map shows 50 mm of the first
-                                                             // tread
+    // The map shows 50 mm of the first tread.
+    const TestMap map(ground_of(flight), 0.0, {2.45, 0.0});
     for (const Flight& f : find(map.terrain()).flights) EXPECT_EQ(f.steps, 1);
 }
 

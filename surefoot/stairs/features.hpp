@@ -106,7 +106,7 @@ struct Flight {
     int steps = 0;                ///< number of risers
     double riser_m = 0.0;         ///< mean height of the risers
     double riser_sigma_m = 0.0;   ///< standard error of the mean
-    double riser_spread_m = 0.0;  ///< scatter of single risers; 0 for one step
+    double riser_spread_m = 0.0;  ///< standard deviation of single risers; 0 for one step
     /// Mean distance from nosing to nosing. Its value, sigma and spread are NaN for a single step.
     double going_m = 0.0;
     double going_sigma_m = 0.0;

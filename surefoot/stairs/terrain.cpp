@@ -4,8 +4,8 @@
 namespace surefoot::stairs {
 
 bool View::shows(const Eigen::Vector3d& p_map_m) const {
-    constexpr double kBorder_px = 12.0;  // margin of the image in which a matcher finds fewer
-                                         // matches
+    // Margin of the image in which a matcher finds fewer matches.
+    constexpr double kBorder_px = 12.0;
     const Eigen::Vector3d p_camera_m = T_map_camera.inverse() * p_map_m;
     if (!(p_camera_m.z() > 0.0)) return false;
     const double u_px = fx_px * p_camera_m.x() / p_camera_m.z() + cx_px;

@@ -46,8 +46,8 @@ bool stuck(std::span<const ImuSample> samples, double least, const Get& get) {
     return false;
 }
 
-/// The samples that the interval needs: from the last one at or before its start to the first one
-/// at or after its end. Stamps must increase.
+/// Returns the samples that the interval needs: from the last sample at or before its start to the
+/// first sample at or after its end. Stamps must increase.
 std::span<const ImuSample> around(std::span<const ImuSample> samples,
                                   std::int64_t start_ns,
                                   std::int64_t end_ns) {

@@ -30,7 +30,8 @@ Cell cell_bounds(int index, int width, int height, const CornerConfig& config) {
             std::min((row + 1) * height / config.grid_rows, height - margin)};
 }
 
-/// Finds up to `wanted` best corners of one cell, at a distance from each other and from `taken`.
+/// Finds the best corners of one cell, at most `wanted`. The corners keep `min_distance_px` from
+/// each other and from `taken`.
 void detect_in_cell(const cv::Mat& image,
                     const Cell& cell,
                     int wanted,

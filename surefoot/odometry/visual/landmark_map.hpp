@@ -61,7 +61,7 @@ class LandmarkMap {
     /// Sets one sigma [px] of new observations. The next adjustment also uses it for stored
     /// observations.
     void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
-    /// Appends a keyframe. Beyond the limit, removes the oldest one with its hosted landmarks.
+    /// Appends a keyframe. Beyond the limit, removes the oldest keyframe with its hosted landmarks.
     int add_keyframe(const Pose& T_odom_camera);
     /// Adds a landmark that the newest keyframe observes at `raw_px` (rectified: `pixel`). Returns
     /// its slot, or nothing if its patch would leave the image.
@@ -70,13 +70,13 @@ class LandmarkMap {
                                     const StereoPixel& pixel);
     /// Adds a landmark without a patch, for points from another source. Returns its slot.
     int add_point(const StereoPixel& pixel);
-    /// Replaces the landmark's patch by one from the newest keyframe's image.
+    /// Replaces the landmark's patch by a patch from the newest keyframe's image.
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
     void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);
     void remove(int slot);
     /// Bundle adjustment of the newest keyframes and their landmarks; drops outlier observations.
     void adjust();
-    /// Removes the least useful landmarks beyond the limit, but never one that `in_use` marks.
+    /// Removes the least useful landmarks beyond the limit, but no landmark that `in_use` marks.
     void limit(const std::vector<std::uint8_t>& in_use);
 
     [[nodiscard]] bool empty() const noexcept { return keyframes_.empty(); }

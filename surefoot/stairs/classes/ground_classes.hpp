@@ -27,11 +27,11 @@ enum class GroundClass : std::uint8_t {
     ramp,     ///< a reachable plane that is steeper than level ground
     kerb,     ///< like a riser, but at a single edge that is no higher than a kerb
     sill,     ///< a raised cell between the jambs of a door
-    drop,     ///< ground more than stairs.drop_m below any ramp from reachable ground; also unknown
-              ///< cells that rays prove to be so low
+    drop,     ///< ground more than stairs.drop_m below any ramp from reachable ground.
+              ///< Unknown cells that rays prove to be so low are drops too.
     wall,     ///< higher than a step, and steep, narrow, on no plane or higher than a table
-    table,    ///< a plane no steeper than a ramp, higher than a step and not reachable: table tops,
-              ///< platforms seen from below
+    table,    ///< a plane no steeper than a ramp, higher than a step and not reachable.
+              ///< Examples: table tops, and platforms seen from below.
     tunnel,   ///< ground with an object lower than `headroom_m` above it
 };
 inline constexpr std::array<const char*, 11> kGroundClassNames{"unknown",

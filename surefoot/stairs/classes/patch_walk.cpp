@@ -16,11 +16,11 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: largest slope sigma of a patch that may
-                                             ///< carry
-constexpr double kContact_m = 0.2;           ///< smallest width of a contact for a foot
-constexpr double kStance_m = 0.3;            ///< equal to kStance_m in feature_finder.cpp
-constexpr double kSurface_m = 0.05;          ///< height range of one surface under the body
+/// 5 deg: largest slope sigma of a patch that may carry.
+constexpr double kCarries_sigma_rad = 0.09;
+constexpr double kContact_m = 0.2;   ///< smallest width of a contact for a foot
+constexpr double kStance_m = 0.3;    ///< equal to kStance_m in feature_finder.cpp
+constexpr double kSurface_m = 0.05;  ///< height range of one surface under the body
 /// Largest height error over the depth of a tread, from its tilt and from map distortion (see
 /// flights.cpp).
 constexpr double kTread_m = 0.035;

@@ -44,7 +44,7 @@ class PatchWalk {
   private:
     /// Two patches of one row or column with only blocks on no patch between them.
     struct Contact {
-        std::int32_t low = 0;  ///< the lower one of the two patch numbers
+        std::int32_t low = 0;  ///< the lower of the two patch numbers
         std::int32_t high = 0;
         float rise_m = 0.0F;  ///< height from `low` to `high`, at the middle between both
         float gap_m = 0.0F;

@@ -14,7 +14,7 @@ using Eigen::Vector2i;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Limit of the height range within a block. Floor has a smaller range, noise included; a block
-/// with a wall has a larger one.
+/// with a wall has a larger range.
 constexpr float kLevel_m = 0.1F;
 constexpr std::int16_t kNone = -1;
 

@@ -80,8 +80,9 @@ struct DoorFinder::Opening {
     double before_m = 0.0;  ///< height of the ground before the jambs
     double behind_m = 0.0;
     float wall_from_m = 0.0F;  ///< higher cells are not ground
-    float foot_from_m = 0.0F;  ///< a row of cells from the middle outwards ends at the first cell
-                               ///< of this height or more: the foot of a jamb; sills are lower
+    /// A row of cells from the middle outwards ends at the first cell of this height or more: the
+    /// foot of a jamb; sills are lower.
+    float foot_from_m = 0.0F;
 
     [[nodiscard]] Vector2d along() const { return {across.y(), -across.x()}; }
 };
@@ -489,8 +490,9 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     sill.sigma_m = std::sqrt(std::max(before.point_var_m2, behind.point_var_m2) +
                              0.5 * (before.var_m2 + behind.var_m2));
     const double least_m = std::max(config_.min_sill_m, config_.sigma_factor * sill.sigma_m);
-    // If the ground has a step, a ridge must be higher than both sides. If it has none, the ridge
-    // must be higher than the line between both sides, which is more certain than an extrapolation.
+    // If the ground has a step, a ridge must be higher than both sides. If the ground has no step,
+    // the ridge must be higher than the line between both sides, which is more certain than an
+    // extrapolation.
     const double middle_m = 0.5 * (front_m + back_m);
     const bool step = std::abs(behind.height_at(middle_m) - before.height_at(middle_m)) > least_m;
     double ridge_m = 0.0;

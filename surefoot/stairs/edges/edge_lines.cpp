@@ -151,8 +151,8 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
 
 void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
                                 std::span<const std::int32_t> chain) {
-    const double least_m = 0.5 * config_.min_length_m;  // pieces shorter than an edge may be joined
-                                                        // later
+    // Pieces shorter than an edge may be joined later.
+    const double least_m = 0.5 * config_.min_length_m;
     const auto least_points =
         saturated_integer<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
     left_.clear();

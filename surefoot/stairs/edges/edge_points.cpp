@@ -132,8 +132,9 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
         if (!known(next_m)) break;
         if (low < 0 || next_m < line.height_m[low]) low = cell + k;
     }
-    if (k <= window_cells_) {  // the known ground ends: find the next known cell behind the
-                               // occluded region
+    // If the known ground ends within the window, finds the next known cell behind the occluded
+    // region.
+    if (k <= window_cells_) {
         for (; k <= reach_cells_ && cell + k < line.cells; ++k) {
             const int behind = cell + k;
             if (known(line.height_m[behind])) {

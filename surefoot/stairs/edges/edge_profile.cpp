@@ -26,11 +26,11 @@ constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread betw
 constexpr double kStripRange_m = 0.06;
 constexpr double kBeside_m = 0.3;   ///< largest extension of an edge beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the largest turn [rad] of an edge against its line
-constexpr double kEnd_m = 0.25;     ///< ground that ends is known over this depth before the edge
-                                    ///< and unknown behind
+/// Ground that ends is known over this depth before the edge and unknown behind.
+constexpr double kEnd_m = 0.25;
 constexpr double kEndRms_m = 0.025;
-constexpr double kRagged_m = 0.075;  ///< the end of the ground may be ragged by this much on either
-                                     ///< side of the line
+/// The end of the ground may be ragged by this much on either side of the line.
+constexpr double kRagged_m = 0.075;
 /// Largest slope that noise on level ground explains.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< depth of ground that gives the slope

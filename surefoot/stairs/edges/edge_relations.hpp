@@ -11,7 +11,7 @@ namespace surefoot::stairs {
 [[nodiscard]] bool is_parallel(const Edge& a, const Edge& b);
 /// True if the heights above and below both edges agree within 40 mm.
 [[nodiscard]] bool same_ground(const Edge& a, const Edge& b);
-/// Length that two edges share, along the first one; negative = the gap between them.
+/// Length that two edges share, along the first edge; negative = the gap between them.
 [[nodiscard]] double overlap_m(const Edge& a, const Edge& b);
 /// True if `piece` belongs to `edge`: a piece of it, or a false line beside a ragged edge.
 [[nodiscard]] bool is_part_of(const Edge& piece, const Edge& edge);

@@ -22,8 +22,9 @@ constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr double kWindow_m = 0.35;
 constexpr double kLeastShare = 0.25;  ///< smallest share of known cells in a slice
 constexpr int kLeastSlices = 2;       ///< smallest number of slices on either side
-constexpr int kLags = 6;  ///< longest lag [cells]: 0.15 m for cells of 25 mm; `evidence_shared_m`
-                          ///< covers errors that reach farther
+/// Longest lag [cells]: 0.15 m for cells of 25 mm; `evidence_shared_m` covers errors that reach
+/// farther.
+constexpr int kLags = 6;
 constexpr double kClip_sigma = 3.0;
 /// Prior: one sigma of the slope of ground (19 deg). It bounds the slopes of short pieces.
 constexpr double kUsualSlope = 0.35;

@@ -105,7 +105,7 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 bool FlightFinder::may_be_step(const Edge& edge) const {
-    // An edge without visible lower ground can only be the last one of a flight.
+    // An edge without visible lower ground can only be the last edge of a flight.
     const bool is_step = !edge.lower_seen || is_step_of(config_, edge);
     return is_step && edge.height_m() <= config_.max_riser_m &&
            edge.length_m() >= config_.min_width_m;

@@ -19,7 +19,7 @@ struct RayBin {
     double sigma_m = 0.0;
 };
 
-/// The depths that the camera sees behind an edge down, from steep rays to flat ones, in the plane
+/// The depths that the camera sees behind an edge down, from steep to flat rays, in the plane
 /// across the edge. In this plane each nosing is a point. A tread is a run of constant depth and a
 /// nosing is a change of depth, for any camera roll and edge direction. This is the v-disparity
 /// image (Labayrade et al. 2002), turned to the edge. It shows strips of five pixels, which the map

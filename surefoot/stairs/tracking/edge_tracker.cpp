@@ -152,7 +152,7 @@ void take_height(const Edge& observation,
         const double higher_m = observation.height_m() - old_height_m;
         height_m += higher_m * track.height.take(var_m2, higher_m, most_observations);
         edge.lower_seen = true;
-    } else if (!edge.lower_seen) {  // the lower one of two bounds is valid
+    } else if (!edge.lower_seen) {  // the lower of two bounds is valid
         height_m = std::max(height_m, observation.height_m());
         (void)track.height.take(var_m2, 0.0, most_observations);
     }

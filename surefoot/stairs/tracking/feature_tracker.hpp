@@ -14,7 +14,7 @@
 
 namespace surefoot::stairs {
 
-/// The time of an observation, and the uncertainty of the motion since the previous one.
+/// The time of an observation, and the uncertainty of the motion since the previous observation.
 struct Moment {
     std::int64_t time_ns = 0;
     Drift drift;

@@ -47,7 +47,7 @@ int steps_of(const Flight& flight) {
     return std::clamp(flight.steps, 0, FlightTrack::kMaxSteps);
 }
 
-/// Returns true if the observed number of steps is the one to report.
+/// Adds a vote for `steps`. Returns true if this number of steps is reported.
 bool vote(int steps, double most_observations, FlightTrack& track) {
     const auto keep = static_cast<float>(1.0 - 1.0 / most_observations);
     for (float& votes : track.votes) votes *= keep;
