@@ -32,7 +32,7 @@ constexpr double kTearing_s = 1.0;
 /// Time after a frame with too little depth in which poses are suspect. The cause may be swapped
 /// cameras, for which enough wrong points agree by chance in some frames.
 constexpr double kDepthAgain_s = 0.5;
-/// If a smaller share of the tracks agrees with the pose, track again.
+/// If a smaller share of the kept tracks agrees with the pose, the frame is tracked again.
 constexpr double kFewFollowed = 0.5;
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {

@@ -147,7 +147,7 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     chains_.clear();
     std::vector<bool> taken(edges.size(), false);
     std::vector<Edge> chain;
-    for (std::size_t i = 0; i < edges.size(); ++i) {  // edges are sorted, longest first
+    for (std::size_t i = 0; i < edges.size(); ++i) {  // the edge of the longest line comes first
         const Edge& seed = edges[i];
         // An edge higher than a riser may be a board without a riser. A board is no deeper than a
         // tread.

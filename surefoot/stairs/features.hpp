@@ -30,9 +30,9 @@ struct Edge {
     Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
     double upper_m = 0.0;  ///< height of the ground above the edge, at the line
-    double lower_m = 0.0;  ///< height of the ground below the edge; if not seen, its upper bound
+    double lower_m = 0.0;  ///< height of the ground below the edge; an upper bound if not seen
     bool lower_seen = false;
-    bool open = false;            ///< a board without a riser: the camera sees through below it
+    bool open = false;            ///< a board without a riser: the camera sees the ground below it
     double height_sigma_m = 0.0;  ///< one sigma of upper_m - lower_m
     double across_sigma_m = 0.0;  ///< one sigma of the line's position, across the line
     double angle_sigma_rad = 0.0;
@@ -72,7 +72,7 @@ struct FeaturePose {
 
 /// A feature that consists of one line: a drop, a kerb or a door sill.
 struct LineFeature {
-    FeaturePose pose;       ///< yaw = direction in which it is crossed; z = ground before it
+    FeaturePose pose;       ///< yaw = direction of crossing; z = ground before the feature
     double height_m = 0.0;  ///< height behind minus height before; for a sill: its own height
     double length_m = 0.0;
     double sigma_m = 0.0;         ///< one sigma of the height
@@ -105,7 +105,7 @@ struct Flight {
     FeaturePose pose;
     int steps = 0;                ///< number of risers
     double riser_m = 0.0;         ///< mean height of the risers
-    double riser_sigma_m = 0.0;   ///< standard error of the mean
+    double riser_sigma_m = 0.0;   ///< one sigma of `riser_m`
     double riser_spread_m = 0.0;  ///< standard deviation of single risers; 0 for one step
     /// Mean distance from nosing to nosing. Its value, sigma and spread are NaN for a single step.
     double going_m = 0.0;

@@ -29,8 +29,8 @@ struct ImuNoise {
 
 struct ImuLimits {
     double max_gap_s = 0.03;        ///< longest time without a sample
-    double gyro_range_rad_s = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
-    double accel_range_m_s2 = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
+    double gyro_range_rad_s = 0.0;  ///< range; readings at the range are saturated; 0 = unknown
+    double accel_range_m_s2 = 0.0;  ///< range; readings at the range are saturated; 0 = unknown
 };
 
 /// Reason why an interval has no preintegrated motion.

@@ -185,7 +185,7 @@ std::optional<PredictedView> LandmarkMap::predict_view(const Landmark& landmark,
         view_from_host.col(axis) = (*moved - *centre) / kWarpStep_px;
     }
     const double det = view_from_host.determinant();
-    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // views too different to compare
+    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // the views are too different to compare
     return PredictedView{*centre, view_from_host.inverse()};
 }
 

@@ -106,7 +106,7 @@ class LandmarkMap {
 
     LandmarkMapConfig config_;
     const camera::Rectifier& rectifier_;
-    std::vector<Keyframe> keyframes_;  ///< ids ascending without gaps
+    std::vector<Keyframe> keyframes_;  ///< sorted by id; the ids have no gaps
     std::vector<Landmark> landmarks_;
     std::vector<int> free_slots_;
     std::int64_t next_landmark_ = 0;

@@ -42,12 +42,14 @@ void PatchConfig::describe(ConfigVisitor& visitor) {
                    tolerance_m,
                    0.001,
                    0.2,
-                   "largest distance of a cell with a small sigma from its plane");
+                   "distance from a plane within which every cell belongs to the plane, even if "
+                   "its sigma is small");
     visitor.number("sigma_factor",
                    sigma_factor,
                    0.0,
                    10.0,
-                   "largest distance of a cell with a large sigma from its plane, as a multiple of "
+                   "distance from a plane within which a cell with a large sigma belongs to the "
+                   "plane, as a multiple of "
                    "this sigma");
     visitor.number(
         "max_tolerance_m",

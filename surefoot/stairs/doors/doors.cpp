@@ -79,7 +79,7 @@ struct DoorFinder::Opening {
     double back_m = 0.0;
     double before_m = 0.0;  ///< height of the ground before the jambs
     double behind_m = 0.0;
-    float wall_from_m = 0.0F;  ///< higher cells are not ground
+    float wall_from_m = 0.0F;  ///< cells of this height or more are not ground
     /// A row of cells from the middle outwards ends at the first cell of this height or more: the
     /// foot of a jamb; sills are lower.
     float foot_from_m = 0.0F;

@@ -128,7 +128,7 @@ void add_border_points(const Terrain& terrain,
         while (!is_upper(cell) && cell != rows.edge() && cell != rows.end()) cell += rows.way();
         if (!is_upper(cell)) continue;
         while (cell != rows.end() && is_upper(cell + rows.way())) cell += rows.way();
-        if (cell == rows.end()) continue;  // the upper ground does not end here: not this edge
+        if (cell == rows.end()) continue;  // the upper ground does not end in the search range
         // Interpolates between the cell centres if the next cell is known.
         const double height_m = rows.value(terrain.height_m, cell);
         const double next_m = rows.value(terrain.height_m, cell + rows.way());

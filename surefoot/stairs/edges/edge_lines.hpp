@@ -58,7 +58,7 @@ class EdgeLineFinder {
     double resolution_m_ = 0.0;
     Image<std::int32_t> first_;  ///< first point of a cell, -1 = none
     std::vector<std::int32_t> parent_;
-    std::vector<std::int32_t> order_;  ///< points, chain by chain
+    std::vector<std::int32_t> order_;  ///< indices of the points, chain by chain
     /// A point that belongs to no line yet.
     struct Left {
         float x_m = 0.0F;

@@ -18,8 +18,8 @@ struct Level {
     double height_m = 0.0;
     double sigma_m = 0.0;
     double scatter_m = 0.0;  ///< robust standard deviation of one cell
-    double begin_m = 0.0;    ///< distance from the edge
-    double end_m = 0.0;      ///< position where the ground falls, rises or becomes unknown
+    double begin_m = 0.0;    ///< distance of the near end from the edge
+    double end_m = 0.0;      ///< distance at which the ground falls, rises or becomes unknown
     bool ends_unknown = false;
     double slope = 0.0;     ///< rise over run, away from the edge
     double middle_m = 0.0;  ///< middle of the ground that `height_m` averages

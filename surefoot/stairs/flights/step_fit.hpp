@@ -28,7 +28,7 @@ class StepFitter {
 
   private:
     struct Tread {
-        double begin_m = 0.0;  ///< position along the way down
+        double begin_m = 0.0;  ///< begin across the seed's line; positive = lower side
         double end_m = 0.0;
         double height_m = 0.0;
         double sigma_m = 0.0;    ///< one sigma of the height
