@@ -131,8 +131,9 @@ struct Odometry::Impl {
     MachineTracker machine;
     PoseSolverConfig solver;
 
-    Pose T_odom_camera;                           ///< pose of the last estimate
-    Matrix6 covariance_camera = Matrix6::Zero();  ///< covariance if the landmarks are exact
+    Pose T_odom_camera;  ///< pose of the last estimate
+    /// Covariance of T_odom_camera if the landmarks are exact.
+    Matrix6 covariance_camera = Matrix6::Zero();
     /// Covariance of the motion since the last good frame.
     Matrix6 lost_body = Matrix6::Zero();
     Vector6 velocity = Vector6::Zero();      ///< velocity [m/s, rad/s] in the camera frame

@@ -223,7 +223,7 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 }
 
 void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
-    if (!edge.lower_seen) return;       // no lower ground: nothing to test
+    if (!edge.lower_seen) return;       // the lower ground is not visible: nothing to test
     constexpr double kBeside_m = 0.05;  ///< smear of the next riser over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;

@@ -72,7 +72,7 @@ class InertialTracker {
     InertialConfig config_;
     InertialModel model_;
     ImuWatch watch_;
-    std::vector<ImuSample> samples_;  ///< samples since the last one at or before the present frame
+    std::vector<ImuSample> samples_;  ///< samples from the last one at or before this frame on
     std::int64_t time_ns_ = 0;        ///< stamp of the present frame
     bool has_time_ = false;
     Preintegration step_;                    ///< motion from the previous to the present frame

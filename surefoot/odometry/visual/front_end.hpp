@@ -17,7 +17,7 @@ struct FrontEndConfig {
     StereoPointConfig stereo;
     double min_correlation = 0.8;  ///< smallest correlation of an aligned patch
     int most_tracks = 240;         ///< largest number of tracks, including those found again
-    int most_attempts = 60;        ///< attempts per frame to find landmarks again
+    int most_attempts = 60;        ///< largest number of searches per frame for lost landmarks
 };
 
 /// Turns images into tracks of landmarks. Keeps the pyramids of the present frame and of the last

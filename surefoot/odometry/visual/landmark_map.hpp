@@ -26,9 +26,9 @@ struct Sighting {
 
 /// A point of the scene, with the image patch by which it is found again.
 struct Landmark {
-    std::int64_t id = -1;  ///< never reused; -1 = empty slot
+    std::int64_t id = -1;  ///< ids are never reused; -1 = empty slot
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom, if keyframes are exact
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom; keyframes count as exact
     HostPatch patch;
     int host = -1;  ///< id of the keyframe that the patch is from; -1 = no patch
     /// Change of the ray at unit depth per pixel of the host image's u and v, in host camera axes.

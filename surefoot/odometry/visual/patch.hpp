@@ -29,7 +29,7 @@ struct PatchTemplate {
     static constexpr int kSize = 2 * kRadius + 1;
     static constexpr int kCount = kSize * kSize;
     std::array<float, kCount> value;   ///< mean removed
-    std::array<float, kCount> step_u;  ///< pseudo-inverse row: grey differences to a shift [px]
+    std::array<float, kCount> step_u;  ///< pseudo-inverse: turns grey differences into a shift [px]
     std::array<float, kCount> step_v;
     float norm = 0.0F;  ///< norm of `value`
 };

@@ -17,7 +17,7 @@ struct PointMatch {
     Eigen::Vector3d p_world_m;
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of p_world_m, in world
     StereoPixel pixel_px;
-    double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
+    double noise_factor = 1.0;  ///< sigma of this measurement / configured sigma
     double vote = 1.0;          ///< weight of the point in the vote for a pose
 };
 

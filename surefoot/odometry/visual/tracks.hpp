@@ -19,7 +19,7 @@ struct Track {
     Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< position in the raw left image
     /// Pixel, moved from its row's exposure to the stamp of the frame; u_right NaN = unknown.
     StereoPixel pixel_px = StereoPixel::Zero();
-    double noise_factor = 1.0;  ///< sigma relative to that of an aligned point
+    double noise_factor = 1.0;  ///< sigma / sigma of an aligned point
     double correlation = 0.0;   ///< correlation with the landmark's patch; 0 = not aligned
 };
 

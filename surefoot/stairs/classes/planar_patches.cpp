@@ -254,7 +254,8 @@ void PatchFinder::grow_all(PatchMap& out) {
 }
 
 void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
-    constexpr double kFirstBlocks = 4.0;  ///< up to this size the plane of the seed is used
+    /// Number of blocks up to which a region uses the plane of its seed.
+    constexpr double kFirstBlocks = 4.0;
     constexpr double kMore = 1.5;
     const auto id = static_cast<std::int32_t>(regions_.size());
     Region region{{}, start};

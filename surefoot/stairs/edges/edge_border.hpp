@@ -18,7 +18,7 @@ struct BorderPoint {
 
 /// Parameters of a search for border points.
 struct BorderSearch {
-    int edge = 0;             ///< number that the found points get
+    int edge = 0;             ///< edge number of the found points
     double at_m = 0.0;        ///< expected position of the edge, across the line
     double upper_m = 0.0;     ///< height of the ground above the edge
     double below_m = 0.0;     ///< cells may lie this much below `upper_m` and still be upper ground

@@ -15,7 +15,8 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 /// Smallest height of an edge point in sigma. It is lower than that of an edge, because the
 /// finished edge is tested again.
 constexpr double kPointSigmas = 1.5;
-constexpr double kLongestShadow_m = 2.5;  ///< for a drop of 1 m, see shadow_per_height
+/// Longest occluded region: shadow_per_height for a drop of 1 m.
+constexpr double kLongestShadow_m = 2.5;
 
 bool known(float value) {
     return value == value;

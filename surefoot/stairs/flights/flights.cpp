@@ -152,7 +152,7 @@ void FlightFinder::lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) 
         }
         chain.insert(below ? chain.begin() : chain.end(), edges[i]);
         edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // the next edge may have changed
+        i = 0;  // the chain has a new end, so all edges are tried again
     }
 }
 

@@ -33,7 +33,7 @@ class RayFaces {
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 
     std::vector<float> runs_m_;
-    std::vector<float> lower_m_;  ///< the runs of the lower half of the face
+    std::vector<float> lower_m_;  ///< distances in the lower half of the face
     std::vector<float> upper_m_;
 };
 

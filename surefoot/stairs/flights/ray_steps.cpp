@@ -15,9 +15,10 @@ constexpr double kHighest_m = -0.03;
 constexpr double kDeepest_m = 1.2;
 // in range: constants
 constexpr int kDepths = static_cast<int>((kDeepest_m - kHighest_m) / kGrid_m) + 1;
-constexpr int kLeastRise = 10;      ///< smallest riser in units of kGrid_m; less is one tread
-constexpr float kStepCost = 8.0F;   ///< a step must reduce the cost by at least this [sigma]
-constexpr float kMostCost = 3.0F;   ///< limit per bin: a bin between two treads fits neither
+constexpr int kLeastRise = 10;     ///< smallest riser in units of kGrid_m; less is one tread
+constexpr float kStepCost = 8.0F;  ///< a step must reduce the cost by at least this [sigma]
+/// Largest cost of a bin [sigma]. A bin between two treads fits neither tread.
+constexpr float kMostCost = 3.0F;
 constexpr int kLeastSupport = 3;    ///< smallest number of bins of a level: 1.5 pixels
 constexpr double kFirst_m = 0.08;   ///< largest distance of the first nosing from the known edge
 constexpr double kUneven_m = 0.03;  ///< largest difference of risers and of goings in a flight
