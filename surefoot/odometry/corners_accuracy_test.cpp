@@ -15,8 +15,8 @@ namespace {
 
 using testing::PointRecording;
 
-/// PnP leaves 0.46 px in the left camera and, transferred, 0.50 px in the right one. This is for
-/// both axes together, so 0.33-0.36 px per axis.
+/// PnP leaves a residual of 0.46 px in the left camera and, transferred, 0.50 px in the right
+/// camera. These are residuals of both axes together: 0.33 to 0.36 px per axis.
 constexpr double kCornerNoise_px = 0.35;
 
 /// Row 1115 of the truth is the last one before the grid leaves the view, 1116 the first after it.
@@ -28,7 +28,7 @@ struct Followed {
     std::vector<Eigen::Vector3d> positions;  ///< positions of the left camera, in odom
 };
 
-/// Over the frames from `first_ns` to `last_ns`.
+/// Runs the odometry over the frames from `first_ns` to `last_ns`.
 Followed follow(const PointRecording& recording,
                 bool with_imu,
                 std::int64_t first_ns,
@@ -84,7 +84,7 @@ TEST(EurocApril, CornersFollowTheTruthInBothPartsWithAndWithoutImu) {
                         run.motions.size(),
                         with_imu ? "with" : "without",
                         1e3 * found_m);
-            EXPECT_LT(found_m, 0.010);  // required 20 mm
+            EXPECT_LT(found_m, 0.010);  // the requirement is 20 mm
             // At first the right camera does not see the grid; landmarks exist from the third frame
             // on.
             for (std::size_t i = 3; i < run.motions.size(); ++i)
@@ -131,7 +131,7 @@ TEST(EurocApril, TheGapIsLostUnsureAndLeftWithoutAJump) {
             seconds_from_ns(*lost_ns - kGapBegins_ns),
             std::sqrt(unseen_m2),
             seconds_from_ns(ok_ns - kGapEnds_ns));
-        EXPECT_LE(seconds_from_ns(*lost_ns - kGapBegins_ns), 0.6);  // required
+        EXPECT_LE(seconds_from_ns(*lost_ns - kGapBegins_ns), 0.6);  // the requirement is 0.6 s
         EXPECT_GT(std::sqrt(unseen_m2), 0.1);
         EXPECT_GT(ok_ns, kGapEnds_ns);
     }

@@ -8,16 +8,17 @@
 namespace surefoot::odometry {
 namespace {
 
-constexpr double kBlurred = 0.3;       ///< below this sharpness ratio an image is blurred
+constexpr double kBlurred = 0.3;       ///< an image with a smaller sharpness ratio is blurred
 constexpr double kMinAgreeing = 0.35;  ///< smallest share of the tracks that agree on one motion
-constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma / depth of the scene
+/// Largest translation sigma / depth of the scene of an OK frame.
+constexpr double kDegradedDepthShare = 0.01;
 constexpr double kDegradedRotation_rad = 0.01;
 constexpr double kGapPeriods = 3.5;  ///< a gap is longer than this many usual periods
 /// Smallest number of points on a second motion, and its smallest ratio to the number of points on
 /// the first motion. Wrong matches are fewer and do not agree with each other.
 constexpr int kOtherMotion = 15;
 constexpr double kOtherMotionShare = 0.2;
-constexpr double kLostFactor = 10.0;  ///< a sigma above this factor times its limit: LOST
+constexpr double kLostFactor = 10.0;  ///< a sigma above this factor times its DEGRADED limit: LOST
 
 }  // namespace
 

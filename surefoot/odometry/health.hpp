@@ -23,13 +23,13 @@ struct HealthEvidence {
     bool stamp_grows = true;
     bool was_unsure = false;       ///< no pose in the previous frame, or too little depth recently
     bool torn_lately = false;      ///< an image shortly before this one was torn
-    double sharpness_ratio = 1.0;  ///< present / last good frame (ImagePyramid::sharpness)
+    double sharpness_ratio = 1.0;  ///< sharpness of this frame / that of the last good frame
     double translation_sigma_m = 0.0;  ///< one sigma in the weakest direction
     double rotation_sigma_rad = 0.0;   ///< one sigma in the weakest direction
     double scene_depth_m = 0.0;        ///< median depth of the inliers; 0 = unknown
     bool imu_disagrees = false;        ///< the IMU contradicts vision in several frames in a row
     bool imu_gap = false;              ///< IMU samples are missing in at least two frames in a row
-    bool machine_disagrees = false;    ///< machine contradicts vision in several frames in a row
+    bool machine_disagrees = false;    ///< machine motion contradicts vision for several frames
     bool beyond_machine = false;       ///< the pose implies a motion above the machine's limit
 };
 
@@ -38,12 +38,12 @@ struct HealthVerdict {
     HealthReason reason = HealthReason::few_tracks;
 };
 
-/// Decides the health of a frame. LOST: the frame has no pose, too few points, points that leave a
-/// direction uncertain, or a pose beyond the machine's speed. Also LOST: the cameras are swapped,
-/// or the right image has content but no point has a measured depth. DEGRADED: the first frame
-/// after a LOST one, and the half second after a frame with too little depth. Points that are found
-/// again may contradict the poses in between (by the baseline after swapped cameras). Also
-/// DEGRADED: one second after a torn image, because more may follow. The reason names the cause if
+/// Decides the health of a frame. LOST: swapped cameras, no pose, too few points, a pose beyond the
+/// machine's speed, points that leave a direction uncertain, or no measured depth although the
+/// right image has content. DEGRADED: a second motion, few points, a weak direction, blur, a large
+/// residual, a time gap, or an IMU or machine that disagrees. Also DEGRADED: the first frame after
+/// a LOST one and half a second after too little depth (points found again may contradict the poses
+/// in between), and one second after a torn image (more may follow). The reason names the cause if
 /// known: first a time gap, then blur, then the points. An IMU gap costs no accuracy while enough
 /// points are seen: health OK, reason imu_gap.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);

@@ -87,7 +87,7 @@ TEST(Health, ASecondMotionIsAMovingScene) {
     expect(e, Health::ok, HealthReason::none);
     e.other_motion = 20;
     expect(e, Health::degraded, HealthReason::moving_scene);
-    e.inliers = 60;  // also a minority of the tracks: the cause comes first
+    e.inliers = 60;  // the inliers are a minority of the tracks, because of the second motion
     expect(e, Health::degraded, HealthReason::moving_scene);
 }
 

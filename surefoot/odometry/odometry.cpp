@@ -29,10 +29,11 @@ constexpr double kLeastNewErrors = 1e-3;  ///< smallest share of errors that two
 /// Time after a torn image in which the next images are suspect. The check of rows detects only the
 /// first of several torn images in a row; data of the others never arrived.
 constexpr double kTearing_s = 1.0;
-/// Too little depth may come from swapped cameras, for which enough wrong points agree by chance in
-/// some frames.
+/// Time after a frame with too little depth in which poses are suspect. The cause may be swapped
+/// cameras, for which enough wrong points agree by chance in some frames.
 constexpr double kDepthAgain_s = 0.5;
-constexpr double kFewFollowed = 0.5;  ///< if a smaller share is tracked, track a second time
+/// If a smaller share of the kept tracks agrees with the pose, the frame is tracked again.
+constexpr double kFewFollowed = 0.5;
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -130,19 +131,21 @@ struct Odometry::Impl {
     MachineTracker machine;
     PoseSolverConfig solver;
 
-    Pose T_odom_camera;                           ///< pose of the last estimate
-    Matrix6 covariance_camera = Matrix6::Zero();  ///< covariance if the landmarks are exact
-    Matrix6 lost_body = Matrix6::Zero();          ///< covariance since the last good frame
-    Vector6 velocity = Vector6::Zero();           ///< velocity [m/s, rad/s] in the camera frame
-    std::int64_t time_ns = 0;                     ///< stamp of the previous frame
-    std::int64_t good_time_ns = 0;                ///< stamp of the last frame with a pose
-    Pose T_odom_good;                             ///< camera pose at `good_time_ns`
-    double sharpness = 0.0;                       ///< sharpness of the image at `good_time_ns`
-    double usual_gap_s = 0.0;                     ///< time between the two frames before this one
-    bool was_unsure = false;                      ///< the previous frame gave no pose
-    bool without_depth = false;                   ///< the present frame measured too little depth
-    std::optional<std::int64_t> torn_ns;          ///< stamp of the last torn image
-    std::optional<std::int64_t> shallow_ns;       ///< stamp of the last frame with too little depth
+    Pose T_odom_camera;  ///< pose of the last estimate
+    /// Covariance of T_odom_camera if the landmarks are exact.
+    Matrix6 covariance_camera = Matrix6::Zero();
+    /// Covariance of the motion since the last good frame.
+    Matrix6 lost_body = Matrix6::Zero();
+    Vector6 velocity = Vector6::Zero();      ///< velocity [m/s, rad/s] in the camera frame
+    std::int64_t time_ns = 0;                ///< stamp of the previous frame
+    std::int64_t good_time_ns = 0;           ///< stamp of the last frame with a pose
+    Pose T_odom_good;                        ///< camera pose at `good_time_ns`
+    double sharpness = 0.0;                  ///< sharpness of the image at `good_time_ns`
+    double usual_gap_s = 0.0;                ///< time between the two frames before this one
+    bool was_unsure = false;                 ///< the previous frame gave no pose
+    bool without_depth = false;              ///< the present frame measured too little depth
+    std::optional<std::int64_t> torn_ns;     ///< stamp of the last torn image
+    std::optional<std::int64_t> shallow_ns;  ///< stamp of the last frame with too little depth
     MotionEstimate last;
     bool started = false;
     int frames = 0;
@@ -331,8 +334,8 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     return evidence;
 }
 
-/// True if base_link is farther from the last good frame than the machine can have moved, by more
-/// than three sigma.
+/// True if base_link moved or turned farther since the last good frame than the machine can, by
+/// more than three sigma.
 bool Odometry::Impl::is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const {
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     const Vector6 motion = difference(body_from(T_odom_good), body_from(pose.T_world_camera));
@@ -483,8 +486,8 @@ MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
     return estimate;
 }
 
-/// Covariance that the last frame's motion adds to `lost_body`, if `reckoned` states the covariance
-/// of the motion since the last good frame.
+/// Returns the covariance of the motion since the previous frame: the covariance of `reckoned`
+/// (motion since the last good frame) minus `lost_body`.
 Matrix6 Odometry::Impl::unseen_since_last(const CameraFix& reckoned) const {
     return positive_part(
         camera_to_body_covariance(reckoned.covariance, rectifier.rig().T_body_camera) - lost_body);

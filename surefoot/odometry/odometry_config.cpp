@@ -33,12 +33,13 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                     3,
                     30,
                     "number of newest keyframes that the bundle adjustment includes");
-    visitor.number("still_parallax_px",
-                   still_parallax_px,
-                   0.0,
-                   3.0,
-                   "largest median parallax of a camera that may stand still; the expected "
-                   "parallax from noise is added; 0 = never still");
+    visitor.number(
+        "still_parallax_px",
+        still_parallax_px,
+        0.0,
+        3.0,
+        "largest median parallax at which the camera may count as standing still; the expected "
+        "parallax from noise is added; 0 = the camera never counts as standing still");
     visitor.number("bridge_s",
                    bridge_s,
                    0.0,
@@ -61,7 +62,7 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                     6,
                     1000,
                     "smallest number of points that agree with the pose; with fewer points the "
-                    "odometry is lost");
+                    "health is LOST");
     visitor.number("ok_residual_px",
                    ok_residual_px,
                    0.1,

@@ -109,7 +109,8 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
                 EXPECT_STREQ(to_string(m.reason), swapped ? "cameras_swapped" : "poor_geometry")
                     << i;
             }
-            // A motion that began at an uncertain pose; depth must be measured again for some time.
+            // The health stays DEGRADED for one frame after swapped cameras, and for half a second
+            // after missing depth.
             const bool unsure =
                 swapped ? i == 14 : seconds_from_ns(frame.time_ns - last_wrong_ns) <= 0.5;
             if (i >= 14) {
@@ -125,7 +126,7 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
     }
 }
 
-/// Even such images contain points that seem to agree; their landmarks are wrong.
+/// Images of swapped cameras also contain points that seem to agree, but their landmarks are wrong.
 TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -134,7 +135,8 @@ TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
         if (i < 15) std::swap(frame.left, frame.right);
         const auto m = run.odometry.update(frame, serial);
         expect_valid(m);
-        // The frame that seeds landmarks has nothing to compare with; the next one has.
+        // The frame that seeds landmarks has no earlier landmarks to compare with; the next frame
+        // has.
         EXPECT_EQ(m.health, i <= 15 ? Health::lost : i == 16 ? Health::degraded : Health::ok) << i;
         if (i == 15) continue;
         EXPECT_STREQ(to_string(m.reason),
@@ -145,7 +147,7 @@ TEST(Odometry, EyesExchangedFromTheStartAreLostUntilTheyAreInOrder) {
     }
 }
 
-/// No earlier check of the frames: the odometry itself must detect a repeated image.
+/// Nothing else checks these frames: the odometry itself must detect a repeated image.
 TEST(Odometry, AnImageThatWasThereBeforeIsNoMachineThatStands) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -222,7 +224,7 @@ TEST(Odometry, FollowsAHandHeldCurve) {
     EXPECT_LT(worst_m, 0.010);  // 0.3 m path, walls up to 3 m away, 352 px wide images
 }
 
-/// Follows the same curve, started from rest within half a second.
+/// The same curve, but the camera starts from rest within half a second.
 Pose from_rest(double index) {
     const double t = 0.05 * std::max(index, 0.0);
     return truth_at(20.0 * (t - 0.2 * std::tanh(t / 0.2)));
@@ -392,14 +394,14 @@ TEST(Odometry, TheMachineCarriesThePoseInTheDark) {
         const auto m = run.odometry.update(frame, serial);
         expect_valid(m);
         if (i == 0) continue;
-        // The first image after it gives the new landmarks.
+        // The first image after the dark second gives new landmarks.
         EXPECT_EQ(m.health == Health::lost, black || i == 28) << i << " " << to_string(m.reason);
         const double error_m =
             (run.left_camera(m).translation_m - truth_at(i).translation_m).norm();
         EXPECT_LT(error_m, 0.01) << i;
         if (black) dark = compose_covariance(dark, m.T_previous_body, m.relative_covariance);
     }
-    // Twenty motions of 2 mm each; the lever arm adds the effect of the rotations.
+    // Twenty motions with a sigma of 2 mm each; the lever arm adds the effect of the rotations.
     EXPECT_GT(std::sqrt(dark(0, 0)), 2e-3 * std::sqrt(19.0));
     EXPECT_LT(std::sqrt(dark(0, 0)), 0.02);
 }
@@ -416,7 +418,7 @@ TEST(Odometry, AMachineThatSlipsIsNamedAndLeftOut) {
         worst_m = std::max(worst_m,
                            (run.left_camera(m).translation_m - truth_at(i).translation_m).norm());
         const bool named = m.reason == HealthReason::machine_disagreement;
-        EXPECT_EQ(named, i > 12) << i;  // after three in a row
+        EXPECT_EQ(named, i > 12) << i;  // after three contradictions in a row
         if (named) {
             EXPECT_EQ(m.health, Health::degraded);
         }

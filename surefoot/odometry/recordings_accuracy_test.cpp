@@ -44,7 +44,7 @@ TEST(Recordings, KittiCityFollowsTheTruth) {
     if (missing(recording, "sequences/kitti_city")) return;
     const double ate_m = testing::aligned_rmse_m(follow(*recording), truth_positions(*recording));
     std::printf("kitti_city ATE %.3f m\n", ate_m);
-    EXPECT_LT(ate_m, 0.135);  // required 0.15; libviso2 0.120
+    EXPECT_LT(ate_m, 0.135);  // the requirement is 0.15 m; libviso2 has 0.120 m
 }
 
 TEST(Recordings, ZedOfficeStepsAreTenCentimetres) {
@@ -60,9 +60,9 @@ TEST(Recordings, ZedOfficeStepsAreTenCentimetres) {
     for (const double step : steps_mm) square += (step - mean_mm) * (step - mean_mm);
     const double spread_mm = std::sqrt(square / (n - 1.0));
     std::printf("zed_office steps %.1f +- %.1f mm\n", mean_mm, spread_mm);
-    EXPECT_GT(mean_mm, 98.0);  // required 95-108
+    EXPECT_GT(mean_mm, 98.0);  // the requirement is 95 to 108 mm
     EXPECT_LT(mean_mm, 107.0);
-    EXPECT_LT(spread_mm, 6.0);  // required 8
+    EXPECT_LT(spread_mm, 6.0);  // the requirement is 8 mm
 }
 
 TEST(Recordings, EurocStillDoesNotDrift) {
@@ -72,7 +72,7 @@ TEST(Recordings, EurocStillDoesNotDrift) {
     double worst_m = 0.0;
     for (const auto& p : positions) worst_m = std::max(worst_m, (p - positions.front()).norm());
     std::printf("euroc_still farthest %.2f mm\n", 1e3 * worst_m);
-    EXPECT_LT(worst_m, 1e-3);  // required 5 mm
+    EXPECT_LT(worst_m, 1e-3);  // the requirement is 5 mm
 }
 
 TEST(Recordings, RenderedRoomFollowsTheTruth) {
@@ -85,7 +85,7 @@ TEST(Recordings, RenderedRoomFollowsTheTruth) {
     if (missing(recording, folder)) return;
     const double ate_m = testing::aligned_rmse_m(follow(*recording), truth_positions(*recording));
     std::printf("rendered room ATE %.4f m\n", ate_m);
-    EXPECT_LT(ate_m, 2e-3);  // required 20 mm
+    EXPECT_LT(ate_m, 2e-3);  // the requirement is 20 mm
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
 
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
     constexpr double kLeastShare = 0.25;
-    constexpr int kDeep_cells = 6;  ///< depth behind the first two cells, which may be mixed
+    /// Cells on each side, from the third on; nearer cells may mix both levels.
+    constexpr int kDeep_cells = 6;
     // Other ground lies behind an object that is narrower than the tested depth. Walkable floor
     // behind a bar does not make the bar walkable.
     constexpr double kSame_m = 0.06;
@@ -113,7 +114,8 @@ void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edg
     }
 }
 
-/// True if a ragged seed leads to steps that already belong to a flight.
+/// Returns true if another chain already has a step of this chain. A ragged edge gives several
+/// seeds for the same steps.
 bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     for (const std::vector<Edge>& other : chains_)
         for (const Edge& step : other)
@@ -124,7 +126,8 @@ bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     return false;
 }
 
-/// True for a spiral: at one of the chain's steps a longer edge has another direction.
+/// Returns true for a spiral: near a step of the chain lies a longer edge between the same heights,
+/// turned by 12 deg to `max_turn_deg`.
 bool FeatureFinder::turns(std::span<const Edge> chain, std::span<const Edge> edges) const {
     constexpr double kLeast_rad = 0.21;  // 12 deg
     constexpr double kNear_m = 0.9;
@@ -144,9 +147,10 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     chains_.clear();
     std::vector<bool> taken(edges.size(), false);
     std::vector<Edge> chain;
-    for (std::size_t i = 0; i < edges.size(); ++i) {  // edges are sorted, longest first
+    for (std::size_t i = 0; i < edges.size(); ++i) {  // the edge of the longest line comes first
         const Edge& seed = edges[i];
-        // A higher edge may be a board without a riser, which is no deeper than a tread.
+        // An edge higher than a riser may be a board without a riser. A board is no deeper than a
+        // tread.
         if (taken[i] || seed.length_m() < config_.min_width_m ||
             (seed.height_m() > config_.max_riser_m && seed.upper_depth_m > config_.max_going_m))
             continue;
@@ -206,7 +210,8 @@ void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& ed
     }
 }
 
-/// Replaces the edges that are parts of a visible flight by that flight.
+/// Moves the flight in `seen_` to `chains_` and removes its parts from `edges`. Returns false if
+/// `seen_` has fewer than two steps, or if another chain already has one of these steps.
 bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
     if (seen_.size() < 2 || shares_a_step(seen_)) return false;
     std::erase_if(edges, [&](const Edge& edge) {
@@ -218,7 +223,7 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 }
 
 void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
-    if (!edge.lower_seen) return;       // no lower ground: nothing to test
+    if (!edge.lower_seen) return;       // the lower ground is not visible: nothing to test
     constexpr double kBeside_m = 0.05;  ///< smear of the next riser over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;
@@ -245,8 +250,10 @@ void FeatureFinder::weigh(const Terrain& terrain, std::vector<Edge>& edges) {
     });
 }
 
-/// Ends a flight where smooth ground explains the further steps. At least half of the steps must be
-/// proven. Every other step must be as likely as a drop, occluded, or between two proven steps.
+/// Keeps the longest run of acceptable steps in `chain` and moves all other steps to `edges`. A
+/// step is acceptable if its likelihood ratio reaches `drop_ratio` or is NaN, if it is hidden, or
+/// if it lies between two proven steps. A run needs two steps or more, and at least half of them
+/// must be proven.
 void FeatureFinder::keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const {
     const auto is_step = [&](std::size_t k) { return is_step_of(config_, chain[k]); };
     const double likely = std::log(config_.drop_ratio);
@@ -294,7 +301,8 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
     for (std::size_t i = 0; i < out.edges.size(); ++i) {
         const Edge& edge = out.edges[i];
         if (in_flight_[i]) continue;
-        // An edge with walkable ground above it is a drop, from whichever side it is seen.
+        // If only the upper side is walkable, the edge is crossed downwards, wherever the stance
+        // is. If both sides are walkable, the side of the stance decides.
         const bool both = edge.upper_walkable && edge.lower_walkable;
         const bool goes_down = both ? edge.below_m(terrain.stance_m) < 0.0 : edge.upper_walkable;
         if (!goes_down && !edge.lower_walkable) continue;

@@ -41,11 +41,11 @@ class FeatureFinder {
     /// Adds steps down that the camera sees and the map lacks.
     void see_steps_down(const Terrain& terrain, std::vector<Edge>& edges);
     bool add_seen(std::vector<Edge>& edges);
-    /// Removes edges that smooth ground explains as well; ends flights where such edges begin.
+    /// Removes edges that smooth ground explains much better (`drop_ratio`), also from flights.
     void weigh(const Terrain& terrain, std::vector<Edge>& edges);
     void weigh_one(const Terrain& terrain, Edge& edge);
     void keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const;
-    /// Joins pieces of a ragged edge whose measurements agree.
+    /// Joins the pieces of one ragged edge if their heights agree.
     void join_pieces(std::vector<Edge>& edges) const;
     /// Marks the sides of each edge that can be walked to from the stance.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
@@ -65,10 +65,10 @@ class FeatureFinder {
     FlightSides flight_sides_;
     DoorFinder door_finder_;
     traversability::Reachability reachability_;
-    grid::Layer walk_step_m_;  ///< reach_step_m of Reachability; NaN = not reachable
+    grid::Layer walk_step_m_;  ///< reach_step_m of Reachability; NaN = unknown or not reachable
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
-    std::vector<Edge> guesses_;  ///< lines whose lower ground the map does not show
+    std::vector<Edge> guesses_;  ///< edges whose fall the map does not show
     std::vector<Edge> from_above_;
     std::vector<Edge> seen_;
     std::vector<std::vector<Edge>> chains_;  ///< edges of steps that were placed together

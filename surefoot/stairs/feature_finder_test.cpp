@@ -175,7 +175,8 @@ TEST(FeatureFinder, what_cannot_be_walked_to_is_no_drop) {
 }
 
 TEST(FeatureFinder, a_bar_that_is_narrower_than_a_foot_is_no_ground_that_ends_in_a_drop) {
-    // It stands on a slope of 45 deg. The slope before it can be walked to, its top cannot.
+    // The bar stands on a slope of 45 deg. The machine can walk to the slope before the bar, but
+    // not to the top of the bar.
     for (const double width_m : {0.05, 0.1}) {
         const TestMap map(
             [&](double x_m, double) {
@@ -187,7 +188,7 @@ TEST(FeatureFinder, a_bar_that_is_narrower_than_a_foot_is_no_ground_that_ends_in
         EXPECT_FALSE(found.edges.empty()) << width_m;
         EXPECT_TRUE(found.drops.empty()) << width_m;
     }
-    // The ground behind a low sill is a drop after all.
+    // Ground that falls behind a low sill is a drop.
     const TestMap sill(
         [](double x_m, double) { return x_m < 0.5    ? 0.0
                                         : x_m < 0.55 ? 0.06
@@ -299,7 +300,7 @@ TEST(FeatureFinder, two_flights_side_by_side_are_two) {
 
 TEST(FeatureFinder, a_flight_that_the_map_cuts_off_says_so) {
     const TestFlight flight{.steps = 20, .riser_m = 0.17, .going_m = 0.28};
-    const TestMap map(ground_of(flight), 0.0, {1.0, 0.0});  // 1.5 m of it are in the map
+    const TestMap map(ground_of(flight), 0.0, {1.0, 0.0});  // 1.5 m of the flight lie in the map
     const TerrainFeatures found = find(map.terrain());
     ASSERT_EQ(found.flights.size(), 1U);
     EXPECT_EQ(found.flights[0].steps, 6);
@@ -368,7 +369,8 @@ TEST(FeatureFinder, nothing_sensible_gives_nothing) {
 
 TEST(FeatureFinder, a_riser_at_the_border_of_the_map_does_not_invent_a_flight) {
     const TestFlight flight{.steps = 6};
-    const TestMap map(ground_of(flight), 0.0, {2.45, 0.0});  // 50 mm of the first tread
+    // The map shows 50 mm of the first tread.
+    const TestMap map(ground_of(flight), 0.0, {2.45, 0.0});
     for (const Flight& f : find(map.terrain()).flights) EXPECT_EQ(f.steps, 1);
 }
 
@@ -455,7 +457,8 @@ TEST(FeatureFinder, a_step_whose_face_is_seen_raggedly_between_two_others_is_one
     const TestFlight flight{.steps = 5, .riser_m = 0.18, .going_m = 0.31};
     constexpr double kRaggedStep_m = 2 * 0.31;
     const auto ground = [&](double x_m, double y_m) {
-        // On one side its face is measured too near, on the other too far.
+        // The face of the third step is measured too near on one side and too far on the other
+        // side.
         const bool near = std::abs(x_m - kRaggedStep_m) < 0.12;
         const double way = std::abs(y_m) < 0.12 ? 0.0 : y_m > 0.0 ? 0.11 : -0.11;
         return flight.at(near ? x_m + way : x_m, y_m);

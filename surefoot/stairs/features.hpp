@@ -30,9 +30,9 @@ struct Edge {
     Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
     double upper_m = 0.0;  ///< height of the ground above the edge, at the line
-    double lower_m = 0.0;  ///< height below the edge; if not seen, an upper bound
+    double lower_m = 0.0;  ///< height of the ground below the edge; an upper bound if not seen
     bool lower_seen = false;
-    bool open = false;            ///< a board without a riser: the camera sees through below it
+    bool open = false;            ///< a board without a riser: the camera sees the ground below it
     double height_sigma_m = 0.0;  ///< one sigma of upper_m - lower_m
     double across_sigma_m = 0.0;  ///< one sigma of the line's position, across the line
     double angle_sigma_rad = 0.0;
@@ -42,9 +42,9 @@ struct Edge {
     /// Natural logarithm of the likelihood ratio "step" over "smooth ground", last observation
     /// (StepEvidenceFinder). NaN = not computed, because the lower ground is not seen.
     double log_step_ratio = std::numeric_limits<double>::quiet_NaN();
-    bool hidden = false;  ///< the ground that falls between both sides is not seen
+    bool hidden = false;  ///< true: the falling ground between both sides is not seen
 
-    bool upper_walkable = false;  ///< the stance reaches this side without a step
+    bool upper_walkable = false;  ///< the stance reaches the upper side without a step
     bool lower_walkable = false;
     Tracked tracked;
 
@@ -72,7 +72,7 @@ struct FeaturePose {
 
 /// A feature that consists of one line: a drop, a kerb or a door sill.
 struct LineFeature {
-    FeaturePose pose;       ///< seen from the stance: yaw leads across it, z = ground before it
+    FeaturePose pose;       ///< yaw = direction of crossing; z = ground before the feature
     double height_m = 0.0;  ///< height behind minus height before; for a sill: its own height
     double length_m = 0.0;
     double sigma_m = 0.0;         ///< one sigma of the height
@@ -104,15 +104,15 @@ struct Flight {
     /// Middle of the first edge; z = ground before it; yaw = direction of travel along the flight.
     FeaturePose pose;
     int steps = 0;                ///< number of risers
-    double riser_m = 0.0;         ///< mean
-    double riser_sigma_m = 0.0;   ///< standard error of the mean
-    double riser_spread_m = 0.0;  ///< scatter of single risers; 0 for one step
-    /// Mean distance from nosing to nosing. NaN for a single step, as are its sigma and its spread.
+    double riser_m = 0.0;         ///< mean height of the risers
+    double riser_sigma_m = 0.0;   ///< one sigma of `riser_m`
+    double riser_spread_m = 0.0;  ///< standard deviation of single risers; 0 for one step
+    /// Mean distance from nosing to nosing. Its value, sigma and spread are NaN for a single step.
     double going_m = 0.0;
     double going_sigma_m = 0.0;
     double going_spread_m = 0.0;
     double width_m = 0.0;
-    double landing_m = 0.0;  ///< known level ground behind the last edge
+    double landing_m = 0.0;  ///< length of the known level ground behind the last edge
     /// The edges of the flight, in order from the stance.
     std::vector<Edge> edges;
     double turn_rad = 0.0;  ///< change of direction from the first edge to the last (spiral)
@@ -128,7 +128,7 @@ struct Door {
     FeaturePose pose;  ///< middle of the opening; z = ground before it; yaw = direction through it
     double width_m = 0.0;
     double width_sigma_m = 0.0;
-    double sill_m = 0.0;  ///< highest point across the opening above the ground; 0 = none
+    double sill_m = 0.0;  ///< height of the sill above the ground before the opening; 0 = none
     double sill_sigma_m = 0.0;
     double clearance_m = 0.0;  ///< smallest free height; NaN = nothing seen overhead
     Tracked tracked;

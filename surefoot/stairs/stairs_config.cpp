@@ -38,11 +38,8 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
         0.0,
         1.0,
         "height that a map cell holds: 0 = height at its centre, 1 = highest point of its area");
-    visitor.number("min_riser_m",
-                   min_riser_m,
-                   0.01,
-                   1.0,
-                   "smallest height of a step of a flight, except the first step");
+    visitor.number(
+        "min_riser_m", min_riser_m, 0.01, 1.0, "smallest median height of the steps of a flight");
     visitor.number("max_riser_m", max_riser_m, 0.02, 1.0, "largest height of a step of a flight");
     visitor.number(
         "min_going_m", min_going_m, 0.05, 2.0, "smallest depth of a tread, from nosing to nosing");
@@ -57,12 +54,13 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    60.0,
                    "largest angle between the edges of neighbouring steps");
-    visitor.number("max_facing_deg",
-                   max_facing_deg,
-                   10.0,
-                   90.0,
-                   "largest angle between the path and the normal of a single step; at a larger "
-                   "angle the step is not a flight");
+    visitor.number(
+        "max_facing_deg",
+        max_facing_deg,
+        10.0,
+        90.0,
+        "largest angle between the normal of a single step and the straight way from the "
+        "machine to this step; at a larger angle the step is not a flight");
     visitor.number("walk_step_m",
                    walk_step_m,
                    0.01,
@@ -70,7 +68,8 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
                    "largest height difference between neighbouring cells that counts as walkable "
                    "ground without a step");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "largest height of a kerb");
-    visitor.number("drop_m", drop_m, 0.01, 1.0, "largest fall to lower ground that is not a drop");
+    visitor.number(
+        "drop_m", drop_m, 0.01, 1.0, "a fall to lower ground by more than this height is a drop");
     visitor.number("step_ratio",
                    step_ratio,
                    0.0,
@@ -104,7 +103,8 @@ std::optional<std::string> StairsConfig::problem() const {
             "stairs.min_going_m {} must be below stairs.max_going_m {}", min_going_m, max_going_m);
     if (!(drop_ratio <= step_ratio))
         return fmt::format(
-            "stairs.drop_ratio {} must not exceed stairs.step_ratio {}: a step down is a drop",
+            "stairs.drop_ratio {} must not exceed stairs.step_ratio {}, "
+            "because every step down counts as a drop",
             drop_ratio,
             step_ratio);
     if (auto found = doors.problem()) return found;

@@ -4,7 +4,8 @@
 namespace surefoot::stairs {
 
 bool View::shows(const Eigen::Vector3d& p_map_m) const {
-    constexpr double kBorder_px = 12.0;  // margin of the image in which matchers see less
+    // Margin of the image in which a matcher finds fewer matches.
+    constexpr double kBorder_px = 12.0;
     const Eigen::Vector3d p_camera_m = T_map_camera.inverse() * p_map_m;
     if (!(p_camera_m.z() > 0.0)) return false;
     const double u_px = fx_px * p_camera_m.x() / p_camera_m.z() + cx_px;
@@ -30,7 +31,8 @@ double View::unmapped_m(const Eigen::Vector3d& p_map_m, const Eigen::Vector2d& w
     const Eigen::Vector3d ray_m = p_map_m - T_map_camera.translation_m;
     const double along_m = ray_m.head<2>().dot(way);
     if (!(fy_px > 0.0 && along_m > 0.0 && ray_m.z() < 0.0)) return 0.0;
-    // An angular error of one pixel moves the end of the ray by range^2 / height along the ground.
+    // An angular error [rad] times range^2 / height is the distance by which the end of the ray
+    // moves along the ground.
     const double range_sq_m2 = ray_m.squaredNorm();
     const double ahead_m = unmapped_px / fy_px * range_sq_m2 / -ray_m.z();
     return ahead_m * along_m / ray_m.head<2>().norm();

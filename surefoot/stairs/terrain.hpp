@@ -24,17 +24,17 @@ struct View {
     /// Pixels within this distance of unmatched pixels are not mapped (elevation.pixels.reach_px).
     double unmapped_px = 0.0;
 
-    /// True if both cameras image the point inside their image borders. Ignores occlusion.
+    /// True if both cameras image the point at least 12 px inside the image. Ignores occlusion.
     [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
-    /// Error of the range to a point that a disparity error of `error_px` causes.
+    /// Error of the range to a point, caused by a disparity error of `error_px`.
     [[nodiscard]] double range_error_m(double error_px,
                                        const Eigen::Vector2d& p_map_m,
                                        double z_map_m) const;
     /// Number of pixels that show level ground at a point, per square metre of ground; 0 behind or
     /// above the camera. Same formula as elevation::ExpectedPoints.
     [[nodiscard]] double pixels_per_m2(const Eigen::Vector3d& p_map_m) const;
-    /// Length of level ground beyond its last mapped point [m]: `unmapped_px` projected onto the
-    /// ground along `way`, a unit vector that leads away from the camera.
+    /// Length of the unmapped strip of level ground behind the mapped point `p_map_m` [m]:
+    /// `unmapped_px` projected to the ground along `way` (unit vector, leads away from the camera).
     [[nodiscard]] double unmapped_m(const Eigen::Vector3d& p_map_m,
                                     const Eigen::Vector2d& way) const;
 };
@@ -54,9 +54,9 @@ struct Terrain {
     ImageView<const float> density_ratio;
     /// Number of observations that agree on the height; an empty layer means more than one.
     ImageView<const std::uint32_t> observations;
-    /// Position of the machine. Ground that falls away from here is a drop.
+    /// Position of the machine. The side of the machine decides whether an edge leads up or down.
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    /// Needed to decide whether ground ends within the camera's view; empty = no such decision.
+    /// Camera of the current frame; empty = unknown. Ends of the ground are found only in its view.
     std::optional<View> view;
     /// Disparities of the current frame, including pixels that the map omits; NaN = no match.
     ImageView<const float> disparity_px;

@@ -9,8 +9,9 @@
 namespace surefoot::odometry {
 namespace {
 
-/// If the range is unknown, a reading counts as saturated when it stays exactly the same for this
-/// many samples. Its rate or force must be one that a machine in steady motion never has.
+/// A reading also counts as saturated if it stays exactly the same for this many samples, at a rate
+/// or force that a machine in steady motion never has. This test works even if the range is
+/// unknown.
 constexpr int kStuckSamples = 4;
 constexpr double kStuckRate_rad_s = 2.0;
 constexpr double kStuckForce_m_s2 = 15.0;
@@ -45,8 +46,8 @@ bool stuck(std::span<const ImuSample> samples, double least, const Get& get) {
     return false;
 }
 
-/// The samples that the interval needs: from the last one at or before its start to the first one
-/// at or after its end. Stamps must increase.
+/// Returns the samples that the interval needs: from the last sample at or before its start to the
+/// first sample at or after its end. Stamps must increase.
 std::span<const ImuSample> around(std::span<const ImuSample> samples,
                                   std::int64_t start_ns,
                                   std::int64_t end_ns) {

@@ -29,8 +29,8 @@ struct ImuNoise {
 
 struct ImuLimits {
     double max_gap_s = 0.03;        ///< longest time without a sample
-    double gyro_range_rad_s = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
-    double accel_range_m_s2 = 0.0;  ///< range per axis; readings at it are saturated; 0 = unknown
+    double gyro_range_rad_s = 0.0;  ///< range; readings at the range are saturated; 0 = unknown
+    double accel_range_m_s2 = 0.0;  ///< range; readings at the range are saturated; 0 = unknown
 };
 
 /// Reason why an interval has no preintegrated motion.
@@ -40,7 +40,7 @@ enum class ImuProblem : std::uint8_t {
     gap,         ///< no sample for longer than the limit, inside or at an end
     stamps,      ///< stamps repeat or go back, or the interval is empty
     not_finite,
-    saturated,  ///< a reading is at its range limit; if that is unknown: high and constant
+    saturated,  ///< a reading is at its range limit, or is high and exactly constant
 };
 [[nodiscard]] const char* to_string(ImuProblem problem) noexcept;
 
@@ -77,8 +77,8 @@ struct Preintegration {
 
 /// Integrates the readings from `start_ns` to `end_ns` by the mid-point rule. Readings at the ends
 /// are interpolated between their neighbours. If one side has no neighbour, the nearest reading is
-/// held for at most `limits.max_gap_s`. `samples` may reach beyond the interval: only the last
-/// before it and the first after it are used.
+/// held for at most `limits.max_gap_s`. `samples` may reach beyond the interval. Outside it, only
+/// the last sample before and the first sample after it are used.
 [[nodiscard]] Preintegration preintegrate(const ImuLimits& limits,
                                           const ImuNoise& noise,
                                           std::span<const ImuSample> samples,

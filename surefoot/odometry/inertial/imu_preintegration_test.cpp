@@ -221,7 +221,7 @@ TEST(ImuPreintegration, BadInputIsNamedAndNothingIsMadeOfIt) {
     EXPECT_EQ(ask(samples_of(0.6, 0.9, 200.0)), ImuProblem::no_samples);
     EXPECT_EQ(ask(samples_of(0.435, 0.9, 200.0)), ImuProblem::gap);
     auto bad = good;
-    bad.erase(bad.begin() + 82, bad.begin() + 89);  // 40 ms
+    bad.erase(bad.begin() + 82, bad.begin() + 89);  // 40 ms without a sample
     EXPECT_EQ(ask(bad), ImuProblem::gap);
     bad = good;
     bad[85].time_ns = bad[84].time_ns;

@@ -8,7 +8,8 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Half the usual rate is not a gap, and neither is a stamp that jitters by two periods.
+/// A pause longer than this number of usual periods is a gap. Half the usual rate (pauses of 2
+/// periods) and a jitter of two periods (pauses of 3 periods) are not gaps.
 constexpr std::int64_t kGapPeriods = 4;
 constexpr std::size_t kLeastPeriods = 8;  ///< with fewer periods the rate is unknown
 constexpr int kLackingFrames = 2;

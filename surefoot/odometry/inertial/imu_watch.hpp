@@ -22,7 +22,7 @@ class ImuWatch {
 
     /// Takes samples in the order of their arrival.
     void listen(std::span<const ImuSample> samples);
-    /// Ends the frame at `time_ns` after its samples. `problem`: result of their integration.
+    /// Call after the samples of a frame, with its stamp and the result of their integration.
     void finish(std::int64_t time_ns, ImuProblem problem);
     [[nodiscard]] bool gap() const noexcept;
 

@@ -7,8 +7,8 @@
 
 #include "surefoot/odometry/inertial/inertial_solver.hpp"
 
-/// Parts of the least-squares problem of `inertial_solver`. Each part adds its normal equations H
-/// step = b at a pair of states. Order of the unknowns: 15 previous, 15 present, 2 tilt.
+/// Parts of the least-squares problem of `inertial_solver`. Each part adds normal equations H step
+/// = b. Order of the unknowns: previous state (15), present state (15), tilt (2).
 namespace surefoot::odometry::inertial {
 
 inline constexpr int kFrame = 15;  ///< unknowns of a frame, gravity excluded

@@ -177,7 +177,7 @@ InertialSolution fuse(const InertialModel& model,
                       const InertialBelief& before,
                       const ImuMotion& motion,
                       const PoseEvidence& known) {
-    constexpr int kIterations = 8;  // nearly linear
+    constexpr int kIterations = 8;  // enough, because the problem is nearly linear
     PoseFactor factor{known};
     return solve(model, before, motion, known.T_odom_imu, kIterations, factor);
 }
@@ -186,8 +186,8 @@ InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                         const Matrix6& visual_covariance) {
     InertialBelief result = belief;
     // Vision is part of the belief, so the difference normally has no negative direction. Robust
-    // weights at two slightly different poses can cause one. The covariance in such a direction
-    // stays unchanged.
+    // weights at two slightly different poses can cause a negative direction. The covariance in
+    // such a direction stays unchanged.
     result.covariance.topLeftCorner<6, 6>() +=
         positive_part(visual_covariance - belief.covariance.topLeftCorner<6, 6>());
     return result;

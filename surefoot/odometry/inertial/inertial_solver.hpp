@@ -61,7 +61,7 @@ struct VisualEvidence {
 struct PoseEvidence {
     Pose T_odom_imu;
     Matrix6 covariance = Matrix6::Zero();
-    std::optional<double> standing_sigma_m_s;  ///< 1 sigma of zero velocity; empty = it may move
+    std::optional<double> standing_sigma_m_s;  ///< 1 sigma of zero velocity; empty = may be moving
 };
 
 struct InertialSolution {

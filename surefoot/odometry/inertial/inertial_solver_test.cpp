@@ -214,7 +214,7 @@ struct PointCost {
     }
 };
 
-/// Offset of Ceres' minimum from ours, and its covariance of (present, tilt).
+/// Offset of Ceres' minimum from our minimum, and Ceres' covariance of (present, tilt).
 Vector32 offset_of_ceres(const TwoFrames& f, const InertialSolution& ours, Matrix17& covariance) {
     // Our previous state is marginalised, so the start is its belief.
     const InertialState& i0 = f.before.state;
@@ -337,8 +337,9 @@ TEST(InertialSolver, BeliefsAreHonest) {
                 nees_seen,
                 nees_blind,
                 nees_blind_pose);
-    // 120 runs scatter by 0.53. Below 17 because the model's random walk does not occur; above
-    // because Huber's weights expect more noise than there is.
+    // The mean of 120 runs scatters by 0.53. It may lie below 17, because the random walk of the
+    // model does not occur. It may lie above 17, because Huber's weights expect more noise than
+    // there is.
     EXPECT_NEAR(nees_seen, 17.0, 2.5);
     EXPECT_NEAR(nees_blind, 17.0, 2.5);
     EXPECT_NEAR(nees_blind_pose, 6.0, 1.2);

@@ -20,7 +20,7 @@ constexpr int kAgreements = 20;  ///< this many frames in a row within the limit
 /// type than the calibration states.
 constexpr double kStartResidual_m = 0.02;
 constexpr double kStartResidual_rad = 0.02;
-/// Jitter alone never separates vision and IMU by more than this.
+/// Upper limits of the discord. Jitter alone never separates vision and IMU farther.
 constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
 constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimated discord
@@ -65,7 +65,7 @@ void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t t
     }
     time_ns_ = time_ns;
     has_time_ = true;
-    // Of the past samples only the last one at or before the frame is needed again.
+    // Of the past samples, only the last sample at or before the frame is needed again.
     auto needed =
         std::ranges::find_if(samples_, [&](const ImuSample& s) { return s.time_ns > time_ns; });
     if (needed != samples_.begin()) --needed;
@@ -98,7 +98,7 @@ std::optional<Pose> InertialTracker::predicted() const {
 std::optional<Vector6> InertialTracker::camera_velocity() const {
     if (!present_ || samples_.empty()) return std::nullopt;
     const InertialState& imu = present_->state;
-    // The first remaining sample is the last one at or before the frame.
+    // The first remaining sample is the last sample at or before the frame.
     const Eigen::Vector3d turn_imu = samples_.front().angular_velocity_rad_s - imu.bias.gyro_rad_s;
     const Eigen::Vector3d speed_imu = imu.T_odom_imu.rotation.conjugate() * imu.velocity_m_s;
     const Pose& T_imu_camera = model_.T_imu_camera;

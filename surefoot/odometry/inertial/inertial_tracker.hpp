@@ -37,8 +37,8 @@ class InertialTracker {
     void keep(std::span<const ImuSample> samples);
     /// Camera pose of this frame as the IMU predicts it; nothing before the initialisation.
     [[nodiscard]] std::optional<Pose> predicted() const;
-    /// Velocity of the camera in this frame, per second (right perturbation of its pose); nothing
-    /// before the initialisation.
+    /// Velocity of the camera in this frame [m/s, rad/s], as right perturbation of its pose per
+    /// second; nothing before the initialisation.
     [[nodiscard]] std::optional<Vector6> camera_velocity() const;
     /// Pose from vision and IMU together; nothing when vision must continue alone. `seen` holds the
     /// points behind `visual`. `unmodelled` is the covariance of further errors of the visual
@@ -46,7 +46,7 @@ class InertialTracker {
     [[nodiscard]] std::optional<CameraFix> see(const VisualEvidence& seen,
                                                const PoseSolution& visual,
                                                const Matrix6& unmodelled);
-    /// The camera has not moved since it stopped; `held` is its pose.
+    /// Takes a frame in which the camera still stands where it stopped; `held` is its pose.
     void stand(const CameraFix& held);
     /// Pose without vision, with the covariance of the motion since the last frame with vision.
     /// Nothing when the IMU has no state or that frame is longer ago than `dead_reckoning_s`.
@@ -72,15 +72,15 @@ class InertialTracker {
     InertialConfig config_;
     InertialModel model_;
     ImuWatch watch_;
-    std::vector<ImuSample> samples_;  ///< samples since the last one at or before the present frame
+    std::vector<ImuSample> samples_;  ///< samples from the last one at or before this frame on
     std::int64_t time_ns_ = 0;        ///< stamp of the present frame
     bool has_time_ = false;
     Preintegration step_;                    ///< motion from the previous to the present frame
     std::optional<InertialBelief> belief_;   ///< belief after the previous frame
     std::optional<InertialBelief> present_;  ///< predicted belief for the present frame
-    std::optional<InertialBelief> unseen_;   ///< belief_, pose errors since the last seen frame
-    double blind_s_ = 0.0;                   ///< time since the last seen frame
-    Pose T_odom_camera_;                     ///< returned pose of the present frame
+    std::optional<InertialBelief> unseen_;  ///< belief_; pose errors count from the last seen frame
+    double blind_s_ = 0.0;                  ///< time since the last seen frame
+    Pose T_odom_camera_;                    ///< returned pose of the present frame
     double discord_m_ = 0.0;
     double discord_rad_ = 0.0;
     std::vector<SeenMotion> frames_;  ///< frames until the initialisation

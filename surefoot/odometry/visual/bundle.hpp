@@ -37,8 +37,8 @@ struct BundleResult {
     double cost_before = 0.0;  ///< robust cost [squared sigmas]
     double cost_after = 0.0;
     int steps = 0;                             ///< number of accepted steps
-    std::vector<Eigen::Matrix3d> information;  ///< one per point, for fixed poses [1/m^2]
-    std::vector<double> residual_sigmas;       ///< one per sight, at the end; inf = behind camera
+    std::vector<Eigen::Matrix3d> information;  ///< information of each point [1/m^2], poses fixed
+    std::vector<double> residual_sigmas;       ///< residual of each sight; inf = behind the camera
 };
 
 /// Bundle adjustment by Levenberg-Marquardt with Huber weights on (u_left, v, u_right). The Schur

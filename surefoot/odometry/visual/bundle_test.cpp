@@ -105,7 +105,7 @@ TEST(Bundle, AgreesWithCeres) {
     ceres::Solver::Summary summary;
     ceres::Solve(options, &ceres_problem, &summary);
     const BundleResult ours = adjust_bundle(test_rig(), config, problem);
-    // Ceres halves the cost; ours stops when a step gains less than 1e-4 of the cost.
+    // Ceres halves the cost. Our solver stops when a step gains less than 1e-4 of the cost.
     EXPECT_NEAR(ours.cost_after, 2.0 * summary.final_cost, 1e-3 * ours.cost_after);
     for (std::size_t i = 0; i < poses.size(); ++i)
         EXPECT_LT(difference(problem.T_world_camera[i], angle_axis_pose(poses[i].data())).norm(),

@@ -30,7 +30,8 @@ Cell cell_bounds(int index, int width, int height, const CornerConfig& config) {
             std::min((row + 1) * height / config.grid_rows, height - margin)};
 }
 
-/// Finds up to `wanted` best corners of one cell, at a distance from each other and from `taken`.
+/// Finds the best corners of one cell, at most `wanted`. The corners keep `min_distance_px` from
+/// each other and from `taken`.
 void detect_in_cell(const cv::Mat& image,
                     const Cell& cell,
                     int wanted,
@@ -82,7 +83,7 @@ void detect_corners(ImageView<const std::uint8_t> image,
         // The shares of all cells sum to `most` exactly.
         const int share = (index + 1) * config.most / cells - index * config.most / cells;
         if (cell.u1 - cell.u0 < kBlock_px || cell.v1 - cell.v0 < kBlock_px) return;
-        std::vector<Eigen::Vector2d> near;  // points in the cell, or near enough to matter
+        std::vector<Eigen::Vector2d> near;  // points in the cell or within `min_distance_px`
         int inside = 0;
         for (const Eigen::Vector2d& p : occupied) {
             const double out_u = std::max({cell.u0 - p.x(), p.x() - cell.u1, 0.0});

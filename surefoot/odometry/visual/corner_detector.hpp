@@ -14,8 +14,8 @@ namespace surefoot::odometry {
 struct CornerConfig {
     int grid_columns = 16;
     int grid_rows = 10;
-    int most = 240;                ///< wanted number of corners, including occupied ones
-    double min_gradient = 2.5;     ///< smallest rms grey step per pixel, weaker direction
+    int most = 240;                ///< wanted number of corners, including the `occupied` points
+    double min_gradient = 2.5;     ///< smallest rms grey step per pixel in the weaker direction
     double min_distance_px = 8.0;  ///< smallest distance from another corner
     int border_px = 14;            ///< smallest distance from the image border
 };

@@ -21,16 +21,16 @@ constexpr double kBorder_px = 8.0;  ///< smallest distance of a patch centre fro
 /// If fewer tracks than this share have a depth, the front end checks whether the cameras are
 /// swapped.
 constexpr double kHardlyAnyDepth = 0.2;
-/// The cameras count as swapped if at least this number of corners shows its camera. At least this
-/// share of these corners must come from the other camera. The share is 1 to 6 % in correct images
-/// and 85 to 98 % in swapped images.
+/// The cameras count as swapped if at least kEnoughTell corners reveal their camera, and more than
+/// the share kExchangedShare of these corners comes from the other camera. The share is 1 to 6 % in
+/// correct images and 85 to 98 % in swapped images.
 constexpr double kEnoughTell = 20.0;
 constexpr double kExchangedShare = 0.7;
 
 /// An image is usable if it has at least this share of the other image's structure.
 constexpr double kOtherStructure = 0.3;
 
-/// Returns the mean square difference of pixels two columns apart, in every eighth row.
+/// Returns the sum of the squared differences of pixels two columns apart, in every eighth row.
 double structure_of(ImageView<const std::uint8_t> image) {
     constexpr int kRows = 8;
     std::int64_t sum = 0;

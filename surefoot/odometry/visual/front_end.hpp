@@ -16,8 +16,8 @@ struct FrontEndConfig {
     CornerConfig corners;
     StereoPointConfig stereo;
     double min_correlation = 0.8;  ///< smallest correlation of an aligned patch
-    int most_tracks = 240;         ///< largest number, including tracks that were found again
-    int most_attempts = 60;        ///< attempts per frame to find landmarks again
+    int most_tracks = 240;         ///< largest number of tracks, including those found again
+    int most_attempts = 60;        ///< largest number of searches per frame for lost landmarks
 };
 
 /// Turns images into tracks of landmarks. Keeps the pyramids of the present frame and of the last
@@ -26,7 +26,7 @@ class FrontEnd final : public Tracks {
   public:
     FrontEnd(const FrontEndConfig& config, const camera::Rectifier& rectifier);
 
-    /// Takes the images of a new frame. Returns false when their size differs from the rig's.
+    /// Takes the images of a new frame. Returns false if the left image does not fit the rig.
     [[nodiscard]] bool load(const StereoFrame& frame, Executor& executor);
     /// Tracks the kept points by Lucas-Kanade, starting where `T_odom_camera` predicts them.
     void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;

@@ -8,7 +8,8 @@
 namespace surefoot::odometry {
 namespace {
 
-/// Step in the image for measuring the local deformation: about the patch radius.
+/// Step in the image for measuring the local deformation: a little more than the radius of a patch
+/// template.
 constexpr double kWarpStep_px = 6.0;
 constexpr double kMinDepth_m = 0.05;
 /// An observation with a larger residual after an adjustment is a mismatch.
@@ -184,7 +185,7 @@ std::optional<PredictedView> LandmarkMap::predict_view(const Landmark& landmark,
         view_from_host.col(axis) = (*moved - *centre) / kWarpStep_px;
     }
     const double det = view_from_host.determinant();
-    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // views too different to compare
+    if (!(det > 0.2 && det < 5.0)) return std::nullopt;  // the views are too different to compare
     return PredictedView{*centre, view_from_host.inverse()};
 }
 

@@ -19,16 +19,16 @@ struct Keyframe {
 
 /// Observation of a landmark by a keyframe.
 struct Sighting {
-    int keyframe = 0;  ///< id
+    int keyframe = 0;  ///< id of the keyframe
     StereoPixel pixel_px;
     double noise_factor = 1.0;
 };
 
 /// A point of the scene, with the image patch by which it is found again.
 struct Landmark {
-    std::int64_t id = -1;  ///< never reused; -1 = empty slot
+    std::int64_t id = -1;  ///< ids are never reused; -1 = empty slot
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom, if keyframes are exact
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom; keyframes count as exact
     HostPatch patch;
     int host = -1;  ///< id of the keyframe that the patch is from; -1 = no patch
     /// Change of the ray at unit depth per pixel of the host image's u and v, in host camera axes.
@@ -61,7 +61,7 @@ class LandmarkMap {
     /// Sets one sigma [px] of new observations. The next adjustment also uses it for stored
     /// observations.
     void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
-    /// Appends a keyframe. Beyond the limit, removes the oldest one with its hosted landmarks.
+    /// Appends a keyframe. Beyond the limit, removes the oldest keyframe with its hosted landmarks.
     int add_keyframe(const Pose& T_odom_camera);
     /// Adds a landmark that the newest keyframe observes at `raw_px` (rectified: `pixel`). Returns
     /// its slot, or nothing if its patch would leave the image.
@@ -70,13 +70,13 @@ class LandmarkMap {
                                     const StereoPixel& pixel);
     /// Adds a landmark without a patch, for points from another source. Returns its slot.
     int add_point(const StereoPixel& pixel);
-    /// Replaces the landmark's patch by one from the newest keyframe's image.
+    /// Replaces the landmark's patch by a patch from the newest keyframe's image.
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
     void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);
     void remove(int slot);
     /// Bundle adjustment of the newest keyframes and their landmarks; drops outlier observations.
     void adjust();
-    /// Removes the least useful landmarks beyond the limit, but never one that `in_use` marks.
+    /// Removes the least useful landmarks beyond the limit, but no landmark that `in_use` marks.
     void limit(const std::vector<std::uint8_t>& in_use);
 
     [[nodiscard]] bool empty() const noexcept { return keyframes_.empty(); }
@@ -106,7 +106,7 @@ class LandmarkMap {
 
     LandmarkMapConfig config_;
     const camera::Rectifier& rectifier_;
-    std::vector<Keyframe> keyframes_;  ///< ids ascending without gaps
+    std::vector<Keyframe> keyframes_;  ///< sorted by id; the ids have no gaps
     std::vector<Landmark> landmarks_;
     std::vector<int> free_slots_;
     std::int64_t next_landmark_ = 0;

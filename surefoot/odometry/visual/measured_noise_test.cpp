@@ -14,7 +14,8 @@ using testing::World;
 
 constexpr double kExpected_px = 0.2;
 
-/// Result of the odometry for measurements with `noise_px`, configured as `sigma_px`.
+/// Returns `world` for an odometry that is configured with `sigma_px` instead of `noise_px`. The
+/// covariances of the landmarks change accordingly.
 World taken_for(World world, double noise_px, double sigma_px) {
     const double share = sigma_px / noise_px;
     world.config.sigma_px = sigma_px;

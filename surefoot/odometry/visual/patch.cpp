@@ -169,7 +169,8 @@ std::optional<Alignment> align_patch(const PatchTemplate& patch,
         if (!read_window(image, at_px, window, norm)) return std::nullopt;
         product = dot(window, patch.value);
         if (!(product > 0.0F)) return std::nullopt;  // the image shows the negative of the template
-        // window = gain * (template shifted): first scale it to the template's contrast.
+        // The window is the shifted template times a gain. First scales the window to the contrast
+        // of the template.
         const double inverse_gain = static_cast<double>(patch.norm * patch.norm / product);
         const Eigen::Vector2d step =
             -inverse_gain * Eigen::Vector2d(static_cast<double>(dot(window, patch.step_u)),

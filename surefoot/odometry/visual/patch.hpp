@@ -10,8 +10,8 @@
 
 namespace surefoot::odometry {
 
-/// Image patch around a point, from the image in which the point was first seen. The patch alone
-/// suffices to find the point again.
+/// Image patch around a point, cut from one image (the host). The patch alone suffices to find the
+/// point again.
 struct HostPatch {
     static constexpr int kRadius = 13;
     static constexpr int kSize = 2 * kRadius + 1;
@@ -29,7 +29,7 @@ struct PatchTemplate {
     static constexpr int kSize = 2 * kRadius + 1;
     static constexpr int kCount = kSize * kSize;
     std::array<float, kCount> value;   ///< mean removed
-    std::array<float, kCount> step_u;  ///< pseudo-inverse row: grey differences to a shift [px]
+    std::array<float, kCount> step_u;  ///< pseudo-inverse: turns grey differences into a shift [px]
     std::array<float, kCount> step_v;
     float norm = 0.0F;  ///< norm of `value`
 };

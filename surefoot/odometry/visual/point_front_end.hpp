@@ -35,12 +35,12 @@ class PointFrontEnd final : public Tracks {
   private:
     struct Point {
         std::int64_t id;
-        Eigen::Vector2d raw_px;  ///< left
+        Eigen::Vector2d raw_px;  ///< position in the raw left image
         StereoPixel pixel_px;
     };
     struct Known {
         int slot;
-        std::int64_t landmark;  ///< id, because another landmark may reuse the slot
+        std::int64_t landmark;  ///< its id, because another landmark may reuse the slot
     };
 
     std::vector<Point> points_;  ///< points of the present frame

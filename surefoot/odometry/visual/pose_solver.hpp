@@ -17,7 +17,7 @@ struct PointMatch {
     Eigen::Vector3d p_world_m;
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of p_world_m, in world
     StereoPixel pixel_px;
-    double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
+    double noise_factor = 1.0;  ///< sigma of this measurement / configured sigma
     double vote = 1.0;          ///< weight of the point in the vote for a pose
 };
 
@@ -80,7 +80,7 @@ inline constexpr int kMinimalPoseMatches = 5;
 struct VisualNormalEquations {
     Matrix6 H = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
-    double cost = 0.0;       ///< robust
+    double cost = 0.0;       ///< robust cost [sigma^2]
     double chi2 = 0.0;       ///< sum of squared residuals [sigma^2] inside the gate
     double square_px = 0.0;  ///< sum of squared pixel residuals inside the gate
     int rows = 0;

@@ -19,7 +19,7 @@ struct Track {
     Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< position in the raw left image
     /// Pixel, moved from its row's exposure to the stamp of the frame; u_right NaN = unknown.
     StereoPixel pixel_px = StereoPixel::Zero();
-    double noise_factor = 1.0;  ///< sigma relative to that of an aligned point
+    double noise_factor = 1.0;  ///< sigma / sigma of an aligned point
     double correlation = 0.0;   ///< correlation with the landmark's patch; 0 = not aligned
 };
 
@@ -39,8 +39,8 @@ class Tracks {
     virtual void follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
     /// Finds the landmarks as precisely as possible. `T_odom_camera` must be good to about a pixel.
     virtual void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) = 0;
-    /// Makes a landmark of each point that has none. The map's newest keyframe must be the present
-    /// frame. Returns the number of new landmarks.
+    /// Makes a landmark of each point without a landmark. The map's newest keyframe must be the
+    /// present frame. Returns the number of new landmarks.
     virtual int seed(LandmarkMap& map, Executor& executor) = 0;
     /// Makes the present frame the reference from which the next frame is tracked.
     virtual void keep();
@@ -57,7 +57,7 @@ class Tracks {
     void select(std::span<const std::uint8_t> inlier);
     /// Drops tracks of landmarks that the map removed.
     void drop_removed(const LandmarkMap& map);
-    /// Lets the map remove landmarks beyond its limit, but none that has a track.
+    /// Lets the map remove landmarks beyond its limit, but no landmark with a track.
     void forget_excess(LandmarkMap& map);
 
     /// True if the present frame has data to track.

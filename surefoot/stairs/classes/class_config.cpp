@@ -37,12 +37,14 @@ void ClassConfig::describe(ConfigVisitor& visitor) {
                    max_sigma_m,
                    0.001,
                    1.0,
-                   "largest height sigma of a cell; a cell with a larger sigma gets no class");
-    visitor.number("reach_m",
-                   reach_m,
-                   0.1,
-                   10.0,
-                   "largest distance from a cell to the ground from which its height is measured");
+                   "largest height sigma of a cell with a walkable class; with a larger sigma the "
+                   "cell is unknown");
+    visitor.number(
+        "reach_m",
+        reach_m,
+        0.1,
+        10.0,
+        "largest distance from a cell to reachable ground that affects the class of the cell");
 }
 
 std::optional<std::string> ClassConfig::problem() const {

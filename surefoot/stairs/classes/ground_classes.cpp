@@ -19,7 +19,8 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kSigmas = 2.0;         ///< slope limits count with this many sigma of the slope
+/// A slope must keep its limit by this many sigma of the slope.
+constexpr double kSigmas = 2.0;
 constexpr double kUnseenDrop_m = 0.15;  ///< depth of the marked drop behind ground that ends
 /// Largest height error over the depth of a tread, from its tilt and from map distortion (see
 /// flights.cpp).
@@ -94,8 +95,8 @@ struct TreadLevel {
     double height_m = 0.0;
     double sigma_m = 0.0;
 };
-/// Returns the mean of the cells within 2.5 times their scatter of the median. Each square of
-/// kCorrelation_m has one independent error. `sorted_m` is working memory.
+/// Returns the mean of the cells that differ from the median by at most 2.5 times the scatter. Each
+/// square of kCorrelation_m has one independent error. `sorted_m` is working memory.
 TreadLevel level_of(const std::vector<float>& heights_m,
                     std::vector<float>& sorted_m,
                     double var_m2,
@@ -320,7 +321,8 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     for_inside([&](int ix, int iy) {
         GroundClass& name = out.of_cell.row(iy)[ix];
         if (!terrain.known(ix, iy)) {
-            // A hole shows free space below the tread. A part that the next tread hides shows none.
+            // A hole shows free space below the tread. A part that the next tread hides shows no
+            // free space.
             const float free_m =
                 terrain.free_above_m.empty() ? kNanF : terrain.free_above_m.row(iy)[ix];
             const bool is_hole = static_cast<double>(free_m) < level.height_m - config_.drop_m;
@@ -342,7 +344,8 @@ void GroundClassifier::name_tread(const Terrain& terrain,
     });
 }
 
-/// Names the known cells that the line crosses, and nearby cells between both levels.
+/// Gives the class `name` to known cells that the line crosses, and to cells beside the line at a
+/// height between both levels.
 void GroundClassifier::name_edge(const Terrain& terrain,
                                  const Vector2d& from_m,
                                  const Vector2d& to_m,
@@ -374,7 +377,8 @@ void GroundClassifier::name_edge(const Terrain& terrain,
     }
 }
 
-/// Names cells that rise by at least half of the sill's height, over the depth of a jamb.
+/// Gives the class sill to cells of at least half of the sill's height, within half of
+/// `stairs.doors.max_depth_m` before and behind the sill.
 void GroundClassifier::name_sill(const Terrain& terrain,
                                  const LineFeature& sill,
                                  GroundClasses& out) const {

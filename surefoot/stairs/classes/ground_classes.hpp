@@ -27,11 +27,11 @@ enum class GroundClass : std::uint8_t {
     ramp,     ///< a reachable plane that is steeper than level ground
     kerb,     ///< like a riser, but at a single edge that is no higher than a kerb
     sill,     ///< a raised cell between the jambs of a door
-    drop,     ///< ground too low for any ramp or step down from reachable ground; also unknown
-              ///< cells that rays prove to be so low
-    wall,     ///< higher than a step, and steep, narrow or on no plane
-    table,    ///< a level plane that is higher than a step and not reachable: table tops,
-              ///< platforms seen from below
+    drop,     ///< ground more than stairs.drop_m below any ramp from reachable ground.
+              ///< Unknown cells that rays prove to be so low are drops too.
+    wall,     ///< higher than a step, and steep, narrow, on no plane or higher than a table
+    table,    ///< a plane no steeper than a ramp, higher than a step and not reachable.
+              ///< Examples: table tops, and platforms seen from below.
     tunnel,   ///< ground with an object lower than `headroom_m` above it
 };
 inline constexpr std::array<const char*, 11> kGroundClassNames{"unknown",
@@ -56,9 +56,9 @@ struct GroundClasses {
     grid::Layer tread_sigma_m;  ///< one sigma of that level; NaN = the cell is on no tread
 };
 
-/// Assigns a class to each cell. Uncertain ground is never floor: a patch that may not be level, a
-/// cell on no plane and a cell with a large sigma become unknown. A single cell that lies low
-/// beside walkable ground becomes a drop.
+/// Assigns a class to each cell. Uncertain ground is never floor: this holds for a patch that may
+/// not be level, a cell on no plane and a cell with a large sigma. A single cell that lies low near
+/// reachable ground becomes a drop.
 ///
 /// Owns the working memory: maps of one size and number of features allocate nothing after the
 /// first few calls. The same map gives the same result. Not thread-safe.
@@ -75,7 +75,7 @@ class GroundClassifier {
     /// Four corners in order around the quadrilateral.
     using Quad = std::array<Eigen::Vector2d, 4>;
     void name_patches(const PatchMap& patches);
-    /// Distance of a height from the range of heights that a ramp from the near ground can reach.
+    /// Height above (+) or below (-) the range that a ramp from the near ground can reach; else 0.
     [[nodiscard]] double off_the_way_m(const NearGround& ground, double height_m) const;
     [[nodiscard]] GroundClass walked_class(const PlanarPatch& patch) const;
     [[nodiscard]] GroundClass other_class(const PlanarPatch& patch, double above_m) const;

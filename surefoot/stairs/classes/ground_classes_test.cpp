@@ -190,7 +190,7 @@ TEST(GroundClasses, ARampIsSteeperThanOneInTwenty) {
 double room(double x_m, double y_m) {
     if (x_m > 0.3 && x_m < 1.1 && std::abs(y_m - 0.9) < 0.35) return 0.72;
     if (y_m > 1.8 && y_m < 1.9) return 1.6;
-    if (x_m < -2.0 && y_m < -1.0) return 1.5;  // as wide as a wall may be
+    if (x_m < -2.0 && y_m < -1.0) return 1.5;  // a wide wall: too high for a table
     if (x_m > 0.2 && x_m < 1.0 && y_m > -1.5 && y_m < -0.8) return -0.30;
     return x_m > 1.6 ? 0.12 : 0.0;
 }
@@ -245,9 +245,9 @@ TEST(GroundClasses, UnknownStaysUnknownUnlessLinesOfSightPassBelowTheGround) {
     };
     hide(kNanF);
     EXPECT_EQ(named.share(unknown, low_m, high_m), 1.0);
-    hide(0.4F);  // seen over, from above
+    hide(0.4F);  // rays pass 0.4 m above the floor
     EXPECT_EQ(named.share(unknown, low_m, high_m), 1.0);
-    hide(-0.03F);  // within what a floor falls
+    hide(-0.03F);  // rays pass 30 mm below the floor: less than stairs.drop_m
     EXPECT_EQ(named.share(unknown, low_m, high_m), 1.0);
     hide(-0.25F);
     EXPECT_EQ(named.share(drop, low_m, high_m), 1.0);
@@ -315,7 +315,7 @@ TEST(GroundClasses, ADropWhoseBottomIsNotSeenIsShownBehindItsBorder) {
     EXPECT_EQ(named.share(drop, {-1.0, -2.0}, {0.48, 2.0}), 0.0);
 }
 
-// From the upper end of the same steps.
+// Steps down, seen from their upper end.
 TEST(GroundClasses, TreadsOfAFlightDownAreTreads) {
     const TestFlight flight{.steps = 4, .riser_m = -0.18, .going_m = 0.29, .width_m = 1.2};
     Named named(noisy([&](double x_m, double y_m) { return flight.at(x_m, y_m); }, 0.004));
@@ -324,7 +324,7 @@ TEST(GroundClasses, TreadsOfAFlightDownAreTreads) {
     for (int k = 0; k < 3; ++k)
         EXPECT_GE(named.share(tread, {0.29 * k + 0.04, -0.5}, {0.29 * k + 0.25, 0.5}), 0.98) << k;
     EXPECT_GE(named.share(floor, {0.95, -0.5}, {1.8, 0.5}), 0.98) << "the ground at its foot";
-    // A person who falls off its side falls by the height of the steps.
+    // The ground beside the steps is up to 0.72 m higher than the steps, but it is no table.
     EXPECT_EQ(named.count(table), 0);
 }
 

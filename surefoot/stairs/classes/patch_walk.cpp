@@ -16,10 +16,11 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-constexpr double kCarries_sigma_rad = 0.09;  ///< 5 deg: largest slope sigma of a patch that carries
-constexpr double kContact_m = 0.2;           ///< smallest contact of two patches for a foot
-constexpr double kStance_m = 0.3;            ///< equal to the value in traversability::Reachability
-constexpr double kSurface_m = 0.05;          ///< height range of one surface under the body
+/// 5 deg: largest slope sigma of a patch that may carry.
+constexpr double kCarries_sigma_rad = 0.09;
+constexpr double kContact_m = 0.2;   ///< smallest width of a contact for a foot
+constexpr double kStance_m = 0.3;    ///< equal to kStance_m in feature_finder.cpp
+constexpr double kSurface_m = 0.05;  ///< height range of one surface under the body
 /// Largest height error over the depth of a tread, from its tilt and from map distortion (see
 /// flights.cpp).
 constexpr double kTread_m = 0.035;
@@ -205,7 +206,8 @@ void PatchWalk::walk(const PatchMap& patches) {
     }
 }
 
-/// Finds the nearest reachable block, moving along rows, columns and diagonals.
+/// Finds the reachable ground nearest to each block. Distances are counted along rows, columns and
+/// diagonals.
 void PatchWalk::find_near_ground(const PatchMap& patches) {
     const int nbx = patches.of_block.width();
     const int nby = patches.of_block.height();

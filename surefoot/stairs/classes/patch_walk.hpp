@@ -26,8 +26,8 @@ struct NearGround {
 /// matcher can smear a kerb or a table over five cells. Then no step between cells remains, but the
 /// planes keep their distance. Two patches connect where they lie within stairs.classes.max_step_m
 /// over a foot's width, with only an edge and its occluded region between them. They also connect
-/// along a flight of two or more steps. A patch steeper than stairs.classes.ramp_deg, or of unknown
-/// slope, is not walked on.
+/// along a flight of two or more steps. Other links never lead to a patch steeper than
+/// stairs.classes.ramp_deg or of unknown slope.
 ///
 /// The machine stands on the lowest patch near it that holds a quarter of the known blocks there,
 /// and on patches of that level. Without known ground near it, the nearest known ground counts.
@@ -42,9 +42,9 @@ class PatchWalk {
     [[nodiscard]] std::span<const NearGround> near_ground() const { return near_; }
 
   private:
-    /// Two patches with only unknown ground and borders between them.
+    /// Two patches of one row or column with only blocks on no patch between them.
     struct Contact {
-        std::int32_t low = 0;  ///< the lower one of the two patch numbers
+        std::int32_t low = 0;  ///< the lower of the two patch numbers
         std::int32_t high = 0;
         float rise_m = 0.0F;  ///< height from `low` to `high`, at the middle between both
         float gap_m = 0.0F;

@@ -14,12 +14,12 @@
 namespace surefoot::stairs {
 namespace {
 
-/// Smallest sigma of a cell for its weight.
+/// The square of this sigma is added to the variance of each cell, so that no weight is infinite.
 constexpr double kLeastSigma_m = 0.005;
 /// One sigma of the prior slope of ground. Noise in nine cells must not create a slope.
 constexpr double kSlopeSigma = 0.1;
-/// A block is mixed if fewer than this share of its cells lie on one plane. Its cells are assigned
-/// one by one.
+/// A block lies on a plane if the weighted rms of its residuals is at most this share of the
+/// tolerance of a cell.
 constexpr double kBlockShare = 0.7;
 constexpr int kQualities = 32;
 constexpr double kQualityStep_m = 0.002;
@@ -42,12 +42,14 @@ void PatchConfig::describe(ConfigVisitor& visitor) {
                    tolerance_m,
                    0.001,
                    0.2,
-                   "largest distance of a cell with a small sigma from its plane");
+                   "distance from a plane within which every cell belongs to the plane, even if "
+                   "its sigma is small");
     visitor.number("sigma_factor",
                    sigma_factor,
                    0.0,
                    10.0,
-                   "largest distance of a cell with a large sigma from its plane, as a multiple of "
+                   "distance from a plane within which a cell with a large sigma belongs to the "
+                   "plane, as a multiple of "
                    "this sigma");
     visitor.number(
         "max_tolerance_m",
@@ -252,7 +254,8 @@ void PatchFinder::grow_all(PatchMap& out) {
 }
 
 void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
-    constexpr double kFirstBlocks = 4.0;  ///< up to this size the plane of the seed is used
+    /// Number of blocks up to which a region uses the plane of its seed.
+    constexpr double kFirstBlocks = 4.0;
     constexpr double kMore = 1.5;
     const auto id = static_cast<std::int32_t>(regions_.size());
     Region region{{}, start};
@@ -286,7 +289,7 @@ void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
     regions_.push_back(region);
 }
 
-/// Joins the smaller of two neighbours to the larger one if it lies on the larger one's plane.
+/// Joins two neighbouring regions if the smaller region lies on the plane of the larger region.
 void PatchFinder::join_regions(PatchMap& out) {
     joined_to_.resize(regions_.size());
     for (std::size_t i = 0; i < joined_to_.size(); ++i)
@@ -451,7 +454,7 @@ void PatchFinder::measure(const Terrain& terrain, PatchMap& out) const {
             plane.at_0_m + plane.gx * x + plane.gy * y;
         patch.gradient = {plane.gx, plane.gy};
         patch.rms_m = std::sqrt(square_m2_[i] / std::max(1, patch.cells));
-        // Returns the smaller eigenvalue of the horizontal scatter.
+        // Computes the smaller eigenvalue of the horizontal scatter of the cells.
         const double a = s.xx / s.w - x * x, b = s.xy / s.w - x * y, c = s.yy / s.w - y * y;
         const double narrow_m2 =
             std::max(0.0, 0.5 * (a + c) - std::sqrt(0.25 * square(a - c) + b * b));

@@ -30,7 +30,7 @@ struct PatchConfig {
 
 /// A connected piece of ground on one plane. Map frame.
 struct PlanarPatch {
-    Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< point on the plane
+    Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< weighted middle, on the plane
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< dz / dx, dz / dy
     double slope_sigma_rad = 0.0;  ///< slope sigma along the narrower side; infinite = unknown
     double rms_m = 0.0;            ///< scatter of its cells about the plane
@@ -58,12 +58,12 @@ struct PatchMap {
     }
 };
 
-/// Divides the known ground into planes. Each block of cells is fitted alone, weighted by the
-/// cell variances. Regions grow from the flattest blocks over neighbours that lie on the region's
+/// Divides the known ground into planes. The cells are summed block by block, weighted by their
+/// variances. Regions grow from the flattest blocks over neighbours that lie on the region's
 /// plane so far. Regions on one plane are joined, and border blocks move to the better plane.
-/// Last, each cell takes the best plane of its block and the eight around it, so borders follow
-/// cells. Growth from the best seed: Besl and Jain 1988. Sums over blocks: Feng, Taguchi and
-/// Kamat 2014.
+/// Last, each cell takes the best plane of its block and the eight around it, so borders run
+/// between cells. Growth from the best seed: Besl and Jain 1988. Sums over blocks: Feng, Taguchi
+/// and Kamat 2014.
 ///
 /// A block with less than half of its cells known is no seed. Owns the working memory: maps of
 /// one size allocate nothing after the first few calls. The same map gives the same result.
@@ -114,8 +114,8 @@ class PatchFinder {
     int nbx_ = 0;
     int nby_ = 0;
     std::vector<Sums> blocks_;
-    std::vector<std::uint8_t> quality_;  ///< quality of a seed; 0 = best
-    std::vector<Plane> start_;           ///< plane of a seed
+    std::vector<std::uint8_t> quality_;  ///< quality of each seed; 0 = best
+    std::vector<Plane> start_;           ///< start plane of each seed
     std::vector<std::int32_t> seeds_;
     std::vector<std::int32_t> waiting_;
     std::vector<Region> regions_;

@@ -52,7 +52,7 @@ TEST(PlanarPatches, ALeaningPlaneIsOnePatchWithItsSlopeAndNoise) {
     }
 }
 
-// Such heights are excluded before (kMaxHeight_m); if they occur, they must not crash.
+// Readers exclude heights beyond kMaxHeight_m. If they occur, the finder must not crash.
 TEST(PlanarPatches, HeightsOfAnyMagnitudeLeaveTheOthersAlone) {
     for (const float bad_m : {9e4F, -1e10F, 1e12F, std::numeric_limits<float>::lowest()}) {
         TestMap map([](double, double) { return 0.0; }, 0.0, {0.0, 0.0});
@@ -149,7 +149,7 @@ TEST(PlanarPatches, EachTreadIsAPatchAtAnyYaw) {
 }
 
 TEST(PlanarPatches, CellsThatAreKnownBadlyCountLess) {
-    // Half of the cells have a sigma of 20 mm and lie 15 mm too high, every other cell.
+    // Every second cell has a sigma of 20 mm and lies 15 mm too high.
     TestMap map([](double, double) { return 0.0; }, 0.0, {0.0, 0.0});
     for (int iy = 0; iy < map.geometry.ny; ++iy) {
         for (int ix = 0; ix < map.geometry.nx; ++ix) {

@@ -14,11 +14,11 @@ using Eigen::Vector2i;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Limit of the height range within a block. Floor has a smaller range, noise included; a block
-/// with a wall has a larger one.
+/// with a wall has a larger range.
 constexpr float kLevel_m = 0.1F;
 constexpr std::int16_t kNone = -1;
 
-/// Lowest height, highest height and number of known cells per column.
+/// Updates the lowest height, the highest height and the number of known cells of each column.
 void take_row(const float* z_m, std::size_t count, float* low_m, float* high_m, int* known) {
     for (std::size_t i = 0; i < count; ++i) {
         known[i] += z_m[i] == z_m[i] ? 1 : 0;
@@ -111,7 +111,8 @@ void BottleneckFinder::spread_ground() {
     }
 }
 
-/// A wall block needs a neighbouring wall block, because wrong matches are isolated.
+/// Marks a high block as a wall if at least two of its eight neighbours are high too, because wrong
+/// matches are isolated.
 void BottleneckFinder::mark_walls(double rise_m) {
     const int nx = high_m_.width();
     const int ny = high_m_.height();
@@ -157,8 +158,9 @@ void BottleneckFinder::find_walls_in_columns() {
     }
 }
 
-/// Lower envelope of the parabolas (bx - column)^2 + (rows to the column's wall)^2. Walls beyond
-/// the reach of any bottleneck are left out.
+/// Finds the column of the nearest wall for each block of a row. Method: lower envelope of the
+/// parabolas (bx - column)^2 + (rows to the column's wall)^2. Walls beyond the reach of any
+/// bottleneck are left out.
 void BottleneckFinder::find_nearest_walls(int by) {
     const int nx = wall_.width();
     const std::int16_t* wall_by = wall_by_.row(by);
@@ -212,8 +214,7 @@ bool BottleneckFinder::in_bottleneck(int bx, int by, const BottleneckLimits& lim
     if (!bottleneck_.contains(opposite.x(), opposite.y()) ||
         wall_bx_.row(opposite.y())[opposite.x()] < 0)
         return false;
-    // The opposite wall is at most two blocks away from the opposite point. The walls are at least
-    // six blocks apart.
+    // The opposite wall must be at most two blocks away from the opposite point.
     return to_wall(opposite.x(), opposite.y()).squaredNorm() <= 4;
 }
 

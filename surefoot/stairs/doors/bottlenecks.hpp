@@ -40,7 +40,7 @@ class BottleneckFinder {
     static constexpr double kBlock_m = 0.05;
     static constexpr double kReach_m = 0.15;
 
-    /// Writes the nearest to the stance first. The reference is valid until the next call.
+    /// Returns the bottlenecks, nearest to the stance first. The list is valid until the next call.
     const std::vector<Bottleneck>& find(const Terrain& terrain, const BottleneckLimits& limits);
 
   private:
@@ -67,8 +67,8 @@ class BottleneckFinder {
     double block_m_ = 0.0;
     int reach_ = 0;  ///< kReach_m in blocks
     int range_ = 0;  ///< half the width of the widest bottleneck in blocks, plus one
-    /// Lowest level block of the square that begins at a block; +inf = none. The image has a margin
-    /// of `reach_` blocks, so the square about a block begins at the block's own index.
+    /// Lowest height of level blocks in the square that begins at a block; +inf = none. With a
+    /// margin of `reach_` blocks, the square about a block begins at the block's own index.
     Image<float> low_m_;
     Image<float> high_m_;  ///< highest cell of a block; -inf = unknown
     // One entry per column of cells, for one row of blocks.

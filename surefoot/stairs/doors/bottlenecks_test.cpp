@@ -78,7 +78,7 @@ TEST(Bottlenecks, WallsRiseFromTheLevelGroundNearby) {
     EXPECT_NEAR(found[0].width_m, 0.9, 2.0 * kBlock_m);
 }
 
-/// Scattered heights, like those of a wall in a camera.
+/// Scattered heights, such as a stereo camera measures on a wall.
 TEST(Bottlenecks, WallsHaveNoLevelBlocks) {
     Floor floor;
     for (const double y0_m : {0.0, 1.9}) {
@@ -91,7 +91,7 @@ TEST(Bottlenecks, WallsHaveNoLevelBlocks) {
     EXPECT_NEAR(found[0].middle_m.y(), 1.45, kBlock_m);
 }
 
-/// From a corner the nearest walls lie at right angles.
+/// In a corner the nearest walls stand at right angles to each other.
 TEST(Bottlenecks, NoneBetweenWallsThatDoNotFaceEachOther) {
     EXPECT_TRUE(bottlenecks(Floor().wall(0.3, 0.3, 0.4, 1.5).wall(0.3, 0.3, 1.5, 0.4)).empty());
     EXPECT_TRUE(bottlenecks(Floor().wall(0.3, 0.3, 0.4, 1.5)).empty());

@@ -26,7 +26,8 @@ constexpr double kCorner_m = 0.075;
 constexpr double kOffset_m = 0.15;
 /// Apparent extra thickness of a wall on each side, caused by noise.
 constexpr double kWallNoise_m = 0.25;
-/// A cell that contains wall and floor gets a height between both.
+/// A cell at least this much above the ground is the foot of a jamb. It may contain wall and floor
+/// and then has a height between both.
 constexpr double kFoot_m = 0.1;
 /// Behind a sill the matcher returns to ground level only after this many sill heights.
 constexpr double kShadowPerHeight = 5.0;
@@ -78,8 +79,10 @@ struct DoorFinder::Opening {
     double back_m = 0.0;
     double before_m = 0.0;  ///< height of the ground before the jambs
     double behind_m = 0.0;
-    float wall_from_m = 0.0F;  ///< higher cells are not ground
-    float foot_from_m = 0.0F;  ///< in rows to a jamb, higher cells are its foot; sills are lower
+    float wall_from_m = 0.0F;  ///< cells of this height or more are not ground
+    /// A row of cells from the middle outwards ends at the first cell of this height or more: the
+    /// foot of a jamb; sills are lower.
+    float foot_from_m = 0.0F;
 
     [[nodiscard]] Vector2d along() const { return {across.y(), -across.x()}; }
 };
@@ -213,7 +216,8 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
     }
 }
 
-/// Median height of the ground from `from_m` to `to_m` along the way, if most of it is known.
+/// Returns the median height of the ground from `from_m` to `to_m` along the way. Returns nothing
+/// if less than 60 % of the samples are known.
 std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
                                            const Opening& opening,
                                            double from_m,
@@ -242,7 +246,7 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
 bool DoorFinder::turn_to_walls(Opening& opening) const {
     constexpr int kRounds = 6;
     constexpr double kSure_m = 0.03;      // nearer cells have equal weights; about one cell
-    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more precisely
+    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more accurately
     const Vector2d first = opening.across;
     double offset_m = 0.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -486,8 +490,9 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     sill.sigma_m = std::sqrt(std::max(before.point_var_m2, behind.point_var_m2) +
                              0.5 * (before.var_m2 + behind.var_m2));
     const double least_m = std::max(config_.min_sill_m, config_.sigma_factor * sill.sigma_m);
-    // If the ground has a step, a ridge must be higher than both sides. If it has none, the ridge
-    // must be higher than the line between both sides, which is more certain than an extrapolation.
+    // If the ground has a step, a ridge must be higher than both sides. If the ground has no step,
+    // the ridge must be higher than the line between both sides, which is more certain than an
+    // extrapolation.
     const double middle_m = 0.5 * (front_m + back_m);
     const bool step = std::abs(behind.height_at(middle_m) - before.height_at(middle_m)) > least_m;
     double ridge_m = 0.0;
@@ -550,7 +555,7 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
                    wall_height_m,
                    0.01,
                    3.0,
-                   "smallest height above the ground of the highest visible part of a wall");
+                   "a wall must be visible up to at least this height above the ground");
     visitor.number("wall_length_m",
                    wall_length_m,
                    0.01,

@@ -19,7 +19,7 @@ struct DoorConfig {
     double max_width_m = 1.4;    ///< pillars of a corridor are at least this far apart
     double max_depth_m = 0.5;    ///< jamb depth along the way; deeper passages are corridors
     double rise_m = 0.2;         ///< a cell this high above the ground beside it is not ground
-    double wall_height_m = 0.5;  ///< visible height of a wall; the camera looks down on walls
+    double wall_height_m = 0.5;  ///< smallest visible wall height; the camera looks down on walls
     double wall_length_m = 0.3;  ///< smallest length of the wall on each side of the opening
     double min_sill_m = 0.008;   ///< lower sills cannot be distinguished from floor noise
     double sigma_factor = 3.0;   ///< smallest height of a sill above the floor [sigma]
@@ -42,15 +42,15 @@ struct DoorConfig {
 /// Candidates are bottlenecks of the free ground (BottleneckFinder). Then the cells give:
 /// - yaw: the line through both walls. All wall cells in a band count, not only the first
 ///   ones, because the noise of a wall lies along the ray;
-/// - jambs: a row of cells across the opening (along the nearer grid axis) ends at its
-///   first wall cell. The jamb lies where most rows end; noise ends a row farther from the
-///   middle;
-/// - width: a cell that contains any part of the wall shows the wall (Terrain: highest
-///   surface). So the last free cell's centre lies sin(yaw) / 2 cells before the jamb on
-///   average (yaw: wall to axis); the width is corrected by this. The remaining error is
-///   uniform over one cell for a wall along the grid, and smaller for an oblique wall;
-/// - sill: the height above the line from the ground before the jambs to that behind them.
-///   Its sigma counts one independent error per square of `correlation_m`.
+/// - jambs: a row of cells across the opening (along the nearer grid axis) ends at its first wall
+///   cell. The jamb is the innermost place where many rows end, because noise ends a row farther
+///   from the middle;
+/// - width: a cell that contains any part of the wall shows the wall (Terrain: highest surface). So
+///   the first wall cell's centre lies sin(yaw) / 2 cells before the jamb on average (yaw: wall to
+///   axis); the width is corrected by this. The remaining error is uniform over one cell for a wall
+///   along the grid, and smaller for an oblique wall;
+/// - sill: the height above the line from the ground before the jambs to the ground behind. Its
+///   sigma counts one independent error per square of `correlation_m`.
 ///
 /// Not found: doors with jambs deeper than `max_depth_m`, or within 0.25 m of a corner.
 /// Owns the working memory: maps of one size allocate nothing after the first few calls.
@@ -79,7 +79,7 @@ class DoorFinder {
         double across_m = 0.0;  ///< offset from the middle of the opening
         double along_m = 0.0;
     };
-    /// Mean height of the ground over the width of an opening.
+    /// Sums of the ground heights over the width of an opening, at one position along the way.
     struct Bin {
         double sum_m = 0.0;
         double var_sum_m2 = 0.0;

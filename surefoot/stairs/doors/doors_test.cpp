@@ -169,12 +169,12 @@ TEST(Doors, WidthIsExactToACellInWallsAlongTheGrid) {
             }
         }
     }
-    // The sub-cell positions are sampled in steps of a tenth, on either side.
+    // The positions within a cell are sampled in steps of a tenth of a cell, on both sides.
     EXPECT_NEAR(sum_m / count, 0.0, 0.1 * kCell_m);
 }
 
-/// Rows of an oblique wall end at different positions within a cell, so their mean is better than
-/// half a cell. At 45 deg all rows end at the same position of a shorter cell.
+/// Rows of an oblique wall end at different positions within a cell, so their mean is more accurate
+/// than half a cell. At 45 deg all rows end at the same position of a shorter cell.
 TEST(Doors, WidthIsExactToTenMillimetresInObliqueWalls) {
     for (const double yaw_deg : {12.0, 20.0, 33.0, 45.0, 61.0, 80.0, 110.0, 135.0, 160.0}) {
         const double tolerance_m =
@@ -222,7 +222,8 @@ TEST(Doors, PoseLeadsThroughTheMiddleAwayFromTheStance) {
                 const double yaw_rad = plan.yaw_rad + (turned ? std::numbers::pi : 0.0);
                 EXPECT_LT(angle_between_rad(pose.yaw_rad, yaw_rad), 1.0 * kRadPerDeg) << yaw_deg;
                 const Vector2d error_m = pose.p_m.head<2>() - plan.middle_m;
-                // Half a cell per jamb; the middle has half of the sum.
+                // The error of each jamb is at most half a cell. The error of the middle is half of
+                // their sum.
                 EXPECT_LT(std::abs(error_m.dot(plan.left())), 0.5 * kCell_m + 1e-6) << yaw_deg;
                 EXPECT_LT(std::abs(error_m.dot(plan.along())), kCell_m) << yaw_deg;
                 EXPECT_EQ(pose.p_m.z(), 0.0);
@@ -408,7 +409,7 @@ TEST(Doors, WallsMustFaceEachOtherInOneLine) {
     EXPECT_EQ(find(World().add(left).add(right)).doors.size(), 1U);
     EXPECT_TRUE(find(World().add(left)).doors.empty());
     Box other = right;
-    other.middle_m.x() = 0.5;  // beside the line
+    other.middle_m.x() = 0.5;  // not in line with the left wall
     EXPECT_TRUE(find(World().add(left).add(other)).doors.empty());
     other = right;
     other.width_m = 0.1;  // a post

@@ -128,7 +128,7 @@ void add_border_points(const Terrain& terrain,
         while (!is_upper(cell) && cell != rows.edge() && cell != rows.end()) cell += rows.way();
         if (!is_upper(cell)) continue;
         while (cell != rows.end() && is_upper(cell + rows.way())) cell += rows.way();
-        if (cell == rows.end()) continue;  // the upper ground does not end here: not this edge
+        if (cell == rows.end()) continue;  // the upper ground does not end in the search range
         // Interpolates between the cell centres if the next cell is known.
         const double height_m = rows.value(terrain.height_m, cell);
         const double next_m = rows.value(terrain.height_m, cell + rows.way());
@@ -149,7 +149,7 @@ void add_faces_near(const Terrain& terrain,
     constexpr double kLeast = 1.5;  ///< smallest excess of a row, in points of a level cell
     Rows rows(terrain, line, search);
     // Weights must not depend on the position. Distant level ground near the camera height shows
-    // fewer points, so a ratio to that number would pull the face towards it.
+    // fewer points, so `density_ratio` alone would pull the face towards distant ground.
     const auto level_px = [&](const Eigen::Vector2d& p_m, double z_m) {
         return terrain.view ? terrain.view->pixels_per_m2({p_m.x(), p_m.y(), z_m}) : 1.0;
     };
@@ -182,7 +182,8 @@ void add_face_points(const Terrain& terrain,
                      const BorderSearch& search,
                      std::vector<BorderPoint>& out) {
     if (terrain.density_ratio.empty()) return;
-    // The border from heights alone lies too early, so the window is centred on the face.
+    // The border from heights alone lies before the face. So each round centres the window on the
+    // face.
     BorderSearch centred = search;
     std::vector<BorderPoint> found;
     for (int round = 0; round < 3; ++round) {

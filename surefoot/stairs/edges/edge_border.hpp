@@ -18,7 +18,7 @@ struct BorderPoint {
 
 /// Parameters of a search for border points.
 struct BorderSearch {
-    int edge = 0;             ///< number that the found points get
+    int edge = 0;             ///< edge number of the found points
     double at_m = 0.0;        ///< expected position of the edge, across the line
     double upper_m = 0.0;     ///< height of the ground above the edge
     double below_m = 0.0;     ///< cells may lie this much below `upper_m` and still be upper ground
@@ -34,9 +34,9 @@ struct BorderSearch {
 
 /// Walks from the upper ground across the edge, row by row (by column where the line runs along the
 /// rows). Adds the point between two cell centres where the ground falls below its level. The
-/// threshold is a tenth of the step, not half. Cells before and behind a distant riser hold points
-/// of its face, because depth noise moves these points by several cells. A cell keeps its highest
-/// point.
+/// threshold lies `below_m` under the upper level, see upper_tolerance_m(). Cells before and behind
+/// a distant riser hold points of its face, because depth noise moves these points by several
+/// cells. A cell keeps its highest point.
 void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
                        const BorderSearch& search,

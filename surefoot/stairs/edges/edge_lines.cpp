@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr int kTouch_cells = 2;
-/// Largest height difference of touching points. It is larger than the noise of one cell and
-/// smaller than the height between neighbouring steps.
+/// Largest difference between the upper heights of touching points. It is larger than the noise of
+/// one cell and smaller than the height between neighbouring steps.
 constexpr float kLevel_m = 0.06F;
 constexpr int kDraws = 60;
 constexpr double kNear_m = 0.6;  ///< largest distance between two drawn points
@@ -121,7 +121,7 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
         const float x_m = left.x_m - at_x;
         const float y_m = left.y_m - at_y;
         if (std::abs(x_m * along_y - y_m * along_x) > tolerance_m) continue;
-        // A border that runs along the direction of the fall belongs to another edge.
+        // A point whose ground falls along the line belongs to another edge.
         if (left.down_x * along_y - left.down_y * along_x < 0.1F) continue;
         run_.push_back({x_m * along_x + y_m * along_y, left.point});
     }
@@ -151,7 +151,8 @@ void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
 
 void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
                                 std::span<const std::int32_t> chain) {
-    const double least_m = 0.5 * config_.min_length_m;  // shorter pieces may be joined later
+    // Pieces shorter than an edge may be joined later.
+    const double least_m = 0.5 * config_.min_length_m;
     const auto least_points =
         saturated_integer<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
     left_.clear();
@@ -178,7 +179,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             if (apart_m < 0.4 * least_m || apart_m > kNear_m) continue;
             along /= apart_m;
             if (down_of(first.side).dot(right_of(along)) < 0.0) along = -along;
-            // A line that is longer than the best one has at least about as many points.
+            // A longer line than the best line usually has at least two thirds of its points.
             keep_longest_run(
                 place_of(first), along, std::max(least_points, best.members.size() * 2 / 3));
             if (run_.size() < least_points) continue;
@@ -199,7 +200,8 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             for (const Placed& placed : run_) best.members.push_back(placed.point);
         }
         const bool good = fit(points, best);
-        // Points beside the line belong to it, although the fit does not use them.
+        // Also removes the points beside the line that the fit did not use. They belong to the same
+        // edge.
         const Vector2d from_m = best.line.from_m;
         const Vector2d along = best.line.along();
         const double length_m = best.line.length_m();

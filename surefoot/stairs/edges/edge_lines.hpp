@@ -25,10 +25,10 @@ struct EdgeLine {
     }
 };
 
-/// Groups edge points into straight lines. Touching points with level upper ground form a chain.
-/// Each chain is cut into its longest unbroken lines, one after the other. Method: RANSAC (Fischler
-/// and Bolles 1981) on pairs of near points; the draws depend only on the number of points. Then
-/// pieces of one line are joined across gaps.
+/// Groups edge points into straight lines. Touching points of nearly equal upper height form a
+/// chain. Each chain is cut into its longest unbroken lines, one after the other. Method: RANSAC
+/// (Fischler and Bolles 1981) on pairs of near points; the draws depend only on the number of
+/// points. Then pieces of one line are joined across gaps.
 class EdgeLineFinder {
   public:
     explicit EdgeLineFinder(const StairsConfig& config) : config_(config) {}
@@ -41,7 +41,7 @@ class EdgeLineFinder {
     struct Piece {
         EdgeLine line;
         std::vector<std::int32_t> members;
-        double upper_m = 0.0;  ///< median of the members
+        double upper_m = 0.0;  ///< median of `upper_m` of the members
         double lower_m = 0.0;
     };
     void chain(const grid::GridGeometry& grid, std::span<const EdgePoint> points);
@@ -58,7 +58,7 @@ class EdgeLineFinder {
     double resolution_m_ = 0.0;
     Image<std::int32_t> first_;  ///< first point of a cell, -1 = none
     std::vector<std::int32_t> parent_;
-    std::vector<std::int32_t> order_;  ///< points, chain by chain
+    std::vector<std::int32_t> order_;  ///< indices of the points, chain by chain
     /// A point that belongs to no line yet.
     struct Left {
         float x_m = 0.0F;

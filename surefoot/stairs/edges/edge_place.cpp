@@ -12,12 +12,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr int kSlices = 16;           ///< number of slices along the edge
-constexpr double kNearest_m = 0.075;  ///< strip begin; a matcher spreads a step over +-0.06 m
-constexpr double kStrip_m = 0.05;     ///< depth of the compared ground on either side
-constexpr double kMinKnown = 0.6;     ///< smallest share of known slices
-constexpr double kMinLevel = 0.8;     ///< smallest share of level slices among the known slices
-/// The ground is level if it differs by less than half of min(edge height, lowest drop).
+constexpr int kSlices = 16;  ///< number of slices along the edge
+/// Distance of the strips from the edge; a matcher spreads a step over +-0.06 m.
+constexpr double kNearest_m = 0.075;
+constexpr double kStrip_m = 0.05;  ///< depth of the compared ground on either side
+constexpr double kMinKnown = 0.6;  ///< smallest share of known slices
+constexpr double kMinLevel = 0.8;  ///< smallest share of level slices among the known slices
+/// Ground is level if both sides differ by less than half of min(edge height, kHighest_m).
 constexpr double kHighest_m = 0.1;
 
 std::optional<double> mean_height_m(const Terrain& terrain,

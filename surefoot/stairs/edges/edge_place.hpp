@@ -20,7 +20,7 @@ enum class PlaceOfEdge : std::uint8_t {
 /// True if the camera sees the point. Without a camera, true if the map knows the cell.
 [[nodiscard]] bool is_observed(const Terrain& terrain, const Eigen::Vector3d& p_m);
 
-/// True if a part of the edge lies inside the map.
+/// True if an end or the middle of the edge lies inside the map.
 [[nodiscard]] bool is_in_window(const Edge& edge, const Terrain& terrain);
 
 }  // namespace surefoot::stairs

@@ -15,7 +15,8 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 /// Smallest height of an edge point in sigma. It is lower than that of an edge, because the
 /// finished edge is tested again.
 constexpr double kPointSigmas = 1.5;
-constexpr double kLongestShadow_m = 2.5;  ///< for a drop of 1 m, see shadow_per_height
+/// Longest occluded region: shadow_per_height for a drop of 1 m.
+constexpr double kLongestShadow_m = 2.5;
 
 bool known(float value) {
     return value == value;
@@ -132,8 +133,9 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
         if (!known(next_m)) break;
         if (low < 0 || next_m < line.height_m[low]) low = cell + k;
     }
-    if (k <= window_cells_) {  // the known ground ends: find the next known cell behind the
-                               // occluded region
+    // If the known ground ends within the window, finds the next known cell behind the occluded
+    // region.
+    if (k <= window_cells_) {
         for (; k <= reach_cells_ && cell + k < line.cells; ++k) {
             const int behind = cell + k;
             if (known(line.height_m[behind])) {

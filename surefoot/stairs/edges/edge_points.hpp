@@ -53,7 +53,7 @@ class EdgePointFinder {
     /// A row or a column, walked in one direction.
     struct Line {
         int cells = 0;
-        const float* height_m = nullptr;  ///< copied heights without gaps
+        const float* height_m = nullptr;  ///< heights, copied to consecutive memory
         Strided var_m2;                   ///< variances, read for few cells only
         Strided free_above_m;
     };
@@ -73,7 +73,7 @@ class EdgePointFinder {
     int reach_cells_ = 1;
     double resolution_m_ = 0.0;
     std::vector<float> height_m_;  ///< heights of the line that is being scanned
-    std::vector<float> low_m_;     ///< lowest of the next known cells within the window
+    std::vector<float> low_m_;     ///< lowest height of the next known cells within the window
     std::vector<Found> found_;
 };
 

@@ -26,9 +26,11 @@ constexpr double kStrip_m = 0.2;      ///< largest visible depth of a tread betw
 constexpr double kStripRange_m = 0.06;
 constexpr double kBeside_m = 0.3;   ///< largest extension of an edge beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the largest turn [rad] of an edge against its line
-constexpr double kEnd_m = 0.25;     ///< ground ends: known over this depth before, unknown behind
+/// Ground that ends is known over this depth before the edge and unknown behind.
+constexpr double kEnd_m = 0.25;
 constexpr double kEndRms_m = 0.025;
-constexpr double kRagged_m = 0.075;  ///< in some rows the ground may end this much earlier
+/// The end of the ground may be ragged by this much on either side of the line.
+constexpr double kRagged_m = 0.075;
 /// Largest slope that noise on level ground explains.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< depth of ground that gives the slope
@@ -160,7 +162,8 @@ Level EdgeProfiler::level_from(int first, int step) const {
         const int passed = std::max(1, run);
         k += passed * step;
         tried += passed;
-        // Ground behind an occluded region is as far away as the region is long.
+        // Behind a long occluded region the level ground begins farther away. So the search ends
+        // here only if it has found level ground.
         if (tried > furthest && length > 0) break;
     }
     Level level;
@@ -223,7 +226,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     return true;
 }
 
-/// Moves the edge to the end of the upper ground. Returns the rms of its points.
+/// Moves the edge to its visible face, or else to the end of the upper ground. Returns the rms of
+/// the points that place the edge.
 double EdgeProfiler::place(const Terrain& terrain,
                            const EdgeLine& line,
                            const Level& upper,

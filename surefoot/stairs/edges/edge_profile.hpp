@@ -18,29 +18,29 @@ struct Level {
     double height_m = 0.0;
     double sigma_m = 0.0;
     double scatter_m = 0.0;  ///< robust standard deviation of one cell
-    double begin_m = 0.0;    ///< distance from the edge
-    double end_m = 0.0;      ///< position where the ground falls, rises or becomes unknown
+    double begin_m = 0.0;    ///< distance of the near end from the edge
+    double end_m = 0.0;      ///< distance at which the ground falls, rises or becomes unknown
     bool ends_unknown = false;
     double slope = 0.0;     ///< rise over run, away from the edge
     double middle_m = 0.0;  ///< middle of the ground that `height_m` averages
 };
 
-/// Measures the ground along an edge in slices. A slice is one cell deep and as long as
-/// the edge; its height is the median of its cells, so single wrong cells have no
+/// Measures the ground along an edge in slices. A slice is one cell deep and as long as the
+/// edge; its height is the mean of the cells near their median, so single wrong cells have no
 /// effect.
 class EdgeProfiler {
   public:
     explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
 
-    /// The edge with its levels, or nothing if the upper ground is unknown. If the ground does not
-    /// fall, or nothing shows a fall, the edge has a height of 0 or less and keeps the line's
-    /// position.
+    /// Returns the edge with its levels, or nothing if the upper ground is unknown. If
+    /// nothing shows that the ground falls, the edge has height 0 and keeps the position of
+    /// the line.
     [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
 
     struct Slice {
         double height_m = 0.0;
         double scatter_m = 0.0;  ///< robust standard deviation of one cell
-        double sigma_m = 0.0;    ///< median of the sigmas that the map states for the cells
+        double sigma_m = 0.0;    ///< rms of the sigmas that the map states for the cells
         double known_share = 0.0;
         double free_above_m = 0.0;  ///< lowest free-space bound of unknown cells; infinite = none
     };

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 
 // Rows that such a line does not cross meet it 1e9 cells away. As a 32-bit integer this distance
-// was negative, and the walk along the row began there.
+// would be negative, and the walk along the row would begin there.
 TEST(EdgeProfiler, a_line_almost_along_the_rows_is_one_along_the_rows) {
     const testing::TestMap map(
         [](double, double y_m) { return y_m > 0.0 ? 0.2 : 0.0; }, 0.0, Vector2d::Zero());

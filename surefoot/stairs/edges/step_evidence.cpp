@@ -22,7 +22,9 @@ constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr double kWindow_m = 0.35;
 constexpr double kLeastShare = 0.25;  ///< smallest share of known cells in a slice
 constexpr int kLeastSlices = 2;       ///< smallest number of slices on either side
-constexpr int kLags = 6;  ///< longest lag [cells], 0.15 m; `evidence_shared_m` covers more
+/// Longest lag [cells]: 0.15 m for cells of 25 mm; `evidence_shared_m` covers errors that reach
+/// farther.
+constexpr int kLags = 6;
 constexpr double kClip_sigma = 3.0;
 /// Prior: one sigma of the slope of ground (19 deg). It bounds the slopes of short pieces.
 constexpr double kUsualSlope = 0.35;
@@ -48,7 +50,7 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
                                 double upper_m,
                                 double lower_m) {
     resolution_m_ = terrain.geometry.resolution_m;
-    // The depth is about half a metre, which is tens of cells.
+    // Each depth is about a metre or less, which is tens of cells.
     const int upper = saturated_integer<int>(std::ceil(upper_m / resolution_m_));
     const int slices = upper + saturated_integer<int>(std::ceil(lower_m / resolution_m_));
     cells_.clear();
@@ -252,7 +254,7 @@ StepEvidenceFinder::Fit StepEvidenceFinder::fit_planes(double from_m,
     normal(0, 0) += 1e-12;
     const Eigen::Vector4d found = normal.ldlt().solve(right);
     Fit fit;
-    // Removes the penalty of the slopes from the sum.
+    // This sum includes the penalty of the slopes.
     fit.squares = std::max(0.0, squares - found.dot(right));
     fit.upper_slope = found[1];
     fit.lower_slope = found[3];

@@ -23,18 +23,18 @@ struct StepEvidence {
 };
 
 /// Compares two explanations of the ground beside an edge:
-/// - Step: two planes with a fall between them. The fall is no wider than `smear_m` or than the
-///   unknown gap. Both slopes and the position of the fall near the edge are free.
-/// - Smooth ground, the best of four models: one plane; two planes with a crease; two planes and
-///   a slope between them of at least twice `smear_m`; a polynomial of degree 2 to 5 with a bend
-///   of at most kMostBend_per_m. No model is steeper than kSteepest. Both may fall along the
-///   edge.
+/// - Step: two planes with a fall between them. The fall is no wider than the larger of `smear_m`
+///   and the unknown gap. Both slopes and the position of the fall near the edge are free.
+/// - Smooth ground, the best of four models: one plane; two planes with a crease; two planes and a
+///   slope between them of at least twice `smear_m`; a polynomial of degree 2 to 5 with a bend of
+///   at most kMostBend_per_m. No smooth model is steeper than kSteepest. Both explanations may fall
+///   along the edge.
 ///
-/// The likelihood is a Gaussian composite likelihood (Varin, Reid and Firth 2011). Cells
-/// count as independent, and the sum is divided by the number of cells that share one error.
-/// That number is the sum of the measured autocorrelation of the residuals along rows and
-/// columns of the map. The variance of a cell is its measured scatter along the edge, or the
-/// variance in the map if that is larger. In addition, all cells of a slice share an error of
+/// The likelihood is a Gaussian composite likelihood (Varin, Reid and Firth 2011). Cells count
+/// as independent, and the sum is divided by the number of cells that share one error. This
+/// number is the summed autocorrelation of the residuals along rows, times the sum along
+/// columns. The variance of a cell is the variance of the residuals, or the mean variance in
+/// the map if the latter is larger. In addition, all cells of a slice share an error of
 /// `evidence_shared_m`, and so do slices within kCorrelation_m of each other. A longer edge
 /// does not average this error away. A model pays for each of its parameters (BIC, Schwarz
 /// 1978).
@@ -73,7 +73,7 @@ class StepEvidenceFinder {
         double to_m = 0.0;
     };
     struct Fit {
-        double squares = 0.0;  ///< sum of (residual / sigma)^2
+        double squares = 0.0;  ///< sum of (residual / sigma)^2, plus the penalty of the slopes
         double upper_slope = 0.0;
         double lower_slope = 0.0;
         double rise_m = 0.0;  ///< height difference between both planes

@@ -107,7 +107,7 @@ TEST(StepEvidence, AKerbBeforeASlopeIsOneStepAndNoFlight) {
 }
 
 TEST(StepEvidence, ALowKerbStandsOutOfTheErrorsOfItsCells) {
-    // A kerb of 75 mm, smeared over 0.1 m like by a matcher.
+    // A kerb of 75 mm, smeared over 0.1 m as by a matcher.
     const TestMap exact(
         [](double x_m, double) { return 0.075 * std::clamp(10.0 * x_m + 0.5, 0.0, 1.0); },
         0.0,

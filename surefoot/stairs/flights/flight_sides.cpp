@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 
 constexpr double kNearest_m = 0.05;  ///< begin of the strip; the ends of edges are this uncertain
 constexpr double kFarthest_m = 0.25;
-constexpr double kInside_m = 0.1;  ///< depth over the tread, on which a rail may stand
+constexpr double kInside_m = 0.1;  ///< a rail may stand on the tread, up to this far inside its end
 constexpr double kWall_m = 0.3;
 constexpr double kOpen_m = 0.1;
 constexpr double kLeastShare = 1.0 / 3.0;

@@ -11,10 +11,10 @@ namespace surefoot::stairs {
 /// Finds the kind of ground beside the steps of a flight, and rails along the flight. Examines a
 /// strip beside the ends of each tread, up to 0.25 m away.
 ///
-/// A side of a step is a wall if something stands 0.3 m or more above the tread. It is open if the
-/// ground, or a ray over unknown cells, lies 0.1 m or more below the tread; else it is level. It is
-/// unknown if less than a third of the strip has data. The flight takes the kind of most of its
-/// known steps. If two kinds are equally frequent, the more dangerous kind counts.
+/// A side of a step is a wall if at least a third of its known cells stand 0.3 m or more above the
+/// tread. It is open if at least a third lie 0.1 m or more below (unknown cells: a free ray); else
+/// it is level. It is unknown if less than a third of its cells are known. The flight takes the
+/// kind of most known steps. Of two equally frequent kinds, the more dangerous counts.
 ///
 /// A rail is an object 0.75 to 1.1 m above the nosing line (NZ D1/AS1: handrails at 0.9 to 1.0 m)
 /// along at least half of the steps, within a band of 0.1 m. Rails that the map lacks are not

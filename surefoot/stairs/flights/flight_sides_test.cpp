@@ -20,7 +20,7 @@ constexpr double kHalfWidth_m = 0.6;
 constexpr double kYaws_deg[] = {0.0, 31.0, 90.0, 200.0};
 constexpr TestFlight kUp{.steps = 4, .riser_m = 0.18, .going_m = 0.31};
 
-/// The flight with all four steps, because an object beside it may also end in steps.
+/// Returns the flight that has four steps, because an object beside it may also end in steps.
 Flight flight_of(const Terrain& terrain) {
     FeatureFinder finder{StairsConfig{}};
     TerrainFeatures found;

@@ -30,7 +30,7 @@ constexpr double kTreadSigma_m = 0.001;
 /// the image. Exact maps do not have this error.
 constexpr double kRiserShared_m = 0.001;
 /// If less than this share of a tread is visible, only a strip near the camera height is measured.
-/// It lies about 30 mm too low.
+/// The measured strip lies about 30 mm too low.
 constexpr double kStrip = 0.5;
 constexpr double kStripSigma_m = 0.03;
 constexpr double kAlike = 0.2;  ///< largest relative difference of a flight's goings
@@ -73,8 +73,9 @@ Line regress(std::span<const double> y, std::span<const double> sigma) {
 }
 
 /// Returns the number of values, from the first on, that lie on one line. A value lies on the line
-/// within `uneven` and three sigma of the prediction from the earlier values. The far end of a
-/// flight is measured worst, so values off the line are not used.
+/// if it differs from the prediction of the earlier values by at most `uneven` plus three sigma.
+/// The far end of a flight is measured worst, so the first value off the line and all later values
+/// are not used.
 std::size_t steady(std::span<const double> y, std::span<const double> sigma, double uneven) {
     std::size_t count = std::min<std::size_t>(2, y.size());
     while (count < y.size()) {
@@ -104,7 +105,7 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 bool FlightFinder::may_be_step(const Edge& edge) const {
-    // An edge without visible lower ground can only be the last one of a flight.
+    // An edge without visible lower ground can only be the last edge of a flight.
     const bool is_step = !edge.lower_seen || is_step_of(config_, edge);
     return is_step && edge.height_m() <= config_.max_riser_m &&
            edge.length_m() >= config_.min_width_m;
@@ -151,7 +152,7 @@ void FlightFinder::lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) 
         }
         chain.insert(below ? chain.begin() : chain.end(), edges[i]);
         edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // the next edge may have changed
+        i = 0;  // the chain has a new end, so all edges are tried again
     }
 }
 
@@ -233,7 +234,7 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
                               FlightKind kind,
                               const Vector2d& stance_m,
                               std::vector<Flight>& flights) const {
-    // A single low or high step at an end may be a kerb. A flight needs regular steps.
+    // A single low or high step at an end may be a kerb. So the median height decides.
     std::vector<double> heights_m;
     for (const Edge& edge : from_below) heights_m.push_back(edge.height_m());
     if (median_of(heights_m) < config_.min_riser_m) return;
@@ -328,7 +329,8 @@ void FlightFinder::measure_risers(Flight& flight) {
     std::vector<double> risers_m;
     for (std::size_t i = 1; i < level_m.size(); ++i)
         risers_m.push_back(level_m[i] - level_m[i - 1]);
-    // The first step may be almost level with the floor.
+    // The first riser may differ from the others: the first step may be almost level with the
+    // floor.
     const bool odd_first =
         risers_m.size() > 2 && std::abs(risers_m.front() - median_of(risers_m)) >
                                    kUnevenRiser_m + 2.0 * std::hypot(sigma_m[0], sigma_m[1]);

@@ -9,9 +9,9 @@
 
 namespace surefoot::stairs {
 
-/// Chains edges into flights. Consecutive edges are parallel (or turn, in a spiral), one going
-/// apart. The upper ground of one is the lower ground of the next. A chain with the stance inside
-/// becomes a flight up and a flight down. A single edge is a chain of one.
+/// Chains edges into flights. Consecutive edges are parallel (in a spiral they turn), one going
+/// apart. The upper ground of an edge is the lower ground of the next edge. A chain with the stance
+/// inside becomes a flight up and a flight down. A single edge is a chain of one.
 class FlightFinder {
   public:
     explicit FlightFinder(const StairsConfig& config) : config_(config) {}

@@ -23,17 +23,17 @@ class RayFaces {
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< distance of the old edge behind the face; 0 = open riser
+        double behind_m = 0.0;  ///< distance of the face behind the old edge; 0 = open riser
         double sigma_m = 0.0;
         bool open = false;
     };
     std::size_t gather(const Terrain& terrain, const Edge& edge, double at_m);
-    /// `level_m`: lean of the face that level ground would cause (see the definition).
+    /// `level_m`: lean that level ground would show (level_m() in the .cpp file).
     [[nodiscard]] bool shows_level_ground(double level_m);
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 
     std::vector<float> runs_m_;
-    std::vector<float> lower_m_;  ///< the runs of the lower half of the face
+    std::vector<float> lower_m_;  ///< distances in the lower half of the face
     std::vector<float> upper_m_;
 };
 

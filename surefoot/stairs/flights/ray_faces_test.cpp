@@ -45,7 +45,7 @@ TEST(RayFaces, risers_come_to_where_their_faces_are_seen) {
     }
 }
 
-// Below a board the floor behind it is visible: that is no face, at any distance.
+// Below a board the floor behind the board is visible. This floor is no face, at any distance.
 TEST(RayFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_floor_behind_it) {
     for (const bool open : {false, true}) {
         RayScene scene(flight(1, -0.2, 0.25), 0.7, 0.05, 0.0, open);
@@ -74,7 +74,7 @@ TEST(RayFaces, what_is_not_seen_stays_where_the_map_has_it) {
         return true;
     };
     EXPECT_FALSE(stays(scene.terrain(), given));
-    std::vector<Edge> down = given;  // whose faces point away from the camera
+    std::vector<Edge> down = given;  // the faces of these edges point away from the camera
     for (Edge& edge : down) std::swap(edge.from_m, edge.to_m);
     EXPECT_TRUE(stays(scene.terrain(), down));
     EXPECT_TRUE(stays(scene.terrain(), edges_up({0.5}, 0.18, 0.29)));  // no face stands there

@@ -16,9 +16,10 @@ constexpr int kMostSteps = 8;  ///< more steps are never visible
 constexpr double kDeepest_m =
     1.3;  ///< lowest floor below the first edge, for the hypotheses slope and fall
 constexpr double kFloorStep_m = 0.025;
-constexpr double kSteepest = 0.9;  ///< steepest slope; a steeper one counts as an immediate fall
+constexpr double kSteepest = 0.9;  ///< steepest slope; a steeper slope counts as an immediate fall
 constexpr double kSlopeStep = 0.03;
-constexpr double kMostCost = 3.0;       ///< limit per bin: a bin between two treads fits neither
+/// Largest cost of a bin [sigma]. A bin between two treads fits neither tread.
+constexpr double kMostCost = 3.0;
 constexpr double kLeastSigma_m = 0.01;  ///< one sigma of the error that the bins of a tread share
 constexpr double kLeastGain = 16.0;     ///< smallest cost gain of a flight over all alternatives
 constexpr int kRefinements = 4;         ///< each refinement halves the search steps

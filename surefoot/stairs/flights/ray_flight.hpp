@@ -33,7 +33,7 @@ class RayFlight {
   public:
     explicit RayFlight(const StairsConfig& config) : config_(config) {}
     /// Camera: `height_m` above the upper ground, `first_run_m` before the first nosing. Returns
-    /// nothing if a slope or a single fall explains the bins as well.
+    /// nothing if a slope or a single fall explains the bins almost as well.
     [[nodiscard]] std::optional<EvenFlight> fit(std::span<const RayBin> bins,
                                                 double height_m,
                                                 double first_run_m);

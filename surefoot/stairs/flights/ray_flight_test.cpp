@@ -55,7 +55,7 @@ TEST(RayFlight, AnEvenFlightIsFoundInNoise) {
                 ASSERT_TRUE(flight) << seed;
                 EXPECT_NEAR(flight->riser_m, riser_m, 0.006) << seed;
                 EXPECT_NEAR(flight->going_m, going_m, 0.02) << seed;
-                if (steps < 6) {  // their floor is visible
+                if (steps < 6) {  // the floor below these steps is visible
                     EXPECT_EQ(flight->steps, steps) << seed;
                 }
             }

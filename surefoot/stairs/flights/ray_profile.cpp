@@ -14,9 +14,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kBefore_rad = 0.035;  ///< angle of the ground above the edge that is included
-constexpr double kBehind_rad = 0.3;    ///< shows three steps of 0.15 / 0.31 m from 0.7 m away
-constexpr double kMargin_m = 0.1;      ///< length left out at both ends, which are less certain
+constexpr double kBefore_rad = 0.035;  ///< angle of the included upper ground, before the edge
+/// Angle of the examined ground behind the edge. It shows three steps (riser 0.15 m, going 0.31 m)
+/// from 0.7 m away.
+constexpr double kBehind_rad = 0.3;
+constexpr double kMargin_m = 0.1;  ///< length left out at both ends, which are less certain
 constexpr std::size_t kLeastSamples = 6;
 constexpr double kLeastSigma_m = 0.004;
 constexpr double kSigmaOfMedian = 1.25;

@@ -19,16 +19,16 @@ struct RayBin {
     double sigma_m = 0.0;
 };
 
-/// The depths that the camera sees behind an edge down, from steep rays to flat ones, in the plane
+/// The depths that the camera sees behind an edge down, from steep to flat rays, in the plane
 /// across the edge. In this plane each nosing is a point. A tread is a run of constant depth and a
 /// nosing is a change of depth, for any camera roll and edge direction. This is the v-disparity
 /// image (Labayrade et al. 2002), turned to the edge. It shows strips of five pixels, which the map
 /// omits because it drops pixels beside depth jumps.
 class RayProfile {
   public:
-    /// Computes the bins, half a pixel each. Empty without `Terrain::view` and
-    /// `Terrain::disparity_px`, if the camera is not above and before the edge, or if too little of
-    /// the edge is visible. Valid until the next call.
+    /// Computes the bins, half a pixel each; bins with too few pixels have no data. Empty without
+    /// `Terrain::view` or `Terrain::disparity_px`, or if the camera is not above the upper ground
+    /// and before the edge. Valid until the next call.
     [[nodiscard]] std::span<const RayBin> observation(const Terrain& terrain, const Edge& edge);
     /// Angle between the rays of neighbouring bins, at the edge.
     [[nodiscard]] double bin_rad() const noexcept { return bin_rad_; }

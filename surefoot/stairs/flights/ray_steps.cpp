@@ -15,15 +15,17 @@ constexpr double kHighest_m = -0.03;
 constexpr double kDeepest_m = 1.2;
 // in range: constants
 constexpr int kDepths = static_cast<int>((kDeepest_m - kHighest_m) / kGrid_m) + 1;
-constexpr int kLeastRise = 10;      ///< smallest riser in units of kGrid_m; less is one tread
-constexpr float kStepCost = 8.0F;   ///< a step must reduce the cost by at least this [sigma]
-constexpr float kMostCost = 3.0F;   ///< limit per bin: a bin between two treads fits neither
-constexpr int kLeastSupport = 3;    ///< 1.5 pixels
+constexpr int kLeastRise = 10;     ///< smallest riser in units of kGrid_m; less is one tread
+constexpr float kStepCost = 8.0F;  ///< a step must reduce the cost by at least this [sigma]
+/// Largest cost of a bin [sigma]. A bin between two treads fits neither tread.
+constexpr float kMostCost = 3.0F;
+constexpr int kLeastSupport = 3;    ///< smallest number of bins of a level: 1.5 pixels
 constexpr double kFirst_m = 0.08;   ///< largest distance of the first nosing from the known edge
 constexpr double kUneven_m = 0.03;  ///< largest difference of risers and of goings in a flight
 constexpr std::size_t kPlain = 3;   ///< this many regular steps need no further search
 constexpr double kNose_bins = 1.0;  ///< one sigma of the position of a depth change
-/// Depths on both sides blur a strip: its depth sigma is this value over its number of bins.
+/// The depths on both sides blur a strip. The resulting depth sigma is kBlur_m divided by the
+/// number of bins of the strip.
 constexpr double kBlur_m = 0.1;
 
 }  // namespace
@@ -103,7 +105,7 @@ double RaySteps::nose_bin(std::span<const RayBin> bins, const Level& upper, cons
     return lower.begin - 0.5;
 }
 
-/// An angular error of one pixel moves the nosing by range^2 / height.
+/// An angular error [rad] times range^2 / height is the error of the nosing's position.
 double RaySteps::nose_sigma_m(double run_m, double below_m) const {
     return kNose_bins * (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
 }

@@ -44,8 +44,8 @@ class RaySteps {
     [[nodiscard]] double nose_sigma_m(double run_m, double below_m) const;
     void find_noses(std::span<const RayBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
-    /// Replaces levels and nosings by the equal-step flight that explains the bins. Returns its
-    /// visible steps. Changes nothing if no such flight has more than `steps` steps.
+    /// Replaces levels and nosings by a flight of more than `steps` equal steps that explains the
+    /// bins. Returns the number of its visible steps, or `steps` without such a flight.
     [[nodiscard]] std::size_t as_even_flight(std::span<const RayBin> bins,
                                              double height_m,
                                              std::size_t steps);

@@ -22,13 +22,13 @@ namespace surefoot::stairs {
 class StepFitter {
   public:
     explicit StepFitter(const StairsConfig& config) : config_(config), profiler_(config) {}
-    /// Writes the edges of the flight that contains `seed`, lowest first; fewer than two if it has
-    /// no neighbours. Lines follow the cells (see StairsConfig::cell_reach).
+    /// Writes the edges of the flight that contains `seed`, lowest first; none if the flight has
+    /// fewer than two. Lines follow the cells (see StairsConfig::cell_reach).
     void fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>& out);
 
   private:
     struct Tread {
-        double begin_m = 0.0;  ///< position along the way down
+        double begin_m = 0.0;  ///< begin across the seed's line; positive = lower side
         double end_m = 0.0;
         double height_m = 0.0;
         double sigma_m = 0.0;    ///< one sigma of the height

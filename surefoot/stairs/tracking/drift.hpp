@@ -17,7 +17,7 @@ struct Drift {
 
     /// Adds the motion of one frame. `relative_covariance`: see MotionEstimate.
     void add(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
-    /// False if the positions of remembered features are unknown.
+    /// False if a variance exceeds (1 m)^2 or (1 rad)^2: remembered positions are then unknown.
     [[nodiscard]] bool is_bounded() const;
 
     /// Position variance at a distance from the machine. `level_var_m2` gives the height variance.

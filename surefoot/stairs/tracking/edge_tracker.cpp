@@ -17,18 +17,19 @@ using Eigen::Vector2d;
 
 constexpr double kGate_sigma = 3.4;
 /// Lower limits of the match gates, because a distant observation is off by more than its sigma.
-/// They are half of the shortest going and half of the lowest riser, so the next step never
-/// matches.
+/// They are half of the shortest going and half of the lowest riser, so the next step does not
+/// match unless the sigmas are large.
 constexpr double kAcross_m = 0.075;
 constexpr double kHeight_m = 0.04;
 constexpr double kAngle_rad = 20.0 * kRadPerDeg;
-/// Upper limits of the match gates. Edges farther apart never match, for any drift of the machine.
+/// Upper limits of the match gates. Edges farther apart never match, however large the drift may
+/// be.
 constexpr double kMaxAcross_m = 0.25;
 constexpr double kMaxHeight_m = 0.08;
 constexpr double kMaxAngle_rad = 40.0 * kRadPerDeg;
 constexpr double kMinOverlap = 0.3;  ///< smallest overlap, as a share of the shorter edge
 constexpr double kPieceAcross_m = 0.03;
-/// An unmatched edge this close to a matched one is the same edge. Two edges of one upper ground
+/// An unmatched edge this close to a matched edge is the same edge. Two edges of one upper ground
 /// that fall in one direction are never so close.
 constexpr double kDouble_m = 0.2;
 constexpr double kCovered = 0.7;
@@ -67,7 +68,8 @@ double lower_difference_m(const Edge& a, const Edge& b) {
     return 0.0;
 }
 
-/// Returns the disagreement of two edges in sigma. Empty if they cannot be the same edge.
+/// Returns the disagreement of two edges: the sum of the squared differences, each divided by its
+/// gate. Empty if they cannot be the same edge.
 std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const Edge& edge = track.edge;
     if (std::abs(seen.upper_m - edge.upper_m) > kMaxHeight_m)
@@ -122,8 +124,8 @@ void write_sigmas(EdgeTrack& track) {
     track.edge.height_sigma_m = track.height.sigma();
 }
 
-/// A drop stays a drop. A kerb needs two observations, and ends when observations no longer report
-/// it.
+/// A drop stays a drop. A kerb needs two observations. It ends after `missed_observations`
+/// consecutive observations that find the edge but no kerb.
 void name(const ObservedEdge& seen, const TrackingConfig& config, EdgeTrack& track) {
     track.drop = track.drop || seen.drop;
     if (seen.kerb) {
@@ -150,7 +152,7 @@ void take_height(const Edge& observation,
         const double higher_m = observation.height_m() - old_height_m;
         height_m += higher_m * track.height.take(var_m2, higher_m, most_observations);
         edge.lower_seen = true;
-    } else if (!edge.lower_seen) {  // the lower one of two bounds is valid
+    } else if (!edge.lower_seen) {  // the lower of two bounds is valid
         height_m = std::max(height_m, observation.height_m());
         (void)track.height.take(var_m2, 0.0, most_observations);
     }
@@ -279,7 +281,7 @@ void EdgeTracker::take(const ObservedEdge& seen,
     edge.upper_walkable = observation.upper_walkable;
     edge.lower_walkable = observation.lower_walkable;
     edge.open = observation.open;
-    // The lower ground comes from the last observation that saw it.
+    // The likelihood ratio comes from the last observation that saw the lower ground.
     if (!std::isnan(observation.log_step_ratio)) edge.log_step_ratio = observation.log_step_ratio;
     edge.hidden = observation.hidden;
     name(seen, config_, track);
@@ -294,8 +296,8 @@ void EdgeTracker::take(const ObservedEdge& seen,
     track.shown = true;
 }
 
-/// An edge grows at once. A part beyond the observation's ends fades. The part of a drop fades only
-/// if the ground there is level, or if the part is within the usual motion of ends.
+/// An edge grows at once. A part beyond the observation's ends fades. Such a part of a drop fades
+/// only if the ground there is level, or if the part is no longer than kEnds_m.
 void EdgeTracker::take_ends(const Edge& observation,
                             const Terrain& terrain,
                             EdgeTrack& track) const {
@@ -358,8 +360,8 @@ bool EdgeTracker::make_room_for(const EdgeTrack& track) {
     return true;
 }
 
-/// True if the ground is one smooth slope, so that the edge is no drop. An edge with an uncertain
-/// position may lie outside the examined ground.
+/// True if the ground is one smooth slope, so that the edge is no drop. Returns false for an edge
+/// with an uncertain position, because it may lie outside the examined ground.
 bool EdgeTracker::is_seen_to_be_smooth(const Terrain& terrain, const Edge& edge) {
     constexpr double kReach_m = 0.35;  ///< depth of ground on either side
     constexpr double kSure_m = 0.05;

@@ -62,7 +62,7 @@ class EdgeTracker {
         : config_(config), least_log_ratio_(std::log(evidence.drop_ratio)), evidence_(evidence) {
         tracks_.reserve(kMaxEdges);
     }
-    /// `first`: true for the very first observation, which needs no confirmation by a second one.
+    /// `first`: true for the very first observation, which needs no confirmation.
     void update(std::span<const ObservedEdge> seen,
                 const Terrain& terrain,
                 std::int64_t time_ns,

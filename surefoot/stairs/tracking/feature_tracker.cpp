@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Values of one observation are equal except for rounding.
+/// Two copies of a value of one observation differ by less than this, because of rounding.
 constexpr double kSame_m = 1e-3;
 
 /// Returns the edge of a drop or kerb.

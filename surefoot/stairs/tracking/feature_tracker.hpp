@@ -14,7 +14,7 @@
 
 namespace surefoot::stairs {
 
-/// The time of an observation, and the uncertainty of the motion since the previous one.
+/// The time of an observation, and the uncertainty of the motion since the previous observation.
 struct Moment {
     std::int64_t time_ns = 0;
     Drift drift;
@@ -26,9 +26,9 @@ struct Moment {
 /// - Two edges are the same if they agree within 3.4 sigma, or within half a step if the sigmas
 ///   are smaller. Compared: position across, direction, both heights and a shared length.
 ///   Flights match by their edges, doors and sills by their position.
-/// - A mean is steadier than its observations, but its sigma is not below the best one
-///   (ObservationWeight), because all observations read one map. Without a match the sigmas
-///   grow with the drift.
+/// - A mean is steadier than its observations, but its sigma is not below the best of them
+///   (ObservationWeight), because all observations read one map. Without a match the sigmas grow
+///   with the drift.
 /// - Drops are reported from the first observation on, never farther away than the current
 ///   observation plus its sigma, and at full length. A drop ends when it leaves the map. It also
 ///   ends after `level_observations` consecutive observations of level or smooth ground on both

@@ -71,7 +71,8 @@ TEST(FeatureTracker, what_is_not_seen_grows_as_unsure_as_the_machine_drifts) {
     EXPECT_NEAR(observations.out().drops[0].across_sigma_m, std::sqrt(var_m2), 1e-9);
     EXPECT_NEAR(
         observations.out().edges.at(0).angle_sigma_rad, std::sqrt(1e-4 + kFrames * 4e-6), 1e-9);
-    // Seen again it has the sigma of the observation, and keeps its id although it has moved.
+    // After a new observation the drop has the sigma of this observation. It keeps its id although
+    // it has moved.
     const std::uint32_t id = observations.out().drops[0].tracked.id;
     observations.observation(drop_found(edge_ahead(2.09)), drift);
     ASSERT_EQ(observations.out().drops.size(), 1U);

@@ -47,7 +47,7 @@ int steps_of(const Flight& flight) {
     return std::clamp(flight.steps, 0, FlightTrack::kMaxSteps);
 }
 
-/// Returns true if the observed number of steps is the one to report.
+/// Adds a vote for `steps`. Returns true if this number of steps is reported.
 bool vote(int steps, double most_observations, FlightTrack& track) {
     const auto keep = static_cast<float>(1.0 - 1.0 / most_observations);
     for (float& votes : track.votes) votes *= keep;
@@ -76,7 +76,7 @@ void place(Flight& flight) {
     flight.pose.yaw_rad = up ? std::atan2(-down.y(), -down.x()) : std::atan2(down.y(), down.x());
 }
 
-/// Copies the tracked edges into the flight; returns how many are left.
+/// Copies the tracked edges into the flight. Returns the number of edges that are still tracked.
 int refresh(const EdgeTracker& edges, Flight& flight) {
     int left = 0;
     for (Edge& edge : flight.edges) {

@@ -31,7 +31,7 @@ struct FlightTrack {
     int place_seen = 0;  ///< observations since the last match that see its location
 };
 
-/// Tracks flights. Two flights match if most of their edges match. Rules: see FeatureTracker.
+/// Tracks flights; two match if they share half of the shorter flight's edges (see FeatureTracker).
 class FlightTracker {
   public:
     explicit FlightTracker(const TrackingConfig& config) : config_(config) {}

@@ -19,7 +19,8 @@ double square(double value) {
     return value * value;
 }
 
-/// Moves a pose by `share`. A pose seen from the other side replaces it.
+/// Moves `pose` by `share` towards the observation. An observation from the other side replaces
+/// `pose`.
 void move(const FeaturePose& observation, double share, FeaturePose& pose) {
     const double turn_rad =
         std::remainder(observation.yaw_rad - pose.yaw_rad, 2.0 * std::numbers::pi);

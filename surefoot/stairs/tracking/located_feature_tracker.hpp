@@ -36,7 +36,7 @@ class LocatedFeatureTracker {
         ObservationWeight across;  ///< weight of a door's width or of a sill's position across
         ObservationWeight height;  ///< weight of the height of the sill
         bool shown = false;
-        int place_seen = 0;  ///< consecutive observations that see its location but not it
+        int place_seen = 0;  ///< consecutive observations that see the location without the feature
     };
 
     void take(const Place& seen, std::int64_t time_ns, Track& track) const;

@@ -8,7 +8,7 @@ namespace surefoot::stairs {
 namespace {
 
 constexpr double kLeastVar = 1e-10;  ///< (0.01 mm)^2: more exact observations get equal weights
-/// An observation this many sigma off does not confirm the mean. One of both is wrong, and the
+/// An observation this many sigma off does not confirm the mean. One of the two is wrong, and the
 /// newer observation is based on all earlier data.
 constexpr double kJump_sigma = 3.0;
 constexpr double kJumpShare = 0.5;
@@ -29,7 +29,7 @@ double ObservationWeight::take(double var, double difference, double most_observ
     best_var_ = std::min(best_var_, var);
     scatter_var_ += (square - scatter_var_) / most_observations;
     mean_var_ *= 1.0 - share;
-    // With this limit, observations as good as the best one weigh 1 / most_observations.
+    // With this limit, observations as good as the best observation weigh 1 / most_observations.
     if (most_observations > 1.0)
         mean_var_ = std::max(mean_var_, best_var_ / (most_observations - 1.0));
     return most_observations > 1.0 ? share : 1.0;

@@ -17,7 +17,7 @@ class ObservationWeight {
     /// Adds the variance of the drift between two observations.
     void drift(double var);
     [[nodiscard]] double sigma() const;
-    /// Joins a second track of the same feature; the better one of both counts.
+    /// Joins a second track of the same feature; the better of the two counts.
     void join(const ObservationWeight& other);
 
   private:

@@ -8,7 +8,7 @@ void TrackingConfig::describe(ConfigVisitor& visitor) {
                    mean_observations,
                    1.0,
                    100.0,
-                   "largest number of observations in the mean position of a feature");
+                   "largest number of observations in the mean position and size of a feature");
     visitor.integer("going_observations",
                     going_observations,
                     1,
@@ -37,7 +37,7 @@ void TrackingConfig::describe(ConfigVisitor& visitor) {
         steps_observations,
         1.0,
         1000.0,
-        "memory, in observations, of the majority vote on the number of steps of a flight");
+        "approximate number of recent observations that vote on the number of steps of a flight");
 }
 
 }  // namespace surefoot::stairs
