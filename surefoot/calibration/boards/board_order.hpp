@@ -26,7 +26,7 @@ struct LocalMap {
                                                     const std::vector<Eigen::Vector2d>& pixels);
 
 /// Sorts the points of a whole grid along rows and columns, into the order of Board::points_m that
-/// detect_board promises. Returns nullopt if they do not look like the board.
+/// detect_board promises. Returns nullopt if no order looks like the board.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     const Board& board,
     const std::vector<Eigen::Vector2d>& found,

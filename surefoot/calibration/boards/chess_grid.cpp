@@ -161,7 +161,8 @@ GrownChessboard grown_chessboard(const Board& board,
     GrownChessboard best;
     double best_area_px2 = 0.0;
     for (const JoinedCorners& joined : joined_corners(corners, image)) {
-        // If the corners of a board fall into several groups, one group still has several squares.
+        // The groups are sorted by size, so all later groups are too small too. If the corners of a
+        // board fall into several groups, the largest group still has several squares.
         if (joined.lattice.size() < kFewestJoined) break;
         const int most = std::max(board.columns, board.rows) + 2;
         const Lattice lattice = grown_lattice(joined, corners, image, most);

@@ -11,7 +11,7 @@ namespace surefoot::calibration {
 /// The circles of a grid as seen in one image.
 struct DiscImages {
     std::vector<Eigen::Vector2d> centroids;  ///< centres of gravity of the dark areas [px]
-    /// Radius of the circles on the board, measured from their area: the board does not state it.
+    /// Radius of the circles on the board, measured from their area. Board does not contain it.
     double radius_m = 0.0;
 };
 
