@@ -213,7 +213,7 @@ void reject_dropped(const RobustFit& fit,
     }
 }
 
-/// Computes the fits, row differences and depth errors of the solution.
+/// Stores the fits of the pairs, the rms and the noise of the solution in `result`.
 void describe(const BoardBundle& bundle,
               std::span<const Sight> all,
               std::span<const Pair> pairs,

@@ -61,8 +61,8 @@ struct StereoCalibration {
 
 /// Calibrates two cameras and their relative pose from simultaneous views: left[i] and right[i] are
 /// a pair. An empty view means that the board was not found. First calibrates each camera alone.
-/// Then removes pairs whose relative pose disagrees with the others, worst first. Finally estimates
-/// all parameters jointly.
+/// Then removes pairs whose relative pose is far from the median pose. Finally estimates all
+/// parameters jointly and removes bad pairs, worst first.
 [[nodiscard]] Result<StereoCalibration> calibrate_stereo(const Board& board,
                                                          std::span<const BoardView> left,
                                                          std::span<const BoardView> right,

@@ -165,7 +165,7 @@ BoardSighting find_chessboard(const Board& board,
     if (!problem.empty()) return not_found(problem);
     return not_found(
         fmt::format("no chessboard of {} x {} inner corners is fully visible; show the whole "
-                    "board, or correct its size",
+                    "board, or give its true size",
                     board.columns,
                     board.rows));
 }
@@ -233,7 +233,7 @@ BoardSighting find_circles(const Board& board,
     }
     return not_found(
         fmt::format("no {} of {} x {} dark circles on white is fully visible; show the whole "
-                    "board, or correct its size",
+                    "board, or give its true size",
                     board.kind == BoardKind::circles ? "grid" : "staggered grid",
                     board.columns,
                     board.rows));

@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 /// limit, as a share of the least growth of real lenses.
 inline constexpr double kLeastGrowth = 0.5;
 inline constexpr double kGrowthStep = 0.05;  ///< step of tan(angle); fisheye: of the angle [rad]
-inline constexpr int kGrowthPlaces = 60;     ///< number; pinhole: to 72 deg, fisheye: to 172 deg
+inline constexpr int kGrowthPlaces = 60;     ///< places to 72 deg (pinhole) or 172 deg (fisheye)
 
 inline double growth_place(int i) {
     return kGrowthStep * (i + 0.5);
