@@ -26,16 +26,16 @@ struct M3c2Config {
     double normal_diameter_m = 0.10;      ///< diameter of the ball of points that give the normal
     double projection_diameter_m = 0.05;  ///< diameter of the cylinder along the normal
     double half_length_m = 0.10;          ///< half length of the cylinder
-    double registration_error_m = 0.0;    ///< one sigma; added to the level of detection
-    int min_points = 5;                   ///< least points of each cloud for a significant result
+    double registration_error_m = 0.0;    ///< one sigma; increases the level of detection
+    int min_points = 5;                   ///< least number of points of each cloud for a lod95
     void describe(ConfigVisitor& visitor);
 };
 
 /// Result of M3C2 at one core point.
 struct M3c2Value {
-    double distance_m = kNan;       ///< compared - reference along the normal; NaN: no points
+    double distance_m = kNan;       ///< compared - reference along the normal; NaN if unknown
     double lod95_m = kNan;          ///< level of detection (95 %); NaN: too few points
-    double std_reference_m = kNan;  ///< scatter along the normal, divided by n
+    double std_reference_m = kNan;  ///< standard deviation along the normal, divisor n
     double std_compared_m = kNan;
     int count_reference = 0;
     int count_compared = 0;
