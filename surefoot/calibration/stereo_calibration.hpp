@@ -46,9 +46,9 @@ struct StereoCalibration {
     double stated_sigma_px = 0.0;
     /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
     /// focal length of the two lenses. In this unit a corner error is as large as in the raw image.
-    /// The rectified images of `run` may be larger or smaller. The lens model sets their size at
-    /// the image corners, where perhaps no board was seen. In their pixels a better model with
-    /// larger images would seem worse.
+    /// The rectified images of `surefoot run` may be larger or smaller. The lens model sets their
+    /// size at the image corners, where perhaps no board was seen. In their pixels a better model
+    /// with larger images would seem worse.
     double row_rms_px = 0.0;
     double row_focal_px = 0.0;
     double rectified_focal_px = 0.0;  ///< focal length of images from `camera/rectifier`

@@ -9,14 +9,14 @@
 namespace surefoot::calibration {
 namespace {
 
-/// The first round gives sub-pixel neighbours. From them the second round takes curvatures and
-/// steps.
+/// Number of rounds. The first round refines the neighbours of a corner. The second round takes
+/// curvatures and steps from the refined neighbours.
 constexpr int kRounds = 2;
 /// Largest move of a corner, as a share of the shorter step to a neighbour. A corner that moved
 /// farther is another corner or no corner.
 constexpr double kMostMove = 0.4;
 
-using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< [px], one per board point
+using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< by point id; nullopt = unknown
 
 /// The row or column of board points that contains one point. Successive ids differ by `stride`.
 struct Line {

@@ -28,7 +28,7 @@ std::size_t index_of(const Board& board, int column, int row) {
     return static_cast<std::size_t>(row * board.columns + column);
 }
 
-/// Mean direction of the rows in the image: a unit vector, or zero.
+/// Returns the mean direction of the rows in the image: a unit vector, or zero.
 Eigen::Vector2d row_direction(const Board& board, const BoardView& view) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (std::size_t i = 1; i < view.ids.size(); ++i) {
@@ -64,7 +64,7 @@ std::vector<Points> readings_of(const Board& board, const Points& found) {
     return readings;
 }
 
-/// Mean of the 3 x 3 pixels around a position; nullopt at the border.
+/// Returns the mean of the 3 x 3 pixels around a position; nullopt at the border.
 std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eigen::Vector2d& at) {
     const auto middle = nearest_pixel(at.x(), at.y(), image.width, image.height, 1);
     if (!middle) return std::nullopt;

@@ -21,7 +21,7 @@ constexpr int kRing = 32;  ///< positions on a ring
 constexpr int kBorder_px = 2;
 constexpr double kMostBeside_px = 1.2;
 /// Largest bend of a line at the corner: the angle between its two halves may differ from 180 deg
-/// by this.
+/// by at most this angle.
 constexpr double kMostBend_rad = 0.5;
 /// Smallest angle between two neighbouring edges of a corner (17 deg).
 constexpr double kLeastAngle_rad = 0.3;
@@ -112,7 +112,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
                                      double radius_px) {
     const Crossings ring = crossings_of(light, centre, radius_px);
     if (ring.at_rad.size() != 4 || ring.contrast_dn < kLeastContrast_dn) return std::nullopt;
-    // The colour after the first edge is black.
+    // The square after the first edge must be black.
     const std::size_t first = ring.white_first ? 0 : 1;
     std::array<double, 4> angles{};
     for (std::size_t i = 0; i < 4; ++i)

@@ -47,7 +47,7 @@ std::array<Window, 4> borders_of(const Window& w, bool outside) {
              {{x, y + w.rows - 1 + out}, w.columns, 1, 0}}};
 }
 
-/// Smallest and largest filled share of the border lines.
+/// Returns the smallest and the largest filled share of the four border lines.
 std::pair<double, double> border_shares(const Lattice& lattice, const Window& w, bool outside) {
     double least = 1.0;
     double most = 0.0;

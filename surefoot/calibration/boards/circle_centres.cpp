@@ -21,8 +21,8 @@ namespace {
 /// second ring the map is too flat: in a fisheye image the radius is then 0.4 % too large instead
 /// of 0.27 %.
 constexpr std::size_t kNeighbours = 9;
-/// Reach of the dark area beyond the rim: three sigma of a blur of 0.8 px. Farther pixels only add
-/// noise, and far noise has the largest weight.
+/// Reach of the dark area beyond the rim: about three sigma of a blur of 0.8 px. Farther pixels
+/// only add noise, and far noise has the largest weight.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 

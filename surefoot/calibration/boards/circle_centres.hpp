@@ -16,7 +16,7 @@ struct DiscImages {
 };
 
 /// Measures the centres of gravity and the common radius, from rough centres. A circle with low
-/// contrast keeps its rough centre. The result is not the image of the centre (see disc_image.hpp).
+/// contrast keeps its rough centre. This is not the image of the centre (see disc_image.hpp).
 [[nodiscard]] DiscImages measured_discs(const Board& board,
                                         const std::vector<Eigen::Vector2d>& rough,
                                         ImageView<const std::uint8_t> image);

@@ -133,7 +133,7 @@ ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
 
-/// Indices of the lens parameters that stay fixed.
+/// Returns the indices of the lens parameters that stay fixed.
 std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
     const int block = kind == LensKind::fisheye ? kFisheye : kPinhole;
     const int used = static_cast<int>(parameter_names(kind).size());
@@ -288,8 +288,8 @@ class Graph {
     ceres::Problem problem_;
 };
 
-/// Derivative of theta in R Exp(theta) by the rotation vector of R: the right Jacobian of SO(3)
-/// (Sola et al. 2018, equation 143).
+/// Returns the derivative of theta in R Exp(theta) by the rotation vector of R: the right Jacobian
+/// of SO(3) (Sola et al. 2018, equation 143).
 Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const Eigen::Matrix3d W = skew(w);

@@ -43,7 +43,7 @@ struct BundleOptions {
     Freedom freedom = Freedom::everything;
     double huber_px = 0.0;  ///< larger residuals count linearly [px]; 0 = least squares
     int max_iterations = 100;
-    /// The solver stops below this relative change of cost or parameters (first fits: 1e-5)..
+    /// The solver stops below this relative change of cost or parameters.
     double tolerance = 1e-12;
     /// True: prevents a lens image from folding back before the image corners (growing_image.hpp),
     /// unless the sights contradict this.
@@ -58,10 +58,10 @@ struct BundleOptions {
 /// Returns measured minus predicted pixels, one per sight; NaN if a point has no image.
 [[nodiscard]] std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle);
 
-/// Covariance of all lens parameters, one lens after the other, for pixel noise of `sigma_px` per
-/// coordinate. With two lenses T_left_right follows (translation, rotation; right perturbation).
-/// Board poses are marginalised. Leaves out the growth limit: the limit bounds the truth on one
-/// side only. Returns nullopt if the views do not determine the parameters.
+/// Returns the covariance of all lens parameters, one lens after the other, for pixel noise of
+/// `sigma_px` per coordinate. With two lenses T_left_right follows (translation, rotation; right
+/// perturbation). Board poses are marginalised. Leaves out the growth limit: the limit bounds the
+/// truth on one side only. Returns nullopt if the views do not determine the parameters.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px);
 
 }  // namespace surefoot::calibration

@@ -30,7 +30,7 @@ constexpr double kStageTolerance = 1e-6;
 constexpr BundleOptions kLastStage{
     Freedom::everything, kStartHuber_px, kStageIterations, kStageTolerance};
 
-/// Sights of one view, as plane points and rays.
+/// The sights of one view: points on the board plane, and the rays of their pixels.
 struct ViewRays {
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector3d> rays;

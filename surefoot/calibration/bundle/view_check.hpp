@@ -37,7 +37,7 @@ void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::s
 /// Returns the median of the disc radii of the views [m]; 0 for views of points.
 [[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
 
-/// Returns a text with three reasons: "6 of 8 views were left out: view 2: ...; view 5: ...".
+/// Returns a text with up to three reasons: "6 of 8 views were left out: view 2: ...; view 5: ...".
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
 [[nodiscard]] double median(std::vector<double> values);  ///< upper median; 0 without values

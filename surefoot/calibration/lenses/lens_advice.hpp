@@ -11,7 +11,7 @@
 
 namespace surefoot::calibration {
 
-/// Error of a lens kind on boards that were not used to fit it.
+/// Error of a lens kind, from the cross-validation of try_lens.
 struct LensTrial {
     LensKind kind = LensKind::pinhole5;
     /// Median of the rms values of the views [px]; infinite unless the lens shows more than half of

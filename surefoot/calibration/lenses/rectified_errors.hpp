@@ -12,7 +12,7 @@
 
 namespace surefoot::calibration {
 
-/// Returns the position of a raw pixel on the plane z = 1 of the rectified frame, or nullopt.
+/// Returns where a raw pixel lies on the plane z = 1 of the rectified frame; nullopt if nowhere.
 [[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(
     const camera::RectifiedCamera& camera, const Eigen::Vector2d& raw);
 

@@ -10,8 +10,8 @@
 
 namespace surefoot::eval {
 
-/// Plane through the points of a board in front of a camera: 1/z = (x/z, y/z, 1) . inverse_depth.
-/// Disparity noise is symmetric in 1/z, so the fit has no bias.
+/// Plane through the points of a board in front of a camera: 1/z = (x/z, y/z, 1) .
+/// inverse_depth_1_m. Disparity noise is symmetric in 1/z, so the fit has no bias.
 struct BoardPlane {
     Eigen::Vector3d inverse_depth_1_m = Eigen::Vector3d::Zero();
     /// Depth [m] on the optical axis.

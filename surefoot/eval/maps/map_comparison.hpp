@@ -33,7 +33,7 @@ struct MapPair {
     grid::Layer compared_m;
     grid::Layer truth_traversability;
     Trajectory trajectory;              ///< base_link in the map's frame; may be empty
-    std::optional<CameraTrack> camera;  ///< without it no errors by column and range
+    std::optional<CameraTrack> camera;  ///< needed for errors by column and range
 };
 
 /// All measurements of one live map. Fields without cells are NaN. Lists whose input is missing are

@@ -66,7 +66,7 @@ struct ElevationErrors {
                               const grid::Layer& truth,
                               const CellMask& mask);
 
-/// Result of a live map for one cell with known truth.
+/// Result of a live map for one cell, compared with the truth.
 enum class Call : std::uint8_t {
     no_truth,
     unknown,  ///< the live map does not know the cell
@@ -85,7 +85,7 @@ struct TraversabilityErrors {
     double false_unsafe = 0.0;            ///< share of the truly safe cells rated unsafe
     double true_safe = 0.0;               ///< share of the truly safe cells rated safe
     double true_unsafe = 0.0;             ///< share of the truly unsafe cells rated unsafe
-    double unknown = 0.0;                 ///< share of the cells with truth that live lacks
+    double unknown = 0.0;                 ///< unknown_cells / number of cells with known truth
     std::int64_t truly_safe_cells = 0;    ///< truly safe cells known in both maps
     std::int64_t truly_unsafe_cells = 0;  ///< truly unsafe cells known in both maps
     std::int64_t unknown_cells = 0;

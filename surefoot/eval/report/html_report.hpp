@@ -60,7 +60,7 @@ struct ReportSection {
     std::string note = {};  ///< text below the pictures and tables
 };
 
-/// Contents of a report, in the order of the page. Empty parts are left out.
+/// Contents of a report. Empty parts are left out.
 struct ReportContent {
     std::string title;
     std::vector<std::string> summary;  ///< one sentence per line

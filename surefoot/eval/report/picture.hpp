@@ -64,16 +64,16 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Draws white cells where the live map says safe, others black. The dot shows whether this is
-/// right: green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe.
-/// Colours of Lange 2016, section 9.2, except its red: some people confuse this red with the green.
+/// Draws white cells where the live map says safe, and black cells where it says unsafe. Dots:
+/// green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe. Colours
+/// of Lange 2016, section 9.2, except its red: some people confuse this red with the green.
 [[nodiscard]] Picture render_confusion(const grid::GridGeometry& geometry,
                                        const Image<Call>& calls,
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Draws the colours of render_confusion without title, axes and legend. Shows the cells with a
-/// call and the path, at least `kThumbnailCells` wide and high. Empty if no cell has a call.
+/// Draws the colours of render_confusion without title, axes and legend. Shows the cells that both
+/// maps know, and the path, at least `kThumbnailCells` wide and high. Empty without such cells.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,

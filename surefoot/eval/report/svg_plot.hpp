@@ -21,7 +21,7 @@ struct HealthSample {
 };
 
 /// Escapes `text` for HTML and SVG: replaces the five special characters, and turns control
-/// characters that XML forbids into spaces.
+/// characters except line break and tab into spaces.
 [[nodiscard]] std::string escaped(const std::string& text);
 
 /// Inline SVG drawings without script or external resource. Colours come from the page's style
