@@ -12,8 +12,8 @@ namespace surefoot::calibration {
 
 struct StereoOptions {
     CalibrationOptions camera;
-    /// Largest joint rms of a pair, divided by the rms of its two images alone. Above this limit
-    /// most of the error is not noise: the images are from different moments, or the rig has bent.
+    /// Largest joint rms of a pair / rms of its images alone (or the median of all pairs, if
+    /// larger). A larger rms is mostly not noise: the images differ in time, or the rig has bent.
     double pair_factor = 1.5;
     int least_pairs = 3;
 };

@@ -46,7 +46,7 @@ struct PinholeGrowth {
 struct FisheyeGrowth {
     static constexpr int kParameters = 8;
 
-    /// Half the growth of an equisolid lens: the image of an orthographic lens ends before 90 deg.
+    /// Half the growth of an equisolid lens: the image of an orthographic lens ends at 90 deg.
     static double least(double theta) { return kLeastGrowth * std::cos(0.5 * theta); }
 
     /// Computes d image / d theta. Always returns true.

@@ -184,7 +184,8 @@ std::string timing_html(const ReportContent& content) {
              "percentile of the same frames.") +
         card("Per frame",
              frame_times_svg(content.frame_ms, content.frame_limit_ms),
-             content.frame_limit_ms > 0.0 ? "Dashed line: mean time between two frames." : "");
+             content.frame_limit_ms > 0.0 ? "Dashed line: time between two frames of the source."
+                                          : "");
     return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
 }
 

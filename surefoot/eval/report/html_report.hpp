@@ -70,7 +70,7 @@ struct ReportContent {
     std::vector<std::string> reasons;  ///< sentences: why a part is missing or refused
     std::vector<StageTiming> stages;
     std::vector<double> frame_ms;  ///< total time of all stages of each frame
-    double frame_limit_ms = 0.0;   ///< mean time between frames; 0 = unknown
+    double frame_limit_ms = 0.0;   ///< time between two frames; 0 = unknown
     std::vector<HealthSample> health;
     std::string plots_title = "Errors";
     std::vector<ReportPlot> plots;
