@@ -90,7 +90,7 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
         return input_error(
-            fmt::format("no point has finite coordinates and a height within +-{:g} m ({} points "
+            fmt::format("no point with finite coordinates and a height within +-{:g} m ({} points "
                         "read); check the file and the unit of its heights",
                         kMaxHeight_m,
                         skipped_));
