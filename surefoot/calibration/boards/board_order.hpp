@@ -10,8 +10,8 @@
 
 namespace surefoot::calibration {
 
-/// Second-order model of the pixel as a function of the board position x around one point: pixel =
-/// centre + J x + (x' H_u x, x' H_v x) / 2.
+/// Second-order model of the pixel as a function of the board position x around one point: `pixel`
+/// + J x + (x' H_u x, x' H_v x) / 2.
 struct LocalMap {
     Eigen::Vector2d pixel;
     Eigen::Matrix2d J_px_m;

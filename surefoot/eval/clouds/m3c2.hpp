@@ -44,9 +44,9 @@ struct M3c2Value {
 };
 
 /// M3C2 of Lague, Brodu and Leroux 2013, "Accurate 3D comparison of complex topography with
-/// terrestrial laser scanner". Averages the points of both clouds in a cylinder around each core
-/// point, along the cylinder's axis. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration
-/// error). Results are in the order of `cores_m`, which must be finite.
+/// terrestrial laser scanner". Averages the points of both clouds along a cylinder around each core
+/// point. LOD95 = 1.96 (sqrt(s1^2 / n1 + s2^2 / n2) + registration error), for standard deviations
+/// s and counts n. Results are in the order of `cores_m`, which must be finite.
 [[nodiscard]] std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,
                                           const geometry::KdTree& compared,
                                           std::span<const Eigen::Vector3f> cores_m,

@@ -54,7 +54,7 @@ struct PosePair {
 /// Errors over the matched poses (Sturm et al. 2012 for ATE and RPE).
 struct TrajectoryErrors {
     double ate_rmse_m = 0.0;        ///< rms position error after alignment
-    double rpe_trans_rmse_m = 0.0;  ///< rms translation of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j)
+    double rpe_trans_rmse_m = 0.0;  ///< rms translation of relative_error
     double rpe_rot_rmse_deg = 0.0;
     /// 100 |t| / path length; t = error of the motion from the first to the last matched pose,
     /// which needs no alignment. NaN if the true path is shorter than 1 mm.
