@@ -77,7 +77,7 @@ std::string weakness_of(const MonoCalibration& result,
     return result.camera.problem().value_or("");
 }
 
-/// Adds the views that left the bundle to `rejected`, with their reasons.
+/// Adds the views that the robust fit removed to `rejected`, with their reasons.
 void reject_dropped(const RobustFit& fit,
                     std::span<const std::size_t> kept,
                     std::vector<RejectedView>& rejected) {

@@ -22,7 +22,7 @@ struct CalibrationOptions {
     RobustLimits limits;
     SelectionLimits selection;
     /// Largest accepted standard deviation of the focal length, divided by the focal length.
-    /// ASSUMPTION: 5 %; the relative depth error is the same.
+    /// ASSUMPTION: 5 %; the relative depth error is as large.
     double most_focal_sigma = 0.05;
     /// Smallest tilt between the two most different boards: parallel boards count as one board
     /// (Zhang 2000, section 3.4). ASSUMPTION: 5 deg; messages ask users to tilt by 20 deg and more.
@@ -38,7 +38,7 @@ struct ViewFit {
 struct MonoCalibration {
     LensKind kind = LensKind::pinhole5;
     camera::Camera camera;
-    Eigen::VectorXd parameters;  ///< in the order of parameter_names(kind), unit pixels
+    Eigen::VectorXd parameters;  ///< ordered as parameter_names(kind); fx to cy in px
     /// Covariance of `parameters`, from the scatter of residuals and views (`stated_sigma_px`).
     Eigen::MatrixXd covariance;
     double rms_px = 0.0;    ///< rms distance of used points from their prediction, as in OpenCV

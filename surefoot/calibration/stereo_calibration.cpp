@@ -115,8 +115,8 @@ Result<MonoCalibration> calibrate_camera(const char* name,
 
 std::string scatter_text(const PoseDistance& off) {
     return fmt::format(
-        "the relative pose of the two cameras differs by {:.4f} m and {:.2f} deg from the median "
-        "of the pairs",
+        "the relative pose of the two cameras differs by {:.4f} m and {:.2f} deg from that of the "
+        "other pairs",
         off.translation_m,
         off.rotation_rad * 180.0 / std::numbers::pi);
 }
@@ -213,7 +213,7 @@ void reject_dropped(const RobustFit& fit,
     }
 }
 
-/// Computes the fits, row differences and depth errors of the solution.
+/// Stores the fits of the pairs, the rms and the noise of the solution in `result`.
 void describe(const BoardBundle& bundle,
               std::span<const Sight> all,
               std::span<const Pair> pairs,

@@ -12,8 +12,8 @@ namespace surefoot::calibration {
 
 struct StereoOptions {
     CalibrationOptions camera;
-    /// Largest joint rms of a pair, divided by the rms of its two images alone. Above this limit
-    /// most of the error is not noise: the images are from different moments, or the rig has bent.
+    /// Largest joint rms of a pair / rms of its images alone (or the median of all pairs, if
+    /// larger). A larger rms is mostly not noise: the images differ in time, or the rig has bent.
     double pair_factor = 1.5;
     int least_pairs = 3;
 };
@@ -46,9 +46,9 @@ struct StereoCalibration {
     double stated_sigma_px = 0.0;
     /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
     /// focal length of the two lenses. In this unit a corner error is as large as in the raw image.
-    /// The rectified images of `run` may be larger or smaller. The lens model sets their size at
-    /// the image corners, where perhaps no board was seen. In their pixels a better model with
-    /// larger images would seem worse.
+    /// The rectified images of `surefoot run` may be larger or smaller. The lens model sets their
+    /// size at the image corners, where perhaps no board was seen. In their pixels a better model
+    /// with larger images would seem worse.
     double row_rms_px = 0.0;
     double row_focal_px = 0.0;
     double rectified_focal_px = 0.0;  ///< focal length of images from `camera/rectifier`
@@ -61,8 +61,8 @@ struct StereoCalibration {
 
 /// Calibrates two cameras and their relative pose from simultaneous views: left[i] and right[i] are
 /// a pair. An empty view means that the board was not found. First calibrates each camera alone.
-/// Then removes pairs whose relative pose disagrees with the others, worst first. Finally estimates
-/// all parameters jointly.
+/// Then removes pairs whose relative pose is far from the median pose. Finally estimates all
+/// parameters jointly and removes bad pairs, worst first.
 [[nodiscard]] Result<StereoCalibration> calibrate_stereo(const Board& board,
                                                          std::span<const BoardView> left,
                                                          std::span<const BoardView> right,

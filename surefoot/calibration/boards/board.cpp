@@ -72,7 +72,8 @@ bool has_squares(BoardKind kind) {
     return kind == BoardKind::chessboard || kind == BoardKind::charuco;
 }
 
-/// Reads a size: "8x5" points, or "8x5squares", which has one row and one column of points less.
+/// Reads a size: "8x5" (points) or "8x5squares". A board of 8 x 5 squares has 7 x 4 points. Returns
+/// false for any other text.
 bool read_size(std::string text, Board& board) {
     constexpr std::string_view kSquares = "squares";
     const bool squares = text.ends_with(kSquares);

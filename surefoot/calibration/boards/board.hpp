@@ -18,14 +18,14 @@ inline constexpr const char* kBoardKindNames[] = {
 struct Board {
     BoardKind kind = BoardKind::chessboard;
     /// Points per row, and number of rows. Points: inner corners of a chessboard or ChArUco board
-    /// (squares - 1), or circles. Asymmetric circles: every second row is shifted by half a step.
+    /// (squares - 1), or circles. Asymmetric circles: odd rows are shifted by half the spacing.
     int columns = 9;
     int rows = 6;
-    /// Distance of neighbours in a row [m]: side of a square, or distance of circles. Rows of
+    /// Distance between neighbours in a row [m]: side of a square, or distance of circles. Rows of
     /// asymmetric circles are half this distance apart.
     double spacing_m = 0.025;
     double marker_m = 0.018;                 ///< ChArUco: side of a marker [m]
-    std::string dictionary = "DICT_4X4_50";  ///< ChArUco: OpenCV's name of the markers
+    std::string dictionary = "DICT_4X4_50";  ///< ChArUco: OpenCV's name of the marker set
 
     /// Describes the first problem of the board, for example its size; nullopt if it has none.
     [[nodiscard]] std::optional<std::string> problem() const;
@@ -38,13 +38,13 @@ struct Board {
 /// "charuco:8x5squares:..." and "chessboard:10x7squares:..." mean 7 x 4 and 9 x 6 inner corners.
 /// Returns nullopt for any other text. Does not check sizes: see problem().
 [[nodiscard]] std::optional<Board> parse_board(const std::string& text);
-/// Size for the user: "8 x 5 squares = 7 x 4 inner corners", or "6 x 6 circles".
+/// Returns the size for the user: "8 x 5 squares = 7 x 4 inner corners", or "6 x 6 circles".
 [[nodiscard]] std::string size_in_words(const Board& board);
 
 /// Points of a board in one image.
 struct BoardView {
     std::vector<int> ids;                 ///< index into Board::points_m, ascending
-    std::vector<Eigen::Vector2d> pixels;  ///< one per id; (0, 0) is the centre of the first pixel
+    std::vector<Eigen::Vector2d> pixels;  ///< [px], one per id; (0, 0) = centre of the first pixel
     /// If 0, the pixels are images of points. Otherwise the points are discs of this radius, and
     /// the pixels are the centres of gravity of their images (not the images of their centres).
     double disc_radius_m = 0.0;

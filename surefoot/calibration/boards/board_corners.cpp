@@ -9,16 +9,16 @@
 namespace surefoot::calibration {
 namespace {
 
-/// The first round gives sub-pixel neighbours. From them the second round takes curvatures and
-/// steps.
+/// Number of rounds. The first round refines the neighbours of a corner. The second round takes
+/// curvatures and steps from the refined neighbours.
 constexpr int kRounds = 2;
-/// Largest move of a corner, as a share of the step to the next corner. A corner that moved farther
-/// is another corner or no corner.
+/// Largest move of a corner, as a share of the shorter step to a neighbour. A corner that moved
+/// farther is another corner or no corner.
 constexpr double kMostMove = 0.4;
 
-using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< one per point of the board
+using Found = std::vector<std::optional<Eigen::Vector2d>>;  ///< by point id; nullopt = unknown
 
-/// Points of a row or column around one point; successive ids differ by `stride`.
+/// The row or column of board points that contains one point. Successive ids differ by `stride`.
 struct Line {
     int place = 0;   ///< position of the point in the line
     int length = 0;  ///< number of points
@@ -31,7 +31,8 @@ struct Line {
     }
 };
 
-/// Step to the next point of the line: the mean over both neighbours.
+/// Returns the step to the next point of the line [px]: the mean over both neighbours, or the step
+/// of the only neighbour. Returns nullopt without a neighbour.
 std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
     const auto here = line.at(found, line.place);
     const auto before = line.at(found, line.place - 1);
@@ -42,8 +43,9 @@ std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
     return std::nullopt;
 }
 
-/// Curvature of the parabola through three neighbours; at the end of a line, through the last three
-/// points. 0 if these points are unknown.
+/// Returns the curvature [1/px] of the parabola through the point and its two neighbours. At the
+/// end of a line, the parabola goes through the last three points. Returns 0 if one of these points
+/// is unknown.
 double bend_per_px(const Line& line, const Found& found) {
     const int middle = std::clamp(line.place, 1, std::max(1, line.length - 2));
     const auto before = line.at(found, middle - 1);

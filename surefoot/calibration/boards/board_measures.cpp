@@ -33,7 +33,8 @@ Mean mean_of(const std::vector<double>& values) {
     return result;
 }
 
-/// Points that both cameras see: position on the board, in the left image, and in space.
+/// Points that both cameras see: their positions on the board, in the left image, and in the
+/// rectified left frame.
 struct Triangulated {
     std::vector<int> ids;
     std::vector<Eigen::Vector3d> board_m;
@@ -61,7 +62,8 @@ Triangulated triangulate(const Board& board,
     return result;
 }
 
-/// Reprojection errors of the board's points in an image, concatenated [px].
+/// Returns the reprojection errors of the points in the left image, two values per point [px].
+/// Returns nullopt if a point has no image.
 std::optional<Eigen::VectorXd> errors_px(const Triangulated& seen,
                                          const camera::Camera& camera,
                                          const Pose& T_camera_board) {
@@ -74,7 +76,7 @@ std::optional<Eigen::VectorXd> errors_px(const Triangulated& seen,
     return errors;
 }
 
-/// Computes the pose of the board from its size alone: least squares in one image with the
+/// Computes the pose of the board from its size alone: least squares in the left image with the
 /// Gauss-Newton method.
 std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera& camera) {
     std::vector<Eigen::Vector3d> rays;
@@ -102,8 +104,8 @@ std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera&
     return pose;
 }
 
-/// Returns the depths relative to the plane through all points [m]. The plane is fitted in 1/z:
-/// there the noise of a disparity is uniform and the plane is linear.
+/// Returns the depths relative to the plane through all points [m]. The plane is fitted in 1/z,
+/// because the noise of a disparity is uniform in 1/z and the plane is linear.
 std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();

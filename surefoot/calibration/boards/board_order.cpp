@@ -28,7 +28,7 @@ std::size_t index_of(const Board& board, int column, int row) {
     return static_cast<std::size_t>(row * board.columns + column);
 }
 
-/// Mean direction of the rows in the image: a unit vector, or zero.
+/// Returns the mean direction of the rows in the image: a unit vector, or zero.
 Eigen::Vector2d row_direction(const Board& board, const BoardView& view) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (std::size_t i = 1; i < view.ids.size(); ++i) {
@@ -46,7 +46,7 @@ BoardView whole_view(Points pixels) {
     return view;
 }
 
-/// Orders in which a detector may have walked through the points of the grid.
+/// Returns the points in every order in which a detector may have walked through the grid.
 std::vector<Points> readings_of(const Board& board, const Points& found) {
     std::vector<Points> readings;
     for (int variant = 0; variant < (board.columns == board.rows ? 8 : 4); ++variant) {
@@ -64,7 +64,7 @@ std::vector<Points> readings_of(const Board& board, const Points& found) {
     return readings;
 }
 
-/// Mean of the 3 x 3 pixels around a position; nullopt at the border.
+/// Returns the mean of the 3 x 3 pixels around a position; nullopt at the border.
 std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eigen::Vector2d& at) {
     const auto middle = nearest_pixel(at.x(), at.y(), image.width, image.height, 1);
     if (!middle) return std::nullopt;
@@ -75,7 +75,8 @@ std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eige
     return sum / 9.0;
 }
 
-/// True if the squares that should be black are darker than their neighbours.
+/// Returns true if the squares that should be black are darker than their neighbours, in at least
+/// kLeastAlternating of the pairs.
 bool black_where_it_should_be(const Board& board,
                               const Points& points,
                               ImageView<const std::uint8_t> image) {
@@ -108,10 +109,10 @@ bool black_where_it_should_be(const Board& board,
     return compared > 0 && right >= kLeastAlternating * compared;
 }
 
-/// True if rows and columns change gently from point to point. Each step is at most 2.5 times as
-/// long as the step before and rotated by at most 45 deg. Perspective and wide lenses change steps
-/// by up to half their length and by 30 deg at the image border. A grid with a wrong point jumps
-/// back and forth.
+/// Returns true if rows and columns change gently from point to point. Two successive steps may
+/// differ by a factor of 2.5 in length and by 45 deg in direction. Perspective and wide lenses
+/// change steps by up to half their length and by 30 deg at the image border. A grid with a wrong
+/// point jumps back and forth.
 bool is_smooth(const Board& board, const Points& points) {
     constexpr double kMostRatio = 2.5;
     constexpr double kLeastCosine = 0.7;
@@ -185,8 +186,9 @@ std::vector<std::vector<int>> turns_of(const Board& board) {
     const Eigen::Vector2d middle_m = 0.5 * (low + high);
     for (int quarter = 1; quarter < 4; ++quarter) {
         const bool checked = board.kind == BoardKind::chessboard;
-        // A half turn keeps the colours of the squares if both sides are even or both are odd. A
-        // quarter turn of a square board keeps the colours if the sides are even.
+        // A half turn keeps the colours of the squares if columns and rows are both even or both
+        // odd. A quarter turn of a board with as many columns as rows keeps the colours if their
+        // number is even.
         if (checked && quarter == 2 && (board.columns + board.rows) % 2 != 0) continue;
         if (checked && quarter != 2 && board.columns % 2 != 0) continue;
         Eigen::Matrix2d R;
@@ -247,13 +249,13 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     double best_right = 0.0;
     for (Points& points : readings_of(board, found)) {
         const auto map = fit_local_map(centred_m, points);
-        if (!map || map->J_px_m.determinant() <= 0.0) continue;  // the board is seen from behind
+        if (!map || map->J_px_m.determinant() <= 0.0) continue;  // order of a mirrored board
         if (!is_smooth(board, points)) continue;
         if (board.kind == BoardKind::chessboard && !black_where_it_should_be(board, points, image))
             continue;
-        // With rows shifted in the wrong direction the fit error grows by a quarter of the row
-        // spacing. All correct orders fit equally well: choose the order whose rows point farthest
-        // to the right in the image.
+        // If the rows of asymmetric circles are shifted in the wrong direction, the fit error grows
+        // by a quarter of the row spacing. All correct orders fit equally well: choose the order
+        // whose rows point farthest to the right in the image.
         const double tolerance_px = 0.1 * board.spacing_m * std::sqrt(map->J_px_m.determinant());
         const double right = row_direction(board, whole_view(points)).x();
         const bool better = !best || map->rms_px < best_rms_px - tolerance_px ||

@@ -10,8 +10,8 @@
 
 namespace surefoot::calibration {
 
-/// Second-order model of the pixel as a function of the board position x around one point: pixel =
-/// centre + J x + (x' H_u x, x' H_v x) / 2.
+/// Second-order model of the pixel as a function of the board position x around one point: `pixel`
+/// + J x + (x' H_u x, x' H_v x) / 2.
 struct LocalMap {
     Eigen::Vector2d pixel;
     Eigen::Matrix2d J_px_m;
@@ -26,7 +26,7 @@ struct LocalMap {
                                                     const std::vector<Eigen::Vector2d>& pixels);
 
 /// Sorts the points of a whole grid along rows and columns, into the order of Board::points_m that
-/// detect_board promises. Returns nullopt if they do not look like the board.
+/// detect_board promises. Returns nullopt if no order looks like the board.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     const Board& board,
     const std::vector<Eigen::Vector2d>& found,

@@ -20,7 +20,8 @@ void add_squares(const Board& board, PrintedSheet& print) {
     }
 }
 
-/// A marker: a black frame of one bit width around the bits; a bit of 0 is black.
+/// Adds a marker to the sheet: a black frame of one bit width around the bits. A bit of value 0 is
+/// black.
 void add_marker(const cv::aruco::Dictionary& dictionary,
                 int id,
                 double left_m,

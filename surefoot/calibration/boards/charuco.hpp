@@ -9,7 +9,7 @@
 // Only for the .cpp files of this folder: OpenCV appears in no public header.
 namespace surefoot::calibration {
 
-/// Number of squares in a row: one more than the inner corners.
+/// Returns the number of squares in a row or column, from the number of its inner corners.
 [[nodiscard]] inline int squares(int corners) {
     return corners + 1;
 }

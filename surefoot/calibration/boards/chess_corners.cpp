@@ -14,15 +14,16 @@ namespace {
 /// Initial blur: derivatives of 8-bit images need it, and squares of 4 px tolerate it.
 constexpr double kBlur_px = 1.2;
 constexpr double kLeastContrast_dn = 5.0;
-/// Radii of the ring, longest first: a ring should be long but must not reach into the next
+/// Radii of the ring, largest first: a ring should be large but must not reach into the next
 /// squares. The first ring that shows a corner is used.
 constexpr std::array kRadii_px{5.0, 3.5, 2.5};
 constexpr int kRing = 32;  ///< positions on a ring
 constexpr int kBorder_px = 2;
 constexpr double kMostBeside_px = 1.2;
-/// Largest angle between the two halves of one line.
+/// Largest bend of a line at the corner: the angle between its two halves may differ from 180 deg
+/// by at most this angle.
 constexpr double kMostBend_rad = 0.5;
-/// Smallest angle between two edges: squares seen at a slant of about 75 deg.
+/// Smallest angle between two neighbouring edges of a corner (17 deg).
 constexpr double kLeastAngle_rad = 0.3;
 constexpr std::size_t kMostCorners = 2500;
 
@@ -88,7 +89,8 @@ Crossings crossings_of(const cv::Mat& light, const Eigen::Vector2d& centre, doub
     }
     std::array<double, kRing> sorted = values;
     std::sort(sorted.begin(), sorted.end());
-    // Narrow squares contain few positions of the ring: use the mean of three values at both ends.
+    // Narrow squares contain few positions of the ring: use the mean of the three darkest and the
+    // mean of the three brightest values.
     const double dark = (sorted[0] + sorted[1] + sorted[2]) / 3.0;
     const double bright = (sorted[kRing - 1] + sorted[kRing - 2] + sorted[kRing - 3]) / 3.0;
     const double middle = 0.5 * (dark + bright);
@@ -110,7 +112,7 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
                                      double radius_px) {
     const Crossings ring = crossings_of(light, centre, radius_px);
     if (ring.at_rad.size() != 4 || ring.contrast_dn < kLeastContrast_dn) return std::nullopt;
-    // The colour after the first edge is black.
+    // The square after the first edge must be black.
     const std::size_t first = ring.white_first ? 0 : 1;
     std::array<double, 4> angles{};
     for (std::size_t i = 0; i < 4; ++i)
@@ -130,7 +132,8 @@ std::optional<ChessCorner> corner_at(const cv::Mat& light,
     return corner;
 }
 
-/// True if no pixel within two pixels has a stronger saddle. Of equal pixels the first is the peak.
+/// Returns true if no pixel within two columns and two rows has a stronger saddle. If saddles are
+/// equal, the first pixel is the peak.
 bool is_peak(const cv::Mat& saddles, int u, int v) {
     const float here = saddles.at<float>(v, u);
     for (int dv = -2; dv <= 2; ++dv) {
@@ -153,7 +156,8 @@ cv::Mat saddles_of(const cv::Mat& light) {
     return saddles;
 }
 
-/// Returns the position of zero gradient near the strongest saddle [px].
+/// Returns the position of zero gradient near a pixel [px]; the pixel itself if this position is
+/// farther away than kMostBeside_px.
 Eigen::Vector2d place_of(const cv::Mat& light, int u, int v) {
     const Curvature c = curvature_at(light, u, v);
     const Eigen::Vector2d beside = -c.H.inverse() * c.gradient;

@@ -16,7 +16,7 @@ struct ChessCorner {
     /// Unit vectors along the four edges, in order of rotation from x (right) to y (down). The
     /// squares between edges 0 and 1 and between 2 and 3 are black.
     std::array<Eigen::Vector2d, 4> edges;
-    double contrast_dn = 0.0;  ///< white minus black in the blurred image
+    double contrast_dn = 0.0;  ///< white minus black in the blurred image [grey values]
 };
 
 /// Returns single corners of a chessboard, highest contrast first. A corner is a saddle point of

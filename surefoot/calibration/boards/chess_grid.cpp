@@ -47,7 +47,7 @@ std::array<Window, 4> borders_of(const Window& w, bool outside) {
              {{x, y + w.rows - 1 + out}, w.columns, 1, 0}}};
 }
 
-/// Smallest and largest filled share of the border lines.
+/// Returns the smallest and the largest filled share of the four border lines.
 std::pair<double, double> border_shares(const Lattice& lattice, const Window& w, bool outside) {
     double least = 1.0;
     double most = 0.0;
@@ -161,7 +161,8 @@ GrownChessboard grown_chessboard(const Board& board,
     GrownChessboard best;
     double best_area_px2 = 0.0;
     for (const JoinedCorners& joined : joined_corners(corners, image)) {
-        // If the corners of a board fall into several groups, one group still has several squares.
+        // The groups are sorted by size, so all later groups are too small too. If the corners of a
+        // board fall into several groups, the largest group still has several squares.
         if (joined.lattice.size() < kFewestJoined) break;
         const int most = std::max(board.columns, board.rows) + 2;
         const Lattice lattice = grown_lattice(joined, corners, image, most);

@@ -27,7 +27,7 @@ struct GrownChessboard {
 ///
 /// Of several such boards, returns the board that fills the largest part of the image: others may
 /// be reflections or pictures on screens. Does not find a board that is partly outside the image or
-/// part of a larger board: the numbers of its points would be uncertain.
+/// part of a larger board: the ids of its points would be uncertain.
 [[nodiscard]] GrownChessboard grown_chessboard(const Board& board,
                                                std::span<const ChessCorner> corners,
                                                ImageView<const std::uint8_t> image);

@@ -15,22 +15,23 @@ constexpr int kNobody = -1;
 /// Cosine of the largest angle between a corner's edge and the step to the next corner: 25 deg. A
 /// ring of some pixels gives the edge direction to about 5 deg; lenses bend the edge.
 constexpr double kLeastCosine = 0.906;
-/// Number of nearest corners that may be the next corner.
+/// Number of corners that may be the next corner along an edge. The nearest corners are tried
+/// first.
 constexpr std::size_t kTried = 4;
 /// Positions along an edge, as shares of its length, where black must be on one side and white on
 /// the other.
 constexpr std::array kAlong{0.2, 0.35, 0.5, 0.65, 0.8};
 /// Least mean contrast of an edge, as a share of the smaller contrast of its two end corners.
 constexpr double kLeastEdge = 0.25;
-/// Largest distance from the predicted position, as a share of the step. A corner farther away is
-/// another corner.
+/// Largest distance from the predicted position, as a share of the shorter step. A corner farther
+/// away is another corner.
 constexpr double kCapture = 0.3;
 /// Offset from a corner into the squares for their brightness, as a share of the step.
 constexpr double kIntoSquare = 0.3;
-/// Like kCapture, for existing corners. The limit is larger: the neighbours that give the
-/// prediction may be at either end of a step.
+/// Largest distance of an existing corner from its predicted position, as a share of the shorter
+/// step. A corner farther away is removed.
 constexpr double kMostMisfit = 0.4;
-/// Least contrast of an added corner, as a share of the contrast of its neighbours.
+/// Least contrast of an added corner, as a share of the mean contrast of the corners around it.
 constexpr double kLeastClear = 0.4;
 constexpr int kRounds = 12;
 
@@ -57,8 +58,9 @@ std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::
            t * ((1.0 - s) * lower[0] + s * lower[1]);
 }
 
-/// True if an edge runs from one corner to the other. Black must be on the onwards side of the edge
-/// (`black_onwards`) or on the other side. Onwards means rotated from x (right) to y (down).
+/// Returns true if an edge runs from one corner to the other. Black must be on the onwards side of
+/// the edge (`black_onwards`) or on the other side. Onwards means rotated from x (right) to y
+/// (down).
 bool is_edge(ImageView<const std::uint8_t> image,
              const ChessCorner& from,
              const ChessCorner& to,
@@ -114,8 +116,8 @@ Links links_of(std::span<const ChessCorner> corners,
         const auto edge = edge_towards(corners[from], direction);
         if (!edge) continue;
         const auto back = edge_towards(corners[to], -direction);
-        // Black lies on one side of the edge: onwards on the way there, so not onwards on the way
-        // back.
+        // Black lies on one side of the edge. If this is the onwards side on the way there, it is
+        // not the onwards side on the way back.
         if (!back || (*edge + *back) % 2 == 0) continue;
         auto& mine = all[static_cast<std::size_t>(*edge)];
         const Candidate candidate{distance_px, {static_cast<int>(to), *back}};
@@ -138,7 +140,7 @@ Links links_of(std::span<const ChessCorner> corners,
     return links;
 }
 
-/// Links that both corners confirm.
+/// Returns the links that both corners confirm.
 std::vector<Links> mutual_links(std::span<const ChessCorner> corners,
                                 ImageView<const std::uint8_t> image) {
     std::vector<Links> all;
@@ -158,8 +160,8 @@ std::vector<Links> mutual_links(std::span<const ChessCorner> corners,
     return mutual;
 }
 
-/// Links that are a side of a closed square of four corners. Links into clutter do not close a
-/// square.
+/// Returns the links that are a side of a closed square of four corners. Links into clutter do not
+/// close a square.
 std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
     std::vector<Links> sides(links.size());
     const auto link = [&](int corner, int edge) -> const Link& {
@@ -221,7 +223,7 @@ JoinedCorners walked_from(std::span<const ChessCorner> corners,
     return joined;
 }
 
-/// Nodes that are a corner of a complete square of nodes.
+/// Returns the nodes that are a corner of a complete square of nodes.
 Lattice in_squares(const Lattice& lattice) {
     Lattice kept;
     for (const auto& [node, pixel] : lattice) {
@@ -237,8 +239,8 @@ Lattice in_squares(const Lattice& lattice) {
     return kept;
 }
 
-/// Returns the step to the next node along an axis [px]: of the node itself, or of the neighbour
-/// beside the node.
+/// Returns the step to the next node along an axis [px]: the step of the node itself, or of a
+/// neighbour across the axis. Returns nullopt if both are unknown.
 std::optional<Eigen::Vector2d> step_px(const Lattice& lattice,
                                        const Node& node,
                                        const Eigen::Vector2d& pixel,
@@ -283,8 +285,8 @@ void drop_misfits(Lattice& lattice) {
     }
 }
 
-/// Darkest white square around a corner minus the brightest black square [grey values]; nullopt at
-/// the border of the image.
+/// Returns the brightness of the darkest white square around a corner minus that of the brightest
+/// black square [grey values]; nullopt at the border of the image.
 std::optional<double> contrast_dn(ImageView<const std::uint8_t> image,
                                   const Eigen::Vector2d& pixel,
                                   const Eigen::Vector2d& first_px,
@@ -305,8 +307,9 @@ std::optional<double> contrast_dn(ImageView<const std::uint8_t> image,
     return darkest_white - brightest_black;
 }
 
-/// True if a lattice position shows as much contrast as the corners beside it. Light changes gently
-/// over a board; objects beside a board are paler or uniform.
+/// Returns true if the contrast at a lattice position is at least kLeastClear of the mean contrast
+/// of the corners within two nodes. Light changes gently over a board; objects beside a board are
+/// paler or uniform.
 bool is_as_clear(const JoinedCorners& joined,
                  const Lattice& lattice,
                  const Node& node,
@@ -334,7 +337,8 @@ bool is_as_clear(const JoinedCorners& joined,
     return count > 0 && *own > kLeastClear * sum / count;
 }
 
-/// Position of a node in the image, near its predicted position.
+/// Returns the position of a node in the image [px], near its predicted position. Returns nullopt
+/// if the image shows no corner there.
 std::optional<Eigen::Vector2d> shown_place(const JoinedCorners& joined,
                                            const Lattice& lattice,
                                            const Node& node,

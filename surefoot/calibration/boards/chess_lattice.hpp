@@ -32,8 +32,8 @@ struct JoinedCorners {
 [[nodiscard]] std::vector<JoinedCorners> joined_corners(std::span<const ChessCorner> corners,
                                                         ImageView<const std::uint8_t> image);
 
-/// Adds corners that neighbours predict and the image shows, until no corner is added or the
-/// lattice is `most` nodes long in each direction.
+/// Removes corners that contradict their neighbours. Adds corners that neighbours predict and the
+/// image shows, but none that makes the lattice longer than `most` nodes along an axis.
 [[nodiscard]] Lattice grown_lattice(const JoinedCorners& joined,
                                     std::span<const ChessCorner> corners,
                                     ImageView<const std::uint8_t> image,

@@ -21,12 +21,12 @@ namespace {
 /// second ring the map is too flat: in a fisheye image the radius is then 0.4 % too large instead
 /// of 0.27 %.
 constexpr std::size_t kNeighbours = 9;
-/// Reach of the dark area beyond the rim: three sigma of a blur of 0.8 px. Farther pixels only add
-/// noise, and far noise has the largest weight.
+/// Reach of the dark area beyond the rim: about three sigma of a blur of 0.8 px. Farther pixels
+/// only add noise, and far noise has the largest weight.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 
-/// Returns the derivative of the map from board to image [px/m], in the middle of some pairs. First
+/// Returns the derivative of the map from board to image [px/m] at the origin of `places_m`. First
 /// fits a perspective map, because a parabola fits a tilted board badly. Then fits the remaining
 /// effect of the lens.
 std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& places_m,
@@ -87,7 +87,8 @@ struct Blob {
     double area_px2 = 0.0;
 };
 
-/// Calls `use(pixel, distance from the centre on the board / reach)` for pixels within `reach`.
+/// Calls `use(pixel, distance, grey value)` for the pixels within `reach_m` of the centre on the
+/// board. The distance is a share of `reach_m`.
 template <typename Use>
 void for_pixels_around(const Eigen::Vector2d& centre,
                        const Eigen::Matrix2d& J_px_m,

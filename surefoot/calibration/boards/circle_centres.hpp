@@ -11,12 +11,12 @@ namespace surefoot::calibration {
 /// The circles of a grid as seen in one image.
 struct DiscImages {
     std::vector<Eigen::Vector2d> centroids;  ///< centres of gravity of the dark areas [px]
-    /// Radius of the circles on the board, measured from their area: the board does not state it.
+    /// Radius of the circles on the board, measured from their area. Board does not contain it.
     double radius_m = 0.0;
 };
 
 /// Measures the centres of gravity and the common radius, from rough centres. A circle with low
-/// contrast keeps its rough centre. The result is not the image of the centre (see disc_image.hpp).
+/// contrast keeps its rough centre. This is not the image of the centre (see disc_image.hpp).
 [[nodiscard]] DiscImages measured_discs(const Board& board,
                                         const std::vector<Eigen::Vector2d>& rough,
                                         ImageView<const std::uint8_t> image);

@@ -118,7 +118,7 @@ Node turned(const Node& node, int variant) {
     return out;
 }
 
-/// Smallest coordinates of the nodes.
+/// Returns the smallest coordinates of the nodes.
 Node corner_of(const std::vector<Node>& nodes) {
     Node corner = nodes.front();
     for (const Node& node : nodes)

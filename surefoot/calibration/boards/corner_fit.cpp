@@ -20,12 +20,13 @@ constexpr double kWindow = 0.5;
 /// pixels within this distance average the noise well enough.
 constexpr double kMostRadius_px = 8.0;
 constexpr double kFirstBlur_px = 0.8;
-constexpr double kLeastBlur_px = 0.3;  ///< blur by the area of a pixel itself
+constexpr double kLeastBlur_px = 0.3;  ///< about the blur by the area of a pixel
 constexpr double kMostBlur_px = 5.0;
 constexpr int kParameters = 7;
 constexpr int kMostSteps = 30;
 constexpr double kRefined_px = 1e-4;
-/// Least contrast: half the difference between black and white. Pure noise has less contrast.
+/// Least contrast: half the difference between black and white [grey values]. Pure noise has less
+/// contrast.
 constexpr double kLeastContrast_dn = 4.0;
 /// Largest rms of the unexplained grey values, divided by the contrast. A single edge, half a spot
 /// or a bright reflection has a larger rms. Sharpened or noisy images of corners have about 0.1.
@@ -131,7 +132,7 @@ System system_at(const std::vector<Sample>& samples, const CornerGuess& guess, c
     return system;
 }
 
-/// The model is linear in mean and contrast: solves for both with the guessed edges.
+/// Solves for mean and contrast with the guessed edges, because the model is linear in both.
 void start_light(const std::vector<Sample>& samples, const CornerGuess& guess, Vector7& p) {
     p[kMean] = 0.0;
     p[kContrast] = 0.0;

@@ -25,17 +25,18 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Least number of pixels between neighbouring points. With fewer pixels the board is not searched.
+/// Least number of pixels of the shorter image side for each point along the shorter board side. A
+/// smaller image is not searched for the board.
 constexpr int kFewestPixelsPerPoint = 4;
-/// Half the window of the corner refinement, as in OpenCV's samples and in the published figures
-/// that we compare with.
+/// Largest half window of the corner refinement [px], as in OpenCV's samples and in the published
+/// figures that we compare with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
 /// Least percentage of clear corners. Reflections may hide single corners. An object with fewer
 /// clear corners is not this board.
 constexpr int kLeastPercent = 75;
-/// Number of halvings of the image: boards with a blur above 2 px are found at half or a quarter of
-/// the size.
+/// Largest number of halvings of the image. Boards whose blur exceeds 2 px are found at half or a
+/// quarter of the size.
 constexpr int kMostHalvings = 2;
 /// Largest number of dark spots. With more spots the search for the grid would take minutes.
 constexpr std::size_t kMostBlobs = 600;
@@ -75,8 +76,9 @@ double nearest_px(const Board& board, const BoardView& view, std::size_t index) 
     return nearest;
 }
 
-/// Moves corners to the point where the surrounding gradients meet. The half window is `reach` of
-/// the distance to the next corner. Returns false if a corner moved too far.
+/// Moves corners to the point where the surrounding gradients meet. The half window is the share
+/// `reach` of the distance to the nearest corner, but 2 to 5 px. Returns false if a corner moved
+/// too far.
 bool refine_corners(const Board& board, const cv::Mat& image, double reach, BoardView& view) {
     const BoardView rough = view;
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
@@ -103,7 +105,7 @@ Points sector_corners(const Board& board, const cv::Mat& image, int more) {
     return points_of(corners);
 }
 
-/// Grows boards from single corners, in an image whose sides are halved `halvings` times.
+/// Grows a chessboard from single corners, in an image whose sides are halved `halvings` times.
 GrownChessboard grown_corners(const Board& board,
                               const cv::Mat& image,
                               ImageView<const std::uint8_t> view,
@@ -119,7 +121,8 @@ GrownChessboard grown_corners(const Board& board,
     return grown_chessboard(board, corners, view);
 }
 
-/// Finds the board from rough corner positions.
+/// Orders and refines rough corners of a chessboard. Reports a problem if they do not form the
+/// board, or if too few corners are clear.
 BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
@@ -162,7 +165,7 @@ BoardSighting find_chessboard(const Board& board,
     if (!problem.empty()) return not_found(problem);
     return not_found(
         fmt::format("no chessboard of {} x {} inner corners is fully visible; show the whole "
-                    "board, or correct its size",
+                    "board, or give its true size",
                     board.columns,
                     board.rows));
 }
@@ -178,7 +181,7 @@ cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& im
 }
 
 /// Finds the centres of the grid in an image that is `enlarged` times the original. Returns the
-/// centres in pixels of the original and in the order of the board.
+/// centres in pixels of the original and in the order of the board; nullopt without a grid.
 std::optional<Points> find_grid(const Board& board,
                                 const cv::Mat& image,
                                 double enlarged,
@@ -230,13 +233,13 @@ BoardSighting find_circles(const Board& board,
     }
     return not_found(
         fmt::format("no {} of {} x {} dark circles on white is fully visible; show the whole "
-                    "board, or correct its size",
+                    "board, or give its true size",
                     board.kind == BoardKind::circles ? "grid" : "staggered grid",
                     board.columns,
                     board.rows));
 }
 
-/// True if all points lie on one line of the board: these points do not determine the plane.
+/// Returns true if all points lie on one line of the board: such points do not determine the plane.
 bool on_one_line(const Board& board, const std::vector<int>& ids) {
     const int first_row = ids.front() / board.columns;
     const int first_column = ids.front() % board.columns;

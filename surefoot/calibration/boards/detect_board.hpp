@@ -10,7 +10,7 @@
 
 namespace surefoot::calibration {
 
-/// Result of a board detection: the points, or the reason why there are none.
+/// Result of a board detection: the points, or the reason why no points were found.
 struct BoardSighting {
     BoardView view;
     std::string problem;  ///< empty if the board was found

@@ -8,13 +8,13 @@
 
 namespace surefoot::calibration {
 
-/// Keeps a lens model plausible where no board was seen. There only the formula counts. Its image
-/// can fold back before the corners, although every pixel of a real lens shows something. A profile
-/// gives the growth of the image at a `place`, relative to the centre. `kLeastGrowth` is the limit,
-/// as a share of the least growth of real lenses.
+/// Keeps a lens model plausible where no board was seen. There the model is extrapolated, and its
+/// image can fold back before the image corners; real lenses do not fold back. A profile gives the
+/// growth of the image at a `place`, relative to the growth at the centre. `kLeastGrowth` is the
+/// limit, as a share of the least growth of real lenses.
 inline constexpr double kLeastGrowth = 0.5;
 inline constexpr double kGrowthStep = 0.05;  ///< step of tan(angle); fisheye: of the angle [rad]
-inline constexpr int kGrowthPlaces = 60;     ///< pinhole: up to 72 deg; fisheye: up to 172 deg
+inline constexpr int kGrowthPlaces = 60;     ///< places to 72 deg (pinhole) or 172 deg (fisheye)
 
 inline double growth_place(int i) {
     return kGrowthStep * (i + 0.5);
@@ -46,7 +46,7 @@ struct PinholeGrowth {
 struct FisheyeGrowth {
     static constexpr int kParameters = 8;
 
-    /// Half the growth of an equisolid lens: the image of an orthographic lens ends before 90 deg.
+    /// Half the growth of an equisolid lens: the image of an orthographic lens ends at 90 deg.
     static double least(double theta) { return kLeastGrowth * std::cos(0.5 * theta); }
 
     /// Computes d image / d theta. Always returns true.
@@ -60,7 +60,7 @@ struct FisheyeGrowth {
 };
 
 /// Number of places until the profile reaches the farthest image corner, and whether the profile
-/// folds back before. A growth below the limit counts as the limit.
+/// folds back before this corner. A growth below the limit counts as the limit.
 struct GrowthCheck {
     int places = 0;
     bool turns_back = false;

@@ -59,7 +59,8 @@ void transform_inverse(const T* pose, const T* p, T* result) {
     ceres::AngleAxisRotatePoint(back, shifted, result);
 }
 
-/// Reprojection of one sight in the left or right image: of a point, or of a disc with a radius.
+/// Reprojection error of one sight in the left or right image. The sight is a point, or a disc if
+/// `disc_radius_m` is above 0.
 template <bool kIsFisheye>
 struct Reprojection {
     Eigen::Vector3d point;
@@ -132,7 +133,7 @@ ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
 
-/// Indices of the lens parameters that stay fixed.
+/// Returns the indices of the lens parameters that stay fixed.
 std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
     const int block = kind == LensKind::fisheye ? kFisheye : kPinhole;
     const int used = static_cast<int>(parameter_names(kind).size());
@@ -168,7 +169,9 @@ class Graph {
         for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
     }
 
-    /// Makes the lens images reach their corners. Returns false if they already do.
+    /// Adds a cost term for each lens whose image folds back before the image corners
+    /// (growing_image.hpp). The next `run` then avoids this fold. Returns false if no lens needs
+    /// the term.
     bool hold_growth() {
         bool turns_back = false;
         for (Lens& lens : lenses_) {
@@ -187,7 +190,7 @@ class Graph {
 
     std::optional<double> run(const BundleOptions& options) {
         ceres::Solver::Options settings;
-        // With fixed lenses there is no second group, so the boards cannot be eliminated.
+        // With fixed lenses, the second group can be empty, so the boards are not eliminated.
         const bool alone = options.freedom == Freedom::poses;
         settings.linear_solver_type = alone ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
         settings.num_threads = 1;
@@ -211,7 +214,8 @@ class Graph {
         for (std::size_t i = 0; i < poses_.size(); ++i) bundle.T_left_board[i] = pose_of(poses_[i]);
     }
 
-    /// Covariance in the coordinates of the parameter blocks.
+    /// Returns the covariance of lenses and right camera in the coordinates of the parameter
+    /// blocks.
     std::optional<Eigen::MatrixXd> covariance() {
         ceres::Covariance::Options settings;
         settings.algorithm_type = ceres::SPARSE_QR;
@@ -284,8 +288,8 @@ class Graph {
     ceres::Problem problem_;
 };
 
-/// Derivative of theta in R Exp(theta) by the rotation vector of R: the right Jacobian of SO(3)
-/// (Sola et al. 2018, equation 143).
+/// Returns the derivative of theta in R Exp(theta) by the rotation vector of R: the right Jacobian
+/// of SO(3) (Sola et al. 2018, equation 143).
 Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     const double angle = w.norm();
     const Eigen::Matrix3d W = skew(w);
@@ -295,8 +299,9 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     return Eigen::Matrix3d::Identity() - a * W + b * W * W;
 }
 
-/// Runs the solver until the images reach their corners and returns the cost. Returns nullopt if
-/// the images reach them without the limit, or if the solver finds no step.
+/// Adds the growth limit and runs the solver, until no lens image folds back or kGrowthRounds
+/// rounds have passed. Returns the cost. Returns nullopt if no lens image folds back at the start,
+/// or if the solver fails.
 std::optional<double> run_held(Graph& graph, const BundleOptions& options) {
     std::optional<double> held;
     for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
@@ -318,7 +323,8 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
     const double most = *cost + 0.5 * kMostObjection * variance_px2;
     std::optional<double> held = run_held(graph, options);
-    // An image that folded back may lie behind a pole. No step leads from there to a growing lens.
+    // A lens that folds back may be beyond a pole of its profile. No step leads from there to a
+    // growing image, so the solver starts again without distortion.
     if (held && *held > most) {
         graph.straighten();
         held = graph.run(options);

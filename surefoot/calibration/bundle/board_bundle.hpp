@@ -23,7 +23,7 @@ struct Sight {
 struct BoardBundle {
     LensKind kind = LensKind::pinhole5;
     ImageSize size;
-    std::vector<Eigen::VectorXd> lenses;  ///< one per camera; order of parameter_names
+    std::vector<Eigen::VectorXd> lenses;  ///< one per camera, ordered as parameter_names
     Pose T_left_right;                    ///< used with two cameras only
     std::vector<Pose> T_left_board;       ///< one per view
     std::vector<Sight> sights;
@@ -41,9 +41,9 @@ enum class Freedom : std::uint8_t {
 
 struct BundleOptions {
     Freedom freedom = Freedom::everything;
-    double huber_px = 0.0;  ///< larger residuals count linearly; 0 = least squares
+    double huber_px = 0.0;  ///< larger residuals count linearly [px]; 0 = least squares
     int max_iterations = 100;
-    /// The solver stops below this relative change of the cost. First steps allow a larger change.
+    /// The solver stops below this relative change of cost or parameters.
     double tolerance = 1e-12;
     /// True: prevents a lens image from folding back before the image corners (growing_image.hpp),
     /// unless the sights contradict this.
@@ -51,17 +51,17 @@ struct BundleOptions {
 };
 
 /// Minimises the reprojection error with Ceres, in one thread and a fixed order of summation: equal
-/// input gives equal bytes. Returns half the sum of (robust) squared pixel errors; nullopt if the
-/// solver finds no step.
+/// input gives equal bytes. Returns the cost: half the sum of (robust) squared pixel errors, plus
+/// the priors of a rational lens. Returns nullopt if the solver fails.
 [[nodiscard]] std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options);
 
 /// Returns measured minus predicted pixels, one per sight; NaN if a point has no image.
 [[nodiscard]] std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle);
 
-/// Covariance of all lens parameters, one lens after the other, for pixel noise of `sigma_px` per
-/// coordinate. With two lenses T_left_right follows (translation, rotation; right perturbation).
-/// Board poses are marginalised. The growth limit is left out: it bounds the truth on one side
-/// only. Returns nullopt if the views do not determine the parameters.
+/// Returns the covariance of all lens parameters, one lens after the other, for pixel noise of
+/// `sigma_px` per coordinate. With two lenses T_left_right follows (translation, rotation; right
+/// perturbation). Board poses are marginalised. Leaves out the growth limit: the limit bounds the
+/// truth on one side only. Returns nullopt if the views do not determine the parameters.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px);
 
 }  // namespace surefoot::calibration

@@ -19,8 +19,8 @@ constexpr double kShortest = 0.1;
 constexpr double kLongest = 6.0;
 constexpr double kFocalStep = 1.15;
 constexpr std::size_t kRefined = 3;
-/// Largest error of a view [px]. This limit prevents a view with wrong ids from determining the
-/// focal length.
+/// Limit of the error that one view adds to the score [px]. This limit prevents a view with wrong
+/// ids from determining the focal length.
 constexpr double kSaturation_px = 20.0;
 /// Residuals above this count linearly [px]. Residuals of this size are normal before the
 /// distortion is known.
@@ -30,7 +30,7 @@ constexpr double kStageTolerance = 1e-6;
 constexpr BundleOptions kLastStage{
     Freedom::everything, kStartHuber_px, kStageIterations, kStageTolerance};
 
-/// Sights of one view, as plane points and rays.
+/// The sights of one view: points on the board plane, and the rays of their pixels.
 struct ViewRays {
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector3d> rays;
@@ -56,12 +56,12 @@ void set_focal(BoardBundle& bundle, double focal_px) {
         0.5 * (bundle.size.height - 1);
 }
 
-/// Computes the board poses for the current lens; returns the error of the views.
+/// Computes the board poses for the current lens. Returns the sum of the limited view errors [px].
 double score(BoardBundle& bundle) {
     const std::vector<ViewRays> views = rays_of(bundle);
     for (std::size_t v = 0; v < views.size(); ++v) {
         const std::optional<Pose> T = planar_pose(views[v].points, views[v].rays);
-        // NaN excludes a view without a pose from all later steps.
+        // NaN excludes a view without a pose until add_missing() finds a pose.
         const Pose none{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Constant(kNan)};
         bundle.T_left_board[v] = T.value_or(none);
     }
@@ -77,7 +77,7 @@ struct Candidate {
     double score = 0.0;
 };
 
-/// Minima of the score along the focal lengths, best first.
+/// Returns the kRefined best minima of the score along the focal lengths, best first.
 std::vector<Candidate> candidates(BoardBundle bundle) {
     const double side_px = std::max(bundle.size.width, bundle.size.height);
     std::vector<Candidate> all;
@@ -116,7 +116,7 @@ std::optional<double> refine(BoardBundle& bundle) {
     return cost;
 }
 
-/// Adds views that the rough lens could not explain, if the refined lens can.
+/// Adds the views that the rough lens could not explain and the refined lens explains.
 void add_missing(const BoardBundle& all, BoardBundle& refined) {
     BoardBundle trial = all;
     trial.lenses = refined.lenses;
@@ -136,13 +136,13 @@ struct Start {
     double cost = 0.0;
 };
 
-/// Returns the cost of a start; infinite without a start, so that an existing start wins.
+/// Returns the cost of a start; infinity if there is no start.
 double cost_of(const std::optional<Start>& start) {
     return start ? start->cost : std::numeric_limits<double>::infinity();
 }
 
-/// Returns a cost for the views that a start cannot explain. Otherwise the start would look better
-/// because it leaves them out.
+/// Returns the cost of the views that a start leaves out because it cannot explain them. Without
+/// this cost, such a start would look better.
 double cost_of_missing(const BoardBundle& all, const BoardBundle& start) {
     const auto missing = static_cast<double>(all.sights.size() - start.sights.size());
     return missing * kStartHuber_px * kSaturation_px;

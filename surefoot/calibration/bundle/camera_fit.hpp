@@ -13,7 +13,7 @@ struct CameraFit {
     std::vector<int> ids;                       ///< ids of the board's points
     std::vector<Eigen::Vector2d> residuals_px;  ///< measured minus predicted, one per id
     std::vector<int> outliers;  ///< ids excluded from the estimate; residuals_px contains them too
-    double rms_px = 0.0;        ///< root of the mean squared distance of the points used
+    double rms_px = 0.0;        ///< rms length of the residuals without the outliers
 };
 
 /// Returns one fit per view of `solved`, for camera 0 or 1. `all`: sights before outlier removal.

@@ -16,7 +16,7 @@ namespace {
 
 // ASSUMPTION for all four limits and kEnoughTilt_deg. Handbooks of calibration tools ask for ten or
 // more views, tilts of 20 to 45 deg, the whole image and two distances. The covariance of the
-// result says whether the views were enough.
+// result shows whether the views were enough.
 constexpr int kEnoughViews = 10;
 constexpr double kEnoughDistances =
     1.5;                              ///< least ratio of the largest to the smallest point spacing
@@ -126,11 +126,11 @@ void advise_tilts(Coverage& coverage) {
         if (!shown) missing.emplace_back(kNearSideNames[static_cast<std::size_t>(side)]);
     }
     if (missing.empty()) return;
-    coverage.advice.push_back(
-        fmt::format("Missing tilts: turn the board by {:.0f} to 45 deg so that its {} side comes "
-                    "nearer. Without tilts, focal length and distance cannot be separated.",
-                    kEnoughTilt_deg,
-                    joined(missing)));
+    coverage.advice.push_back(fmt::format(
+        "Missing tilts: turn the board by {:.0f} to 45 deg, so that one side comes nearer "
+        "(still missing: {}). Without tilts, focal length and distance cannot be separated.",
+        kEnoughTilt_deg,
+        joined(missing)));
 }
 
 void advise_distances(int width, int height, const Board& board, Coverage& coverage) {

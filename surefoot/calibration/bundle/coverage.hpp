@@ -19,7 +19,7 @@ inline constexpr double kEnoughTilt_deg = 20.0;
 
 /// Pose of a board, estimated from the image alone.
 struct ViewShape {
-    double spacing_px = 0.0;  ///< distance of neighbouring points in the middle (geometric mean)
+    double spacing_px = 0.0;  ///< distance of neighbours in the middle: geometric mean of both axes
     /// Angle between the board and the image plane, from the foreshortening in the middle of the
     /// view. Exact for a small board on the optical axis.
     double tilt_deg = 0.0;

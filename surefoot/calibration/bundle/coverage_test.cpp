@@ -93,7 +93,7 @@ TEST(Coverage, NamesWhatIsMissing) {
     const Coverage coverage = coverage_of(board(), one_place, kWidth, kHeight);
     EXPECT_TRUE(advises(coverage, "bottom right"));
     EXPECT_FALSE(advises(coverage, "the top left"));
-    EXPECT_TRUE(advises(coverage, "its left, top and bottom side"));
+    EXPECT_TRUE(advises(coverage, "still missing: left, top and bottom)"));
     EXPECT_TRUE(advises(coverage, "equally far away"));
     EXPECT_FALSE(advises(coverage, "usable view"));
     EXPECT_LT(coverage.seen_share, 0.3);

@@ -10,8 +10,8 @@ namespace {
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
-/// Points count as collinear if the shortest axis of their scatter divided by the longest is below
-/// this.
+/// Points count as collinear if the shortest axis of their scatter is below this share of the
+/// longest axis.
 constexpr double kLine = 1e-3;
 
 Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
@@ -20,8 +20,8 @@ Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Maps board coordinates to mean 0 and mean square 2; this scaling keeps the system well
-/// conditioned.
+/// Returns the map of board coordinates to mean 0 and mean square 2. This scaling keeps the system
+/// well conditioned.
 Eigen::Matrix3d normaliser(std::span<const Eigen::Vector3d> points) {
     const Eigen::Vector3d centre = mean(points);
     double square = 0.0;

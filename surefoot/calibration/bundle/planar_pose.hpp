@@ -8,10 +8,10 @@
 
 namespace surefoot::calibration {
 
-/// Pose of a flat board whose points (z = 0) appear along `rays`. Uses the direct linear transform
-/// between the plane and the rays (Hartley and Zisserman 2004, section 4.1), orthonormalised. A ray
-/// may be more than 90 deg off the axis. The result is only a start value. Returns nullopt for
-/// fewer than four points, for points on a line, or if no plane in front explains the rays.
+/// Returns T_camera_board of a flat board whose points (z = 0) appear along `rays_camera`, as a
+/// start value. Uses the direct linear transform (Hartley and Zisserman 2004, section 4.1) and
+/// makes its rotation orthonormal. A ray may be more than 90 deg off the axis. Returns nullopt for
+/// fewer than four points, for points on a line, or if the transform contains no rotation.
 [[nodiscard]] std::optional<Pose> planar_pose(std::span<const Eigen::Vector3d> points_board_m,
                                               std::span<const Eigen::Vector3d> rays_camera);
 

@@ -11,8 +11,8 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr double kHuberSigmas = 2.5;
-/// Limit of a single corner's error [sigma] in the rms of its view: such a corner can be removed
-/// alone.
+/// Limit of the error of a single corner [sigma] in the rms of its view. A corner beyond the limit
+/// can be removed alone, without its view.
 constexpr double kClipSigmas = 10.0;
 /// Tolerance of the solver while views are removed: the rms of each view is then known to a
 /// thousandth.
@@ -30,7 +30,7 @@ double robust_sigma_px(const BoardBundle& bundle) {
     return std::max(median(lengths) / kMedianLength, kLeastSigma_px);
 }
 
-/// Largest rms of a view that is as good as most views.
+/// Returns the largest accepted rms of a view [px], from the rms values of all views.
 double common_limit_px(const std::vector<double>& all, const RobustLimits& limits) {
     std::vector<double> known;
     for (const double rms : all)
@@ -67,7 +67,8 @@ std::vector<Sight> take_outliers(BoardBundle& bundle, double limit_px) {
     return outliers;
 }
 
-/// Divides by the degrees of freedom, so that a few views do not look better than they are.
+/// Returns the standard deviation of a coordinate [px]; NaN without degrees of freedom. Divides by
+/// the degrees of freedom, so that few views do not look better than they are.
 double unbiased_sigma_px(const BoardBundle& bundle) {
     double square = 0.0;
     for (const Eigen::Vector2d& r : residuals_px(bundle)) square += r.squaredNorm();
@@ -86,7 +87,7 @@ std::vector<double> view_rms_px(const BoardBundle& bundle, double clip_px) {
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         const auto view = static_cast<std::size_t>(bundle.sights[i].view);
-        // std::min would discard NaN
+        // not std::min: depending on the order of its arguments, it replaces NaN by clip_px
         const double length_px = residuals[i].norm();
         const double counted_px = length_px > clip_px ? clip_px : length_px;
         square[view] += counted_px * counted_px;

@@ -10,22 +10,22 @@
 
 namespace surefoot::calibration {
 
-/// Error limits. A view or a point beyond a limit does not fit the camera of the others.
+/// Limits of errors. A view or point whose error exceeds a limit contradicts the other views.
 struct RobustLimits {
     int least_views = 3;
     /// Removes a view if its rms exceeds `view_factor` times the median rms of all views. The rms
     /// must also exceed the median by `view_sigmas` times the robust scatter of the rms values.
     double view_factor = 2.0;
     double view_sigmas = 4.0;
-    /// Views with an rms below this [px] always stay. Detector errors differ between views with the
-    /// size of squares, blur, noise and slant of edges. Rms of rendered chessboards: 0.015 to 0.03
-    /// px (median 0.02 px); with little light and noise 0.06 to 0.08 px. Single corners: 0.1 px.
-    /// With an exact detector the ratio of two rms values says little.
+    /// Views with an rms below this [px] always stay. The detector error of a view depends on the
+    /// size of squares, blur, noise and slant. On rendered chessboards the rms of a view was 0.015
+    /// to 0.03 px (median 0.02 px), with noise and little light 0.06 to 0.08 px. Single corners had
+    /// errors of 0.1 px. The ratio of such small rms values says little about a view.
     double least_px = 0.1;
-    /// Limit per view [px], or empty. Replaces the limits of the rms above.
+    /// Limit per view [px]; empty = none. Replaces view_factor and view_sigmas, but not least_px.
     std::vector<double> view_limits_px;
-    /// A point is removed beyond this many robust standard deviations of a coordinate. With 3000
-    /// points and normal noise, one set in 20 000 loses a point.
+    /// A point is removed if its residual exceeds this many robust sigmas of a coordinate. In sets
+    /// of 3000 points with normal noise, one set in 20 000 loses a point.
     double point_sigmas = 6.0;
 };
 

@@ -12,14 +12,14 @@
 
 namespace surefoot::calibration {
 
-/// A view that the calibration does not use.
+/// A view or pair that the calibration does not use.
 struct RejectedView {
     std::size_t index = 0;  ///< index into the input views
     std::string reason;
     friend bool operator==(const RejectedView&, const RejectedView&) = default;
 };
 
-/// Adds a view in ascending order. A second reason is appended to the first.
+/// Adds a view, in ascending order of index. Appends a second reason to the first.
 void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::string& reason);
 
 /// Describes the first problem of a view; nullopt if the view is usable. Problems: ids and pixels
@@ -34,12 +34,12 @@ void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::s
 /// of its points.
 [[nodiscard]] double motion_px(const BoardView& a, const BoardView& b);
 
-/// Median of the disc radii that the views state; 0 for views of points.
+/// Returns the median of the disc radii of the views [m]; 0 for views of points.
 [[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
 
-/// Text with the first three reasons: "6 of 8 views were left out: view 2 ...; view 5 ...".
+/// Returns a text with up to three reasons: "6 of 8 views were left out: view 2: ...; view 5: ...".
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
-[[nodiscard]] double median(std::vector<double> values);  ///< returns 0 for no values
+[[nodiscard]] double median(std::vector<double> values);  ///< upper median; 0 without values
 
 }  // namespace surefoot::calibration

@@ -24,8 +24,8 @@ Pose moved(const Pose& T, int coordinate, double step) {
     return T * change;
 }
 
-/// Returns the bundle after one step of a single parameter. The first columns are a coordinate of
-/// all boards, the others a shared parameter (lenses, right camera).
+/// Returns the bundle after one step of a single parameter. The first six columns are the pose
+/// coordinates of all boards; the other columns are shared parameters (lenses, right camera).
 BoardBundle stepped(const BoardBundle& bundle, int column, double step) {
     BoardBundle there = bundle;
     if (column < kPose) {
@@ -92,7 +92,8 @@ double between_views_sigma_px(const BoardBundle& bundle) {
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     const Eigen::MatrixXd all = jacobian(bundle);
     double square = 0.0;
-    double freedom = -static_cast<double>(all.cols() - kPose);  // parameters of the common cameras
+    double freedom =
+        -static_cast<double>(all.cols() - kPose);  // minus parameters of the common cameras
     int views = 0;
     for (std::size_t view = 0; view < bundle.T_left_board.size(); ++view) {
         std::vector<Eigen::Index> rows;

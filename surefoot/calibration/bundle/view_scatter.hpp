@@ -5,15 +5,15 @@
 
 namespace surefoot::calibration {
 
-/// Coordinate noise that explains the scatter of the cameras between views: its standard deviation
-/// [px].
+/// Returns the standard deviation of the coordinate noise that explains the scatter of the cameras
+/// between the views [px].
 ///
 /// Independent corner noise shifts the lenses and the right camera's pose a little in every view.
-/// A bent board, images at different moments and lens errors beyond the model shift each view as
-/// a whole. These shifts exceed the noise of single corners by far, and more corners do not
-/// average them out. Method: with separate cameras per view, the sum of squared residuals would
-/// fall by the effect of these shifts. The result is the root of this decrease per parameter.
-/// With independent noise alone it equals sigma_px (first order; about 10 % scatter for ten
+/// A bent board, images at different moments and lens errors beyond the model shift each view as a
+/// whole. These shifts exceed the noise of single corners by far, and more corners do not average
+/// them out. Method: with separate cameras per view, the sum of squared residuals would fall by
+/// the effect of these shifts. The result is the root of this decrease per parameter. With
+/// independent noise alone the result equals sigma_px (first order; about 10 % scatter for ten
 /// views).
 ///
 /// The bundle must be solved. Returns NaN for fewer than two views.

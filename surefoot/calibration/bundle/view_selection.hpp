@@ -19,9 +19,9 @@ struct SelectionLimits {
 };
 
 /// Selects from the views `candidates` (ascending indices). `motion_px(a, b)` is the difference of
-/// two views. Removes views that repeat an earlier one. If too many remain, keeps the views that
-/// differ most from those already selected, starting with the first. Returns ascending indices and
-/// adds the other views to `rejected`.
+/// two views. Removes views that repeat an earlier one. If more than `most_views` remain, starts
+/// with the first view and adds the view that differs most from the selected views. Returns
+/// ascending indices and adds the other views to `rejected`.
 [[nodiscard]] std::vector<std::size_t> select_views(
     std::span<const std::size_t> candidates,
     const std::function<double(std::size_t, std::size_t)>& motion_px,

@@ -11,10 +11,10 @@
 
 namespace surefoot::calibration {
 
-/// Error of a lens kind on boards that were not used to fit it.
+/// Error of a lens kind, from the cross-validation of try_lens.
 struct LensTrial {
     LensKind kind = LensKind::pinhole5;
-    /// Median of the rms values of the views [px]; infinite if the lens shows fewer than half of
+    /// Median of the rms values of the views [px]; infinite unless the lens shows more than half of
     /// the views.
     double rms_px = 0.0;
 };

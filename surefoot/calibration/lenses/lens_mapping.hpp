@@ -11,7 +11,7 @@ namespace surefoot::calibration {
 /// Returns the covariance [px^2] of the image position of a fixed direction (that of `pixel`),
 /// caused by the covariance of the lens. Reason: the coefficients of a rational lens can almost
 /// replace each other. Their single deviations say little, but their common effect is well known.
-/// First order. Returns nullopt if the pixel has no direction.
+/// Valid to first order. Returns nullopt if the pixel has no direction.
 [[nodiscard]] std::optional<Eigen::Matrix2d> mapping_covariance_px2(
     LensKind kind,
     const Eigen::VectorXd& parameters,

@@ -5,7 +5,7 @@
 
 namespace surefoot::calibration {
 
-/// Formulas of camera/pinhole_radtan.hpp and camera/kannala_brandt.hpp, for plain numbers and for
+/// Formulas of camera/pinhole_rational.hpp and camera/kannala_brandt.hpp, for plain numbers and for
 /// numbers with derivatives. They return false if a point has no image.
 
 /// `lens` = fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6.

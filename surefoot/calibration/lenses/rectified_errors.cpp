@@ -118,7 +118,8 @@ std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
         const Eigen::Vector2d none = Eigen::Vector2d::Constant(kNan);
         pixels.push_back({left.value_or(none), right.value_or(none)});
     }
-    // The columns are independent error directions, each one standard deviation long.
+    // The eigenvectors are independent error directions; the roots of their eigenvalues are the
+    // standard deviations.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
     Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(std::ssize(pixels));
     for (Eigen::Index i = 0; i < covariance.cols(); ++i) {

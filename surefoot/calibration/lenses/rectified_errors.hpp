@@ -12,7 +12,7 @@
 
 namespace surefoot::calibration {
 
-/// Direction of a raw pixel on the plane z = 1 of the rectified frame; nullopt outside the lens.
+/// Returns where a raw pixel lies on the plane z = 1 of the rectified frame; nullopt if nowhere.
 [[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(
     const camera::RectifiedCamera& camera, const Eigen::Vector2d& raw);
 
@@ -48,9 +48,9 @@ struct StereoParameters {
 [[nodiscard]] camera::StereoRig rig_of(const StereoParameters& parameters);
 
 /// Returns the depth standard deviation of points on the axis of the rectified left camera, one
-/// value per distance. It comes from the parameter covariance alone (left, right, T_left_right by
-/// right perturbation), to first order. The two raw pixels of a point stay fixed while the
-/// calibration varies. NaN if an image does not show the point.
+/// value per distance. The values come from the parameter covariance alone (left, right,
+/// T_left_right by right perturbation), to first order. The two raw pixels of a point stay fixed
+/// while the calibration varies. NaN if an image does not show the point.
 [[nodiscard]] std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
                                                  const Eigen::MatrixXd& covariance,
                                                  std::span<const double> distances_m);

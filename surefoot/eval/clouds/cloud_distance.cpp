@@ -12,7 +12,8 @@
 namespace surefoot::eval {
 namespace {
 
-/// Numbers of points: of those that are sorted at once, and of those in one task of a thread.
+/// Number of points that are sorted at once (kSorted), and number of points in one task of a thread
+/// (kTaken).
 constexpr std::size_t kSorted = 1U << 20U;
 constexpr std::size_t kTaken = 1U << 13U;
 

@@ -11,9 +11,9 @@
 
 namespace surefoot::eval {
 
-/// C2C: distance [m] from each compared point to the nearest *point* of the reference, in the order
-/// of `compared_m`. Points must be finite, and the reference must not be empty. Never negative.
-/// Even two clouds of one surface differ by about the point spacing of the reference.
+/// Returns the C2C distance [m] from each compared point to the nearest *point* of the reference,
+/// in the order of `compared_m`. Points must be finite, and the reference must not be empty. Even
+/// two clouds of one surface differ by about the point spacing of the reference.
 [[nodiscard]] std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
                                                    std::span<const Eigen::Vector3f> compared_m,
                                                    Executor& executor = serial());
@@ -22,11 +22,11 @@ namespace surefoot::eval {
 struct DistanceFigures {
     std::int64_t count = 0;
     double mean_m = 0.0;
-    double std_m = 0.0;  ///< standard deviation, divided by n
+    double std_m = 0.0;  ///< standard deviation, divisor n
     double rms_m = 0.0;
     double least_m = 0.0;
     double most_m = 0.0;
-    double p50_m = 0.0;  ///< percentiles of the signed values, linear between two ranks
+    double p50_m = 0.0;  ///< percentile of the signed values, linear between ranks
     double p90_m = 0.0;
     double p99_m = 0.0;
     double median_abs_m = 0.0;

@@ -19,7 +19,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Returns bins with a prominent count. Of bins within `least_step_m`, only the fullest counts.
+/// Returns the bins with a prominent count. Of bins closer than `least_step_m`, returns only the
+/// fullest.
 std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
                                   std::size_t points,
                                   const LevelConfig& config) {
@@ -110,8 +111,8 @@ bool is_step(const Level& lower, const Level& upper) {
     return upper.height_m - lower.height_m <= kHighestRiser_m;
 }
 
-/// Chains levels that are one riser apart, upward and downward from the first level. Among several
-/// levels near the expected height the level with most points is the tread.
+/// Chains levels that are one riser apart, upward and downward from the first level. If several
+/// levels are near the expected height, the level with the most points is the tread.
 std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
     constexpr double kUneven = 0.08;  // tolerance of a tread's height, as a share of the riser
     constexpr double kLeastShare = 0.15;
@@ -140,7 +141,7 @@ std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, do
 
 /// Returns the levels of a flight: the longest chain of treads with one riser. Of chains with equal
 /// length, the chain with more points counts. Surfaces beside the flight and patches of noise
-/// between two treads are in no chain.
+/// between two treads do not fit into this chain.
 std::vector<Level> flight_of(std::span<const Level> levels) {
     std::vector<Level> best;
     std::int64_t best_points = 0;
@@ -160,8 +161,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
     return best;
 }
 
-/// Returns the position of a cluster along a line [m]: the fullest 20 mm. Evenly spread points, for
-/// example of a side wall, must be very unlikely to put so many points there by chance.
+/// Returns the position of a cluster along a line [m]: the mean of the fullest 20 mm. Returns no
+/// value if evenly spread points, for example of a side wall, could by chance be as dense there.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;
@@ -187,14 +188,15 @@ std::optional<double> crowd_m(std::vector<double> along_m) {
     return sum_m / static_cast<double>(best);
 }
 
-/// Measures positions along the uphill line.
+/// Measures positions along the uphill line [m].
 class Uphill {
   public:
     Uphill(const SortedSurfaces& surfaces, const Eigen::Vector2d& direction)
         : surfaces_(surfaces), direction_(direction) {}
 
-    /// Position of the riser between two levels: the face of the riser if it has points. Otherwise
-    /// it is the middle between the end of the lower level and the beginning of the upper level.
+    /// Returns the position of the riser between two levels [m]: the face of the riser if it has
+    /// points. Otherwise returns the middle between the end of the lower level and the beginning of
+    /// the upper level.
     [[nodiscard]] std::optional<double> riser_m(const Level& lower, const Level& upper) const {
         const double rise_m = upper.height_m - lower.height_m;
         std::vector<double> face_m;
@@ -207,7 +209,6 @@ class Uphill {
         const auto low_m = ends_m(lower, upper);
         const auto high_m = ends_m(upper, upper);
         if (!low_m || !high_m) return std::nullopt;
-        // The lower level must end before the upper level begins.
         return 0.5 * (low_m->second + high_m->first);
     }
 
@@ -215,8 +216,10 @@ class Uphill {
     [[nodiscard]] double along(const Vector3f& p_m) const {
         return direction_.dot(p_m.head<2>().cast<double>());
     }
-    /// Returns the first and last position of a level's points [m], in a strip through the middle
-    /// of another level. Leaves out the outermost hundredth at each end.
+    /// Returns the first and last position of a level's points along the uphill line [m]. Uses only
+    /// a strip through the middle of `beside`, for a lower level only up to this middle. Leaves out
+    /// the outermost hundredth of the points at each end. Returns no value for fewer than 20
+    /// points.
     [[nodiscard]] std::optional<std::pair<double, double>> ends_m(const Level& level,
                                                                   const Level& beside) const {
         constexpr double kStrip_m = 0.2;
@@ -310,7 +313,7 @@ StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Lev
     const std::vector<Level> flight = flight_of(all);
     const std::span<const Level> levels = flight.empty() ? all : std::span<const Level>(flight);
     constexpr double kLongestTread_m = 0.5;   // a longer level is a landing
-    constexpr double kShortestTread_m = 0.1;  // too short for a foot: the levels are no flight
+    constexpr double kShortestTread_m = 0.1;  // shorter than a foot: not a going
     StairMeasures measures;
     std::vector<double> rises_m;
     for (std::size_t i = 1; i < levels.size(); ++i) {

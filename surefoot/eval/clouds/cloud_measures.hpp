@@ -18,10 +18,10 @@ struct SortedSurfaces {
     std::vector<Eigen::Vector3f> level_m;    ///< normals within 20 deg of the vertical
     std::vector<Eigen::Vector3f> upright_m;  ///< normals within 20 deg of the horizontal
 };
-/// Size of the voxels in which sort_surfaces first thins the cloud to one point each. Without this
-/// step the dense part near a scanner would dominate.
+/// Size of the voxels in which sort_surfaces first thins the cloud to one mean point per voxel.
+/// Without this step the dense part near a scanner would dominate.
 inline constexpr double kSurfaceVoxel_m = 0.01;
-/// Points must be finite, and `fits_voxels` must be true for their bounding box.
+/// Sorts points, which must be finite; `fits_voxels` must be true for their bounding box.
 [[nodiscard]] SortedSurfaces sort_surfaces(std::span<const Eigen::Vector3f> points_m,
                                            Executor& executor = serial());
 
@@ -30,7 +30,7 @@ struct LevelConfig {
     double bin_m = 0.005;
     double least_step_m = 0.04;  ///< smallest distance between two levels
     double least_share = 5e-4;   ///< smallest share of all points in the bin of a level
-    double prominence = 2.0;     ///< least count, in medians of the bins around (walls fill all)
+    double prominence = 2.0;     ///< least count of a level / median count of the bins around
 };
 
 /// A level surface, or several surfaces at one height.
@@ -49,7 +49,7 @@ struct HeightHistogram {
     std::vector<std::int64_t> counts;
     std::vector<Level> levels;  ///< ascending
 };
-/// Points must be finite. Empty without points, or if the points span more than a million bins.
+/// Points must be finite. Empty without points, or if the heights span over a million bins.
 [[nodiscard]] HeightHistogram height_histogram(std::span<const Eigen::Vector3f> points_m,
                                                const LevelConfig& config = {});
 
@@ -61,16 +61,16 @@ struct Repeated {
     double std_error_m = 0.0;  ///< standard error of the mean
 };
 
-/// Dimensions of stairs from the histograms of their levels.
+/// Dimensions of stairs from their levels and riser faces.
 struct StairMeasures {
     Repeated riser;  ///< height differences up to 0.30 m between levels of the flight
     Repeated going;  ///< distances of riser faces, or of the ends of levels in a map without faces;
                      ///< landings (longer distances) are left out
     Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit vector, or zero without two levels
 };
-/// Measures a flight: the longest sequence of levels with one riser (within 8 %). Other levels, for
-/// example patches between two treads or objects beside the stairs, are left out. For straight
-/// flights only: measures positions along one uphill line. `levels`: of surfaces.level_m.
+/// Measures a flight: the longest sequence of levels with one riser (within 8 %). Leaves out other
+/// levels, for example patches between two treads or objects beside the stairs. For straight
+/// flights only: measures along one uphill line. `levels`: levels of surfaces.level_m.
 [[nodiscard]] StairMeasures measure_stairs(const SortedSurfaces& surfaces,
                                            std::span<const Level> levels);
 

@@ -14,7 +14,7 @@ namespace surefoot::eval {
 /// filter passes once over the cloud. The standard deviation uses the divisor n.
 struct OutlierConfig {
     /// Number of averaged neighbours without the point itself, as PCL's MeanK. CloudCompare and
-    /// Open3D include the point: 7 there is 6 here.
+    /// Open3D include the point: their 7 is 6 here.
     int others = 6;
     double sigmas = 4.0;
 };
@@ -27,8 +27,8 @@ class OutlierFilter {
                   const OutlierConfig& config,
                   Executor& executor = serial());
 
-    /// True if a point of the cloud is not an outlier. Points are identified by their coordinates;
-    /// false for a point that is not in the cloud.
+    /// Returns true if a point of the cloud is not an outlier. Identifies a point by its
+    /// coordinates; returns false for a point that is not in the cloud.
     [[nodiscard]] bool keeps(const Eigen::Vector3f& point_m) const;
 
     [[nodiscard]] double mean_m() const noexcept { return mean_m_; }

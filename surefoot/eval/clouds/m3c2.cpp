@@ -45,7 +45,7 @@ InCylinder look(const geometry::KdTree& cloud, const geometry::Cylinder& cylinde
     cloud.runs_near_cylinder(cylinder, add);
     if (seen.count == 0) return seen;
     seen.mean_m = sum_m / seen.count;
-    // Heights are relative to the core point, so that cancellation loses far less than a
+    // Positions are relative to the core point, so that cancellation loses far less than a
     // micrometre.
     seen.std_m = std::sqrt(std::max(0.0, sum_sq_m2 / seen.count - seen.mean_m * seen.mean_m));
     return seen;

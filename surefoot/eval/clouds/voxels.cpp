@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kMostBits = 63;
-/// Number of points that are numbered and distributed at once, and number of buckets. The voxels of
-/// a bucket are processed independently of other buckets.
+/// Number of points that are numbered and distributed at once (kTaken), and number of buckets
+/// (kBuckets). The voxels of a bucket are processed independently of other buckets.
 constexpr std::size_t kTaken = 1U << 16U;
 constexpr int kBucketBits = 9;
 constexpr std::size_t kBuckets = 1U << kBucketBits;
@@ -131,7 +131,7 @@ std::int64_t voxel_number(float p_m, double size_m) noexcept {
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {
-    // Voxel numbers above this limit do not fit.
+    // Voxel numbers of 1e18 or more are refused, far below the largest std::int64_t.
     const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
     return static_cast<double>(most_m) / size_m < 1e18 &&
            VoxelKeys(box, size_m).bits() <= kMostBits;

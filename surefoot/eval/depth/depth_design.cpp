@@ -28,13 +28,13 @@ std::optional<std::string> DepthDesign::problem() const {
     const struct {
         const char* name;
         double value, min, max;
-    } rows[] = {{"--baseline", baseline_m, 1e-3, 10.0},
-                {"--focal", focal_px, 10.0, 1e5},
-                {"width of --size", static_cast<double>(width), 16.0, 16384.0},
-                {"height of --size", static_cast<double>(height), 16.0, 16384.0},
-                {"--sigma", sigma_px, 1e-3, 10.0},
-                {"--height", camera_height_m, 0.1, 5.0},
-                {"--pitch", pitch_deg, 0.0, 80.0}};
+    } rows[] = {{"--baseline [m]", baseline_m, 1e-3, 10.0},
+                {"--focal [px]", focal_px, 10.0, 1e5},
+                {"width of --size [px]", static_cast<double>(width), 16.0, 16384.0},
+                {"height of --size [px]", static_cast<double>(height), 16.0, 16384.0},
+                {"--sigma [px]", sigma_px, 1e-3, 10.0},
+                {"--height [m]", camera_height_m, 0.1, 5.0},
+                {"--pitch [deg]", pitch_deg, 0.0, 80.0}};
     for (const auto& row : rows) {
         if (!(row.value >= row.min && row.value <= row.max)) {
             return fmt::format(

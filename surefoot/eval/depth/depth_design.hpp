@@ -23,10 +23,10 @@ struct DepthDesign {
 
 /// Smallest vertical step ahead that is distinguishable from a flat floor.
 ///
-/// The floor at the horizontal range R is L = sqrt(R^2 + H^2) away, phi = atan(H / R) below the
-/// horizon, at the depth Z = L cos(phi - pitch). sigma_Z is Z^2 sigma_d / (f b) (Matthies and
-/// Shafer, "Error modeling in stereo navigation", 1987). A disparity error of one sigma therefore
-/// moves the point along the ray by the share sigma_d Z / (f b) of its distance, and in height by
+/// Camera height H, range R, focal length f, baseline b, disparity sigma_d. A floor point at R is L
+/// = sqrt(R^2 + H^2) away, phi = atan(H / R) below the horizon, at depth Z = L cos(phi - pitch).
+/// Its sigma_Z is Z^2 sigma_d / (f b) (Matthies and Shafer, "Error modeling in stereo navigation",
+/// 1987). One sigma moves the point by the share sigma_d Z / (f b) along the ray, and in height by
 ///   sigma_h = H Z sigma_d / (f b).
 /// Noise limit: 3 sigma of the difference between two such heights, 3 sqrt(2) sigma_h, without
 /// averaging. Pixel limit: the step must cover the matcher's window of 3 rows, 3 L / (f cos(phi)).

@@ -71,7 +71,7 @@ TEST(DepthDesign, SaysWhatIsImpossible) {
     DepthDesign design;
     EXPECT_FALSE(design.problem());
     design.baseline_m = 0.0;
-    EXPECT_EQ(design.problem().value_or(""), "--baseline = 0 must be between 0.001 and 10");
+    EXPECT_EQ(design.problem().value_or(""), "--baseline [m] = 0 must be between 0.001 and 10");
     design = {};
     design.sigma_px = std::nan("");
     EXPECT_TRUE(design.problem());

@@ -73,7 +73,8 @@ std::optional<double> suspected_factor(double truth_over_estimate) noexcept {
     // Middlebury uses 2, 3, 4 and 8, OpenCV 16, KITTI 256. The other factors lie between 16 and
     // 256.
     constexpr double kFactors[] = {2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
-    // Share of the factor. The median error of even a poor matcher is smaller.
+    // Largest deviation of the ratio, as a share of the factor. The median error of even a poor
+    // matcher is smaller.
     constexpr double kTolerance = 0.125;
     for (const double factor : kFactors) {
         for (const double candidate : {factor, 1.0 / factor}) {

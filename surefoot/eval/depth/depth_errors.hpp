@@ -48,9 +48,9 @@ struct DepthErrors {
 /// A row without any known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
 
-/// Returns the suspected scale factor of the truth, for example 4 or 1/16. Data sets store
-/// disparities with such factors; the factor must explain the ratio. No value if truth and estimate
-/// agree within the possible error of a matcher, or if no factor fits.
+/// Returns the factor by which the truth is probably scaled, for example 4 or 1/16. Data sets store
+/// disparities with such factors. No value if no factor is within 12.5 % of the ratio, for example
+/// if truth and estimate agree.
 [[nodiscard]] std::optional<double> suspected_factor(double truth_over_estimate) noexcept;
 
 /// Returns an error if the images differ in size.

@@ -12,7 +12,8 @@ namespace surefoot::eval {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// If areas differ by less, the difference is a rounding error of the sums: all errors are equal.
+/// Least difference between random and oracle area, as a share of the random area. A smaller
+/// difference is a rounding error of the sums: all errors are equal.
 constexpr double kEqualAreas = 1e-12;
 
 struct Value {

@@ -6,8 +6,8 @@
 
 namespace surefoot::eval {
 
-/// Measures whether a sigma finds the wrong values. Values are removed one by one, the most
-/// uncertain first, and the mean |error| of the rest is recorded. With n values sorted by
+/// Measures whether sigma is large where the error is large. Values are removed one by one, the
+/// most uncertain first, and the mean |error| of the rest is recorded. With n values sorted by
 /// increasing sigma,
 ///     E(m) = mean |error| of the m most certain values, area = (1 / n) sum of E(1) .. E(n).
 /// `oracle_area` is this area for the best possible order, by |error| itself. `random_area` is the

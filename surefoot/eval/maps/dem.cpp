@@ -17,18 +17,17 @@ namespace {
 /// Largest number of cells. 2^27 cells need 1 GB for the sums and 1 GB for the counts; a larger map
 /// means a wrong unit or resolution.
 constexpr double kMostCells = 134217728.0;
-/// Largest cell number. Whole numbers up to this are exact in double; after subtraction of the
-/// first number they fit an int.
+/// Largest cell number: whole numbers up to this limit are exact in double.
 constexpr double kLargestNumber = 1e15;
-/// Steps per metre in sums of heights. Whole numbers of 2^-23 m (0.12 um) add exactly in double up
-/// to 10^9 m.
+/// Steps per metre in sums of heights. Sums of whole steps of 2^-23 m (0.12 um) are exact in double
+/// up to 10^9 m.
 constexpr double kSteps = 8388608.0;
 /// Largest number of cells of all threads together: 1 GB. Larger grids use fewer threads.
 constexpr std::size_t kMostPartCells = 1U << 26U;
 /// Smallest number of points that justifies a thread.
 constexpr std::size_t kPiece = 1U << 14U;
 
-/// True if a height map may hold this point.
+/// Returns true if a height map may hold this point.
 bool is_mappable(const Eigen::Vector3d& p_m) {
     return p_m.allFinite() && std::abs(p_m.z()) <= kMaxHeight_m;
 }
@@ -91,8 +90,8 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
         return input_error(
-            fmt::format("no point with finite coordinates and a height within +-{:g} m among {} "
-                        "points; check the file and the unit of its heights",
+            fmt::format("no point with finite coordinates and a height within +-{:g} m ({} points "
+                        "read); check the file and the unit of its heights",
                         kMaxHeight_m,
                         skipped_));
     }

@@ -12,14 +12,14 @@
 
 namespace surefoot::eval {
 
-/// How a cell combines the heights of its points.
+/// Rule by which a cell combines the heights of its points.
 enum class Reduce : std::uint8_t { max, mean, min };
 
 /// Alignment of the cells of a height map.
 enum class Lattice : std::uint8_t {
     cell,  ///< borders at multiples of the resolution (NOTATION.md), so maps align
     node,  ///< first centre at the smallest x and y (CloudCompare: RASTERIZE); a point belongs to
-           ///< the nearest centre, in the middle to the greater centre
+           ///< the nearest centre, halfway to the centre with the greater coordinate
 };
 
 /// The cells of a height map.
@@ -30,7 +30,7 @@ struct DemGrid {
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
 };
 
-/// Cell index ix + iy * nx of a point; `kNoCell` outside and for coordinates that are not finite.
+/// Cell index ix + iy * nx of a point; `kNoCell` outside, and for points that CloudBounds skips.
 inline constexpr std::uint32_t kNoCell = 0xffffffffU;
 [[nodiscard]] std::uint32_t cell_number(const DemGrid& grid, const Eigen::Vector3d& p_m) noexcept;
 
@@ -57,8 +57,8 @@ class CloudBounds {
 
 /// Builds a height map from points in any number of pieces. Memory depends on the number of cells
 /// and threads, not on the points: each thread has its own cells. The result does not depend on the
-/// order of the points or the number of threads. This also holds for the mean, which sums whole
-/// numbers of 0.12 um.
+/// order of the points or the number of threads. This also holds for the mean, which sums multiples
+/// of 0.12 um.
 class DemBuilder {
   public:
     DemBuilder(const DemGrid& grid, Reduce reduce);

@@ -21,7 +21,7 @@ constexpr int kWantedSide_px = 330;
 constexpr int kBar_px = 14;
 constexpr int kBarGap_px = 10;
 constexpr int kLabels_px = 58;  ///< space for labels right of the bar
-constexpr int kGap_px = 22;     ///< between panels
+constexpr int kGap_px = 22;     ///< space between panels
 constexpr int kAround = 6;      ///< cells shown around the known cells
 constexpr double kBody_px = 18.0;
 
@@ -264,7 +264,7 @@ Picture render_layer_sheet(const grid::GridGeometry& geometry,
         SUREFOOT_ASSERT(layer.values.width() == geometry.nx &&
                         layer.values.height() == geometry.ny);
         drawn.scale_bar = overlays.scale_bar && i == 0;
-        // Only the first map shows the path: on every map the path would hide more than it shows.
+        // Only the first map shows the path: on every map, the path would hide cells.
         if (i == 1) drawn.trajectory_m.clear();
         draw_panel(sheet, geometry, layer, layout, layout.plot(static_cast<int>(i)), drawn);
     }

@@ -28,12 +28,12 @@ struct MapPair {
     double tilt_sigma_rad = 0.0;
     grid::Layer live_traversability;
     grid::Layer truth_m;
-    /// The true surface to compare each live height with, if this is not the highest surface, for
-    /// example the floor under a table top. Empty = truth_m.
+    /// The true surface with which each live height is compared, if this is not the highest
+    /// surface: for example the floor under a table top. Empty = truth_m.
     grid::Layer compared_m;
     grid::Layer truth_traversability;
     Trajectory trajectory;              ///< base_link in the map's frame; may be empty
-    std::optional<CameraTrack> camera;  ///< without it no errors by column and range
+    std::optional<CameraTrack> camera;  ///< needed for errors by column and range
 };
 
 /// All measurements of one live map. Fields without cells are NaN. Lists whose input is missing are
@@ -47,16 +47,16 @@ struct MapComparison {
     SigmaCoverage sigma;                ///< coverage of the height sigma, away from edges
     double coverage = 0.0;
     TraversabilityErrors traversability;
-    ErrorFigures edges;                     ///< |jumps| between neighbours on the level floor
-    std::vector<ErrorBin> edges_by_column;  ///< [px]
-    FloorSpread floor;                      ///< spread of the level floor's cells
+    ErrorFigures edges;                     ///< jumps between cells of the level floor
+    std::vector<ErrorBin> edges_by_column;  ///< jumps by image column [px]
+    FloorSpread floor;                      ///< distances of the level floor's cells from a plane
     Image<Call> calls;
     grid::Layer error_m;
 };
 
 /// Compares the maps without any alignment. `edges` and `floor` use level_floor of the truth.
 /// Errors by distance, range and column leave out edges. At an edge, a shift of the map by one cell
-/// causes an error of the step height for every camera position.
+/// causes an error as large as the step.
 [[nodiscard]] MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config);
 
 }  // namespace surefoot::eval

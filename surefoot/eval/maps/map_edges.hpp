@@ -11,13 +11,13 @@ namespace surefoot::eval {
 /// Returns the cells of the largest level surface of a true map, away from its edges (see
 /// away_from_edges). Selects the 4 mm height band (kFloorBand_m) with the most cells, of equal
 /// bands the lowest. On this surface every height difference of a live map is an error of the map.
-/// Of a tilted floor, the result is only a strip along a contour.
+/// On a tilted floor, the result is only a strip along a contour.
 [[nodiscard]] CellMask level_floor(const grid::Layer& truth_height_m, const EvalMapsConfig& config);
 inline constexpr double kFloorBand_m = 0.004;
 
 /// Height differences between neighbouring cells: the jaggedness of a map.
 struct HeightJumps {
-    std::vector<float> jump_m;  ///< height of the right or upper cell minus the other height
+    std::vector<float> jump_m;  ///< height of the cell with greater x or y minus the other
     std::vector<float> key;     ///< mean of the keys of the two cells
 };
 
@@ -38,7 +38,7 @@ struct FloorSpread {
 };
 
 /// Fits the plane by total least squares, then repeats the fit without cells beyond three spreads
-/// until nothing changes. The statistics cover all cells in the mask.
+/// (at most 20 fits). The statistics cover all cells in the mask.
 [[nodiscard]] FloorSpread floor_spread(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const CellMask& mask);

@@ -66,21 +66,21 @@ struct Mark {
 };
 struct Overlays {
     std::optional<Pose> T_odom_body;
-    std::vector<Outline> outlines;  ///< footprints
+    std::vector<Outline> outlines;  ///< closed lines, for example footprints
     std::vector<Eigen::Vector2d> trajectory_m;
     std::vector<Stroke> strokes;
     std::vector<Badge> badges;
     std::vector<Mark> marks;
     Dots dots;
     bool scale_bar = true;
-    /// Arrow length of the body symbol. No value: 0.35 m of the map, but at least a visible length.
+    /// Arrow length of the body symbol [px]. No value: 0.35 m of the map, but at least 30 px.
     std::optional<double> body_px = {};
 };
 
 /// Draws ticks and names of the two axes around the plot.
 void draw_axes(Picture& picture, const MapView& view);
-/// Draws a bar of 1 m, or of a round length that fits the plot better, in the lower left corner. A
-/// plot that is too small gets no bar.
+/// Draws a bar of 1 m, or of another round length if 1 m does not fit the plot, in the lower left
+/// corner. A plot that is too small gets no bar.
 void draw_scale_bar(Picture& picture, const MapView& view);
 /// Draws the overlays, only inside the plot.
 void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays);

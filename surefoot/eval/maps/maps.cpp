@@ -86,12 +86,12 @@ void EvalMapsConfig::describe(ConfigVisitor& visitor) {
                    10.0,
                    "smallest difference between the true heights of neighbouring cells that counts "
                    "as an edge");
-    visitor.integer(
-        "edge_margin_cells",
-        edge_margin_cells,
-        0,
-        100,
-        "largest distance from an edge, in cells, at which the height errors leave a cell out");
+    visitor.integer("edge_margin_cells",
+                    edge_margin_cells,
+                    0,
+                    100,
+                    "margin around edges, in cells; cells within this margin do not count in the "
+                    "height errors");
     visitor.number(
         "large_error_m",
         large_error_m,

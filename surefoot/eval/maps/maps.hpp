@@ -66,10 +66,10 @@ struct ElevationErrors {
                               const grid::Layer& truth,
                               const CellMask& mask);
 
-/// Result of a live map for one cell with known truth.
+/// Result of a live map for one cell, compared with the truth.
 enum class Call : std::uint8_t {
     no_truth,
-    unknown,  ///< unknown in the live map
+    unknown,  ///< the live map does not know the cell
     true_safe,
     true_unsafe,
     false_safe,    ///< an unsafe cell rated safe: the dangerous error
@@ -85,9 +85,9 @@ struct TraversabilityErrors {
     double false_unsafe = 0.0;            ///< share of the truly safe cells rated unsafe
     double true_safe = 0.0;               ///< share of the truly safe cells rated safe
     double true_unsafe = 0.0;             ///< share of the truly unsafe cells rated unsafe
-    double unknown = 0.0;                 ///< unknown in live, share of the cells with a truth
-    std::int64_t truly_safe_cells = 0;    ///< number of cells known in both maps
-    std::int64_t truly_unsafe_cells = 0;  ///< number of cells known in both maps
+    double unknown = 0.0;                 ///< unknown_cells / number of cells with known truth
+    std::int64_t truly_safe_cells = 0;    ///< truly safe cells known in both maps
+    std::int64_t truly_unsafe_cells = 0;  ///< truly unsafe cells known in both maps
     std::int64_t unknown_cells = 0;
 };
 /// Counts the cells in `mask`; an empty mask means all cells.

@@ -24,8 +24,8 @@ struct Sightings {
 
 /// Finds for each known cell the latest pose that observes its centre at its height. The centre
 /// must be in the image and at most `max_depth_m` away along the optical axis. Ignores occlusion: a
-/// cell counts as observed although another object may hide the cell. `T_world_camera`: poses of
-/// the optical frame in the map's frame, in time order.
+/// cell counts as observed even if another object hides the cell. `T_world_camera`: poses of the
+/// optical frame in the map's frame, in time order.
 [[nodiscard]] Sightings last_sightings(const grid::GridGeometry& geometry,
                                        const grid::Layer& height_m,
                                        const Trajectory& T_world_camera,

@@ -13,7 +13,7 @@ namespace surefoot::eval {
 /// never observed.
 struct ThesisPolicy {
     double length_m = 0.20;   ///< length of the rectangle, along the robot
-    double width_m = 0.40;    ///< across
+    double width_m = 0.40;    ///< width of the rectangle, across the robot
     double safe_mean = 0.80;  ///< least mean traversability for a step (safeTraverse)
     double unmapped = 1.0;    ///< value of unmapped cells; Lange 2016: traversability_default
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// `errors` must hold no NaN.
+/// Computes the statistics of `errors`, which must contain no NaN.
 ErrorFigures figures_of(const std::vector<double>& errors) {
     if (errors.empty()) return {kNone, kNone, kNone, kNone, kNone, kNone, 0};
     std::vector<double> absolute;

@@ -29,7 +29,7 @@ struct ErrorBin {
     double from = 0.0;
     double to = 0.0;
     ErrorFigures errors;
-    ErrorHistogram histogram;  ///< histogram of these errors, to be added over many maps
+    ErrorHistogram histogram;  ///< histogram of these errors, for sums over many maps
 };
 
 /// Sorts errors into bins by a second quantity, for example distance or image column. `keys` has

@@ -6,9 +6,9 @@
 
 namespace surefoot::eval {
 
-/// Histogram of |error|, for percentiles over many maps without keeping every error. Each bin is a
-/// tenth wider than the previous bin; this is the resolution of `percentile`. Adding histograms is
-/// exact and does not depend on the order. Errors in m.
+/// Histogram of |error| [m], for percentiles over many maps without keeping every error. The upper
+/// end of each bin is 1.1 times that of the previous bin: the resolution of `percentile`. Adding
+/// histograms is exact and does not depend on the order.
 class ErrorHistogram {
   public:
     /// First bin up to 0.1 mm, then 97 bins up to 1.04 m, then one bin for all larger errors.

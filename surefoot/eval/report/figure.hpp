@@ -68,7 +68,7 @@ struct ColorBar {
     std::string low_word;  ///< word beside the part below the centre, e.g. "unsafe"
     std::string high_word;
 };
-/// Draws the bar at the top of the legend column; returns the picture row [px] below the bar.
+/// Draws the bar above room for `key_rows` entries; returns the picture row [px] below the bar.
 int draw_color_bar(Figure& figure, const ColorBar& bar, int key_rows);
 
 enum class Symbol : std::uint8_t { hatch, body, line, ticked_line, outline, mark, square, none };

@@ -55,7 +55,7 @@ void add_health(ReportContent& content, std::span<const FrameReport> frames) {
         content.health.push_back({time_s, frame.motion.health, frame.motion.reason});
         ++counts[static_cast<std::size_t>(frame.motion.reason)];
     }
-    ReportTable table{"Messages about the motion estimate", {"reason", "frames"}, {}};
+    ReportTable table{"Health reasons of the motion estimate", {"reason", "frames"}, {}};
     for (int reason = 1; reason < kReasonCount; ++reason) {
         const int count = counts[static_cast<std::size_t>(reason)];
         if (count == 0) continue;
@@ -65,7 +65,8 @@ void add_health(ReportContent& content, std::span<const FrameReport> frames) {
     const int blind = counts[static_cast<std::size_t>(HealthReason::imu_gap)];
     if (blind > 0)
         content.reasons.push_back(fmt::format(
-            "In {} of {} frames IMU samples were missing or unusable. The motion in these frames "
+            "In at least {} of {} frames, IMU samples were missing or unusable. The motion in "
+            "these frames "
             "comes from the images alone; if the images fail too, tracking is lost at once.",
             blind,
             frames.size()));

@@ -60,7 +60,7 @@ struct ReportSection {
     std::string note = {};  ///< text below the pictures and tables
 };
 
-/// Contents of a report, in the order of the page. Empty parts are left out.
+/// Contents of a report. Empty parts are left out.
 struct ReportContent {
     std::string title;
     std::vector<std::string> summary;  ///< one sentence per line
@@ -83,8 +83,8 @@ struct ReportContent {
     std::string footer;
 };
 
-/// Adds statistics of the frames of a run: stage and frame times, health, number of points per
-/// stage, and a table of the health reasons.
+/// Adds statistics of the frames of a run: stage and frame times, health, counts of points and
+/// cells, and a table of the health reasons.
 void add_frames(ReportContent& content, std::span<const FrameReport> frames);
 
 /// Renders one self-contained HTML page: embedded pictures, no script, no external resource. The

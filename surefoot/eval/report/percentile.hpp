@@ -8,7 +8,7 @@
 
 namespace surefoot::eval {
 
-/// Value below which `fraction` of the sorted values lies, linear between the two nearest ranks.
+/// Returns the value below which `fraction` of `sorted` lies, linear between the two nearest ranks.
 [[nodiscard]] inline double percentile_of_sorted(const std::vector<double>& sorted,
                                                  double fraction) {
     SUREFOOT_ASSERT(!sorted.empty() && fraction >= 0.0 && fraction <= 1.0);

@@ -38,7 +38,7 @@ struct LayerStyle {
 /// Predefined styles; callers may change the subtitle.
 [[nodiscard]] LayerStyle elevation_style();
 [[nodiscard]] LayerStyle traversability_style(double safe_threshold);
-/// Style for one-sigma heights that are stored in m and shown in mm.
+/// Style for the sigma of heights, which is stored in m and shown in mm.
 [[nodiscard]] LayerStyle height_sigma_style();
 
 /// Returns the range of shown values as LayerStyle defines it; {0, 1} if no value is known.
@@ -58,22 +58,22 @@ struct LayerStyle {
                                    const FigureText& text,
                                    const Overlays& overlays);
 
-/// Height error live - truth in mm. Red = the map is lower than the truth, blue = higher.
+/// Draws the height error live - truth in mm. Red = the map is too low, blue = too high.
 [[nodiscard]] Picture render_error_map(const grid::GridGeometry& geometry,
                                        const grid::Layer& error_m,
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Draws white cells where the live map says safe, others black. The dot shows whether this is
-/// right: green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe.
-/// Colours of Lange 2016, section 9.2, except its red: some people confuse this red with the green.
+/// Draws white cells where the live map says safe, and black cells where it says unsafe. Dots:
+/// green = right, blue on white = unsafe rated safe, orange on black = safe rated unsafe. Colours
+/// of Lange 2016, section 9.2, except its red: some people confuse this red with the green.
 [[nodiscard]] Picture render_confusion(const grid::GridGeometry& geometry,
                                        const Image<Call>& calls,
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// Draws the same colours without title, axes and legend. Shows only the known cells of the live
-/// map and the path, at least `kThumbnailCells` wide and high. Empty if no cell is known.
+/// Draws the colours of render_confusion without title, axes and legend. Shows the cells that both
+/// maps know, and the path, at least `kThumbnailCells` wide and high. Empty without such cells.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,
@@ -82,8 +82,8 @@ inline constexpr int kThumbnailCells = 80;
 /// Explains the colours of a confusion map in words.
 inline constexpr const char* kConfusionLegend =
     "White cells are safe according to the map, black cells unsafe. Green dot: the map is right. "
-    "Blue dot on white: called safe and is NOT safe. Orange dot on black: called unsafe and is "
-    "safe. Grey cells were never seen.";
+    "Blue dot on white: the map says safe, but it is NOT safe. Orange dot on black: the map says "
+    "unsafe, but it is safe. Grey cells are not in the live map.";
 
 [[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
 

@@ -68,7 +68,7 @@ void draw_axes(Picture& picture, const Axes& axes) {
     draw_text(picture, {28.0, plot.top + 0.5 * plot.height}, name, style);
 }
 
-/// Returns the largest error of each column, so that a long run keeps its peaks.
+/// Returns the largest error of each pixel column, so that the line of a long run keeps its peaks.
 std::vector<PointPx> line_of(const Axes& axes, const std::vector<ErrorSample>& samples) {
     std::vector<PointPx> line;
     for (const ErrorSample& sample : samples) {

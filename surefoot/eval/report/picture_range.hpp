@@ -9,7 +9,7 @@ namespace surefoot::eval {
 /// True if at least one value is finite.
 [[nodiscard]] bool any_known(const Image<float>& values);
 
-/// Returns the legend of `values` in a style: range, clipping, words.
+/// Returns the colour bar of `values` in a style: range, clipped ends and words.
 [[nodiscard]] ColorBar color_bar_of(const Image<float>& values, const LayerStyle& style);
 
 }  // namespace surefoot::eval

@@ -21,7 +21,7 @@ struct HealthSample {
 };
 
 /// Escapes `text` for HTML and SVG: replaces the five special characters, and turns control
-/// characters that XML forbids into spaces.
+/// characters except line break and tab into spaces.
 [[nodiscard]] std::string escaped(const std::string& text);
 
 /// Inline SVG drawings without script or external resource. Colours come from the page's style
@@ -31,7 +31,7 @@ struct HealthSample {
 /// without samples. Returns an empty string if no stage has samples.
 [[nodiscard]] std::string stage_bars_svg(const std::vector<StageTiming>& stages);
 
-/// Draws the time of each frame; with more frames than pixels, the largest of neighbouring frames.
+/// Draws the time of each frame; with over 600 frames, the largest time of neighbouring frames.
 /// Draws `limit_ms` > 0 as a line. Returns an empty string for fewer than two frames.
 [[nodiscard]] std::string frame_times_svg(const std::vector<double>& frame_ms, double limit_ms);
 

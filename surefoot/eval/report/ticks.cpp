@@ -11,8 +11,8 @@
 namespace surefoot::eval {
 namespace {
 
-/// Relative tolerance for rounding errors of a quotient: a tick exactly on the end of the range
-/// stays.
+/// Relative tolerance for the rounding error of a quotient, so that a tick exactly at the end of
+/// the range stays.
 constexpr double kRounding = 1e-9;
 
 }  // namespace

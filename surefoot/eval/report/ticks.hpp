@@ -17,7 +17,7 @@ struct Ticks {
 /// Returns the largest 1, 2 or 5 times a power of ten that is not above `value` (> 0).
 [[nodiscard]] double nice_below(double value);
 
-/// Returns about `target` + 1 round numbers at most in [low, high]; low < high, both finite.
+/// Returns at most `target` + 1 round numbers in [low, high]; low < high, both finite.
 [[nodiscard]] Ticks nice_ticks(double low, double high, int target);
 
 }  // namespace surefoot::eval

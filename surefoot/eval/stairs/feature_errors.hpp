@@ -8,8 +8,8 @@
 
 namespace surefoot::eval {
 
-/// Limits for a match of a found with a true feature: rotation and offset of the middle. The offset
-/// has a part along the line and a part across it (along the path over the feature).
+/// Limits for a match of a found feature with a true feature: rotation and offset of the middle.
+/// The offset has a part along the line and a part across it (along the path over the feature).
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
@@ -21,7 +21,7 @@ struct MatchErrors {
     std::size_t count = 0;
     double mean_m = 0.0;     ///< NaN without pairs, like the other figures
     double std_m = 0.0;      ///< standard deviation about the mean, divisor n
-    double max_abs_m = 0.0;  ///< largest magnitude of an error
+    double max_abs_m = 0.0;  ///< largest |error|
 };
 
 /// Errors of one kind of feature. Pairs are formed nearest first; a feature is in at most one pair.
@@ -34,7 +34,7 @@ struct KindErrors {
     std::vector<std::size_t> missed_at;       ///< indices of missed features in the input list
     std::vector<std::size_t> extra_at;
     MatchErrors across;  ///< position error along the path over the feature
-    MatchErrors height;  ///< error of a flight's riser; of a door's sill
+    MatchErrors height;  ///< error of the height (flight: riser; door: sill)
 
     [[nodiscard]] double recall() const;     ///< NaN without a true feature
     [[nodiscard]] double precision() const;  ///< NaN without a found feature

@@ -20,11 +20,11 @@ inline constexpr Rgb8 kDoor = palette::kGreen;
 inline constexpr Rgb8 kEdge = palette::kSoftInk;
 }  // namespace ground_palette
 
-/// Formats a length with one sigma in whole mm: "180 +- 1 mm". Uses tenths if sigma is below 1 mm,
-/// and "?" if the length is not finite.
+/// Formats a length with one sigma in whole mm: "180 +- 1 mm". Uses tenths if sigma is below 0.95
+/// mm, and "?" if the length is not finite.
 [[nodiscard]] std::string length_text(double length_m, double sigma_m);
 
-/// A flight in words: "up, 4 steps, 1.00 m wide\n180 +- 1 mm by 310 +- 2 mm" (riser by going).
+/// Describes a flight: "up, 4 steps, 1.00 m wide\n180 +- 1 mm by 310 +- 2 mm" (riser by going).
 [[nodiscard]] std::string flight_text(const stairs::Flight& flight);
 
 /// Adds edges, flights, drops, kerbs, sills and doors as lines to `overlays`.

@@ -94,9 +94,9 @@ double path_length(const Eigen::Matrix3Xd& points_m) {
 }
 
 /// Returns the pair that ends an interval starting at pair `start`. For an interval of 0, this is
-/// the next pair. Otherwise it is the pair nearest to `interval_ns` later, at most half an interval
-/// off. Intervals that reach beyond the last pair are left out: a shorter interval would flatter
-/// the error.
+/// the next pair. Otherwise it is the pair nearest to the time `interval_ns` later; its time may
+/// differ by half an interval. Returns nullopt for intervals that reach beyond the last pair:
+/// shorter intervals would make the error look smaller.
 std::optional<std::size_t> interval_end(const Trajectory& estimate,
                                         const std::vector<PosePair>& pairs,
                                         std::size_t start,

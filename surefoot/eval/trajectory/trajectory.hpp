@@ -11,7 +11,7 @@
 
 namespace surefoot::eval {
 
-/// How the estimate's world frame is moved onto the truth's before positions are compared.
+/// Motion of the estimated world frame onto the true world frame before positions are compared.
 enum class Alignment : std::uint8_t {
     se3,   ///< rotation and translation (Umeyama 1991, without scale)
     yaw,   ///< translation and rotation about z: both world frames have z up
@@ -21,7 +21,7 @@ enum class Alignment : std::uint8_t {
 struct EvalTrajectoryConfig {
     Alignment align = Alignment::se3;
     double tolerance_s = 0.010;   ///< largest time difference of a matched pair
-    double rpe_interval_s = 0.0;  ///< time of relative errors; 0 = to the next matched pose
+    double rpe_interval_s = 0.0;  ///< time span of a relative error; 0 = to the next pair
     void describe(ConfigVisitor& visitor);
 };
 
@@ -54,22 +54,22 @@ struct PosePair {
 /// Errors over the matched poses (Sturm et al. 2012 for ATE and RPE).
 struct TrajectoryErrors {
     double ate_rmse_m = 0.0;        ///< rms position error after alignment
-    double rpe_trans_rmse_m = 0.0;  ///< rms translation of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j)
+    double rpe_trans_rmse_m = 0.0;  ///< rms translation of relative_error
     double rpe_rot_rmse_deg = 0.0;
     /// 100 |t| / path length; t = error of the motion from the first to the last matched pose,
     /// which needs no alignment. NaN if the true path is shorter than 1 mm.
     double drift_percent = 0.0;
     int matched = 0;
     double path_length_m = 0.0;  ///< length of the path through the matched true positions
-    double end_error_m = 0.0;    ///< |t| of drift_percent
+    double end_error_m = 0.0;    ///< |t|, see drift_percent
     Pose T_truth_estimate;       ///< alignment of the estimate with the truth
     std::vector<PosePair> pairs;
     std::vector<double> position_error_m;  ///< one error per pair, after alignment
 };
 
 /// Compares an estimated trajectory with the truth; both give poses of the same body. If the truth
-/// has no stamps (KITTI), the caller assigns the estimate's stamps first. Errors: a pose that is
-/// not finite; too few poses that match in time (3 for se3, otherwise 2).
+/// has no stamps (KITTI), the caller first assigns the stamps of the estimate. Errors: a pose is
+/// not finite; too few poses match (3 for se3, else 2); no pairs are rpe_interval_s apart.
 [[nodiscard]] Result<TrajectoryErrors> evaluate_trajectory(const Trajectory& estimate,
                                                            const Trajectory& truth,
                                                            const EvalTrajectoryConfig& config);
