@@ -55,7 +55,7 @@ struct CellMeasurement {
 
 // Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< number of steps; 3 end within a few percent of the window
+inline constexpr int kClimbs = 3;    ///< steps of a climb; 3 end within a few percent of the window
 inline constexpr int kMaxTries = 4;  ///< start heights tried before a cell counts as pure scatter
 
 /// Returns the number of points that a surface needs in a cell of `n` points.
@@ -78,8 +78,8 @@ struct Surface {
     float scatter_m2 = 0.0F;
 };
 
-/// Computes a surface from three sums over `points` > 0 points: of the offsets from the centre, of
-/// their squares, and of the variances.
+/// Computes a surface from sums over `points` > 0 points: the sum of the offsets from the centre,
+/// the sum of their squares, and the sum of the variances.
 [[nodiscard]] inline Surface surface_of(
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
     const auto n = static_cast<float>(points);
@@ -99,7 +99,7 @@ struct Surface {
                               config.systematic_sigma_m * config.systematic_sigma_m);
 }
 
-/// Result for a cell in which no surface has enough points: a vertical face, or nothing (0 points).
+/// Returns the result for a cell without a surface of enough points: a vertical face, or 0 points.
 /// `seen` holds the extremes.
 [[nodiscard]] CellMeasurement face_of(const ReductionConfig& config,
                                       const CellMeasurement& seen,

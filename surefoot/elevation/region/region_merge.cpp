@@ -148,14 +148,16 @@ std::optional<std::string> problem_of(const MapRegion& into,
     if (auto problem = from.problem()) return problem;
     if (into.resolution_m != from.resolution_m) {
         return fmt::format(
-            "maps with cells of {} m and of {} m cannot be merged; give maps of one cell size",
+            "maps with cells of {} m and of {} m cannot be merged; give maps with the same cell "
+            "size",
             into.resolution_m,
             from.resolution_m);
     }
     if (into.frame != from.frame) {
-        return fmt::format("one map is in frame {}, the other in frame {}; give maps in one frame",
-                           into.frame,
-                           from.frame);
+        return fmt::format(
+            "one map is in frame {}, the other in frame {}; give maps of the same frame",
+            into.frame,
+            from.frame);
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(

@@ -34,8 +34,8 @@ struct MergeCounts {
 ///
 /// Stamp, pose and configuration come from the region with the later stamp. The cells of the other
 /// region must include the motion between the stamps (`pay_for_motion`). Fails without changes if
-/// resolution or frame differ, or if the merged region is too large. With independent errors only
-/// the frame names must match: the caller guarantees that they mean the same place.
+/// resolution or frame differ, or if the merged region is too large. With independent errors,
+/// `frame_since_ns` may differ: the caller guarantees that both frames are at the same place.
 [[nodiscard]] Result<MergeCounts> merge(grid::MapRegion& into,
                                         const grid::MapRegion& from,
                                         const FusionConfig& fusion,

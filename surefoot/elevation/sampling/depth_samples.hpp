@@ -45,7 +45,7 @@ class DepthSampler {
     double cy_px_ = 0.0;
     Eigen::Matrix3d R_odom_camera_ = Eigen::Matrix3d::Identity();
     std::vector<float> nothing_px_;  ///< a row of NaN
-    std::vector<float> padded_px_;   ///< a row of disparities between NaN, per block
+    std::vector<float> padded_px_;   ///< per block: a row of disparities, NaN on both sides
     std::vector<RowCounts> counts_;  ///< one entry per block
 };
 

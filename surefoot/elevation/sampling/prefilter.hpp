@@ -13,7 +13,7 @@
 
 namespace surefoot::elevation {
 
-/// Filters that remove points before a cloud reaches the map; each has its own switch.
+/// Filters that remove points before they reach the map. Each filter has its own switch.
 struct PrefilterConfig {
     bool range = true;
     double min_range_m = 0.3;

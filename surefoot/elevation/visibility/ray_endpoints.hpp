@@ -14,7 +14,7 @@ namespace surefoot::elevation {
 ///
 /// Lines to the floor under a table pass below the top, so an observed floor does not contradict
 /// the top. Only a line through the remembered top contradicts it. All lines start at the camera,
-/// so the line through a position is known. The cells along this line tell if it ended beyond it.
+/// so the line through a position is known. The cells along the line show if it ended farther away.
 class RayEndpoints {
   public:
     /// Starts a frame with the camera at `camera_m` in odom, without any observed cell.
