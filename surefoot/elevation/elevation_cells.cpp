@@ -117,7 +117,8 @@ void ElevationCells::update(std::size_t cell,
     }
     if (result.outcome == FusionOutcome::inflated) {
         const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
-        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not by motion
+        // The motion did not cause this growth.
+        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;
         var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
             see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
@@ -157,7 +158,7 @@ bool ElevationCells::see_through(std::size_t cell) {
     std::uint16_t& evidence = seen_through_.data()[cell];
     evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
     if (evidence < visibility.frames * kGone) return false;
-    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);  // so it never overflows
+    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);  // so the sum never overflows
     return true;
 }
 

@@ -136,8 +136,8 @@ class ElevationCells {
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: the object stands on the ground
     /// Known cell: lower end of its surface. Unknown cell: lowest line of sight over the cell.
     ElevationLayers::Layer bottom_m_;
-    /// If a share s of the observations shows a surface, n misses in a row have the probability (1
-    /// - s)^n. So it counts as gone after 1/s times as many frames as with s = 1.
+    /// If a share s of the observations shows a surface, the probability of n misses in a row is
+    /// (1 - s)^n. So the surface is gone after 1/s times as many frames as with s = 1.
     grid::SlidingLayer<std::uint8_t> steady_;         ///< share s at the last agreement [1/16]
     grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` in contradicting frames
 };

@@ -93,17 +93,18 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                     1000000,
                     "smallest number of squares of 8 x 8 cells that a height correction needs; a "
                     "square counts if at least four of its cells show the offset");
-    visitor.number("min_spread_m",
-                   min_spread_m,
-                   0.0,
-                   100.0,
-                   "smallest standard deviation of the positions of the squares that min_tiles "
-                   "counts, along their longer axis");
+    visitor.number(
+        "min_spread_m",
+        min_spread_m,
+        0.0,
+        100.0,
+        "smallest standard deviation of the positions of the squares of 8 x 8 cells that "
+        "show the height offset, along their longer axis");
     visitor.number("agreeing_share",
                    agreeing_share,
                    0.5,
                    1.0,
-                   "smallest share of the cells that min_cells counts that must show the same "
+                   "smallest share of the counted cells (see min_cells) that must show the same "
                    "height offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,

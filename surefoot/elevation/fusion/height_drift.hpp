@@ -60,8 +60,8 @@ struct HeightDriftReport {
 /// observes old ground again shows the drift: all its heights differ from the map's by the same
 /// offset.
 ///
-/// The offset is the median of measurement - map over old, level cells, weighted by the variances
-/// of both without the motion's part. It uses the older half of these cells (by alignment). It
+/// The offset is the median of measurement - map over old, level cells, weighted by the inverse
+/// variance without the motion's part. It uses the older half of these cells (by alignment). It
 /// holds for all cells aligned no later than the last cell of that half: they drifted together, and
 /// their earlier drift has mean zero. It does not hold for younger cells.
 ///

@@ -169,7 +169,7 @@ std::optional<std::string> problem_of(const MapRegion& into,
             from.frame_since_ns);
     }
     if (const auto problem = grid::united(into.box, from.box).problem())
-        return "a map around both would have " + *problem;
+        return "no map fits around both regions: " + *problem;
     return std::nullopt;
 }
 

@@ -59,8 +59,8 @@ void PrefilterConfig::describe(ConfigVisitor& visitor) {
                    min_height_m,
                    -100.0,
                    100.0,
-                   "smallest height of a cell over base_link; lower ground gets no height and "
-                   "counts as a drop; used if height is true");
+                   "smallest height of a cell over base_link; lower ground gets no height and is "
+                   "evidence of a drop; used if height is true");
     visitor.number("max_height_m",
                    max_height_m,
                    -100.0,
