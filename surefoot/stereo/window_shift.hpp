@@ -21,14 +21,14 @@ inline constexpr int kShiftHalf_px = 7;
 /// pixel. `start` is the whole-pixel shift.
 ///
 /// Method: Gauss-Newton on the grey values (Lucas and Kanade 1981); steps use only gradients of the
-/// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the slant of the
-/// columns along both sides of the window (most of a pixel per window for ground seen from above).
-/// A parabola through a correlation prefers whole pixels: with texture of two pixels it loses a
-/// tenth of every fraction. Here only the interpolation could do so, and it uses six pixels. Noise
-/// adds no bias: the noise of the left gradients is independent of the right image's noise.
+/// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the change of the
+/// column shift along both sides of the window (nearly a pixel for ground seen from above). A
+/// parabola through a correlation prefers whole pixels: with texture of two pixels it loses a tenth
+/// of every fraction. Here only the interpolation could, and it uses six pixels. Noise adds no
+/// bias: the noise of the left gradients is independent of the right image's noise.
 ///
-/// Returns nothing if the window leaves an image, has no texture in some direction, or ends
-/// farther than one pixel from `start`.
+/// Returns nothing if the window leaves an image, has no texture in some direction, or ends farther
+/// than one pixel from `start`. Also if the slant is too large or the steps do not end.
 [[nodiscard]] std::optional<WindowShift> refine_shift(ImageView<const std::uint8_t> left,
                                                       ImageView<const std::uint8_t> right,
                                                       int u_px,
