@@ -22,7 +22,7 @@ constexpr int kOverheadMost = 8;
 /// observation.
 constexpr float kNewObservation = 0.25F;
 constexpr float kFirstObservation = 0.5F;
-/// Evidence per frame that a surface is gone, for a surface that every observation showed.
+/// Evidence that one contradicting frame adds against a surface that every observation showed.
 constexpr int kGone = 16;
 
 }  // namespace
@@ -158,7 +158,8 @@ bool ElevationCells::see_through(std::size_t cell) {
     std::uint16_t& evidence = seen_through_.data()[cell];
     evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
     if (evidence < visibility.frames * kGone) return false;
-    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);  // so the sum never overflows
+    // The limit keeps the sum within 16 bits.
+    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);
     return true;
 }
 

@@ -21,7 +21,7 @@ struct DescribeConfig {
     /// cannot fill the list alone, so walls, doors and objects always contribute.
     int cell_features = 6;
     double max_outlier_probability = 0.3;  ///< largest outlier probability of a feature's disparity
-    double min_disparity_px = 2.0;         ///< excludes points beyond about 20 m of a ZED
+    double min_disparity_px = 2.0;         ///< excludes points more than about 20 m from a ZED
 };
 
 /// Detects corners of the rectified left image that have depth, spread over the image. Describes

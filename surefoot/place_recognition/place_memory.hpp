@@ -22,7 +22,7 @@ struct MemoryConfig {
     double max_rival = 0.5;
 };
 
-/// Result of comparing one view with all keyframes.
+/// Result of comparing one view with the most similar keyframes.
 struct Answer {
     Refusal refusal = Refusal::no_candidate;
     int keyframe = -1;  ///< keyframe that explains the view best, even if refused

@@ -36,8 +36,8 @@ struct TrackerConfig {
 struct Sighting {
     std::int64_t time_ns = 0;
     Refusal refusal = Refusal::none;
-    int keyframe = -1;   ///< the best stored keyframe
-    bool saved = false;  ///< true: of the saved place; false: of this run
+    int keyframe = -1;   ///< number of the best stored keyframe; -1 = none
+    bool saved = false;  ///< true: `keyframe` is of the saved place; false: of this run
     Comparison comparison;
     std::optional<Pose> T_map_odom;  ///< set if the refusal is none
 };

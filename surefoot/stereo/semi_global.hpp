@@ -55,8 +55,8 @@ void search_plainly(const SemiGlobalConfig& config,
                     Winners& out);
 
 /// Fast version of search_plainly, with the same bytes. The lanes hold 64 rows (for paths along
-/// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only 64 x
-/// 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
+/// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only
+/// 64 x 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
 /// processor. Threads share strips of rows. After the first pair of a size nothing is allocated.
 class SemiGlobalSearch {
   public:

@@ -55,8 +55,8 @@ struct CellMeasurement {
 
 // Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< steps of a climb; 3 end within a few percent of the window
-inline constexpr int kMaxTries = 4;  ///< start heights tried before a cell counts as pure scatter
+inline constexpr int kClimbs = 3;    ///< steps; after 3 the error is a few % of the window
+inline constexpr int kMaxTries = 4;  ///< largest number of start heights that are tried per cell
 
 /// Returns the number of points that a surface needs in a cell of `n` points.
 [[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {

@@ -12,7 +12,7 @@ namespace surefoot::elevation {
 
 /// Error model of one measured point.
 enum class SensorModel : std::uint8_t {
-    matcher,            ///< Surefoot: disparity sigma of the matcher per pixel
+    matcher,            ///< Surefoot: uses the disparity sigma that the matcher gives each pixel
     perfect,            ///< no sensor error; the pose error stays
     laser,              ///< Pomerleau 2012
     kinect,             ///< structured light, Nguyen 2012

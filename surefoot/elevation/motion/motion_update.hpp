@@ -31,7 +31,7 @@ class MotionNoise {
     /// Returns the variance that the motion adds to the height of a cell, never negative.
     [[nodiscard]] double height_var_m2(double x_m, double y_m) const noexcept;
     /// Returns the horizontal variance in its worst direction: the larger eigenvalue of
-    /// cov(dx, dy), never negative. Its sum over motions is not below that of the whole motion.
+    /// cov(dx, dy), never negative. The sum over several motions is an upper limit.
     [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
 
     /// Cells of a row along x, from the body in odom axes.

@@ -88,8 +88,8 @@ KnownCell agreed(const FusionConfig& fusion,
         }
         cell.count = std::max(later.count, earlier.count);
     } else {
-        // `fuse` without an upper limit: a variance above the limit of the live map stays
-        // unchanged.
+        // Calls `fuse` without an upper limit, so that it does not lower a variance above the limit
+        // of the live map.
         FusionConfig unbounded = fusion;
         unbounded.max_height_var_m2 = std::numeric_limits<double>::infinity();
         const Height fused = fuse(unbounded, later.height(), earlier.height()).cell;
