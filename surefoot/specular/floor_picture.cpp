@@ -16,7 +16,7 @@ constexpr double kNearest_m = 0.25;  ///< smallest depth along the optical axis
 constexpr unsigned kRowPhases = 4;
 /// A measured point belongs to the plane up to this distance above or below the plane.
 constexpr double kHeightTolerance_m = 0.06;
-/// Largest weight of a cell's mean. A sample at a depth of one metre adds a weight of 1, so the
+/// Largest weight of a cell's mean. A sample at a depth of one metre adds a weight of 1. So the
 /// mean follows a change of the floor within about this many samples.
 constexpr float kMostWeight = 8.0F;
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();

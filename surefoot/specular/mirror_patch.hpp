@@ -65,7 +65,7 @@ class MirrorPatch {
 };
 
 /// Computes the detail of a brightness image (NaN = unknown; a row is a line). Divides the
-/// Laplacian by its mean strength in the tile and in the whole image, limits the result, and
+/// Laplacian by its mean strength in the tile and in the whole image. Limits the result, and
 /// subtracts the means along and across the lines. `work`: scratch memory of the same size.
 void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
 

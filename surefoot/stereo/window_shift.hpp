@@ -27,8 +27,8 @@ inline constexpr int kShiftHalf_px = 7;
 /// of every fraction. Here only the interpolation can err so; it uses six pixels. Noise adds no
 /// bias: the noise of the left gradients is independent of the right image's noise.
 ///
-/// Returns nothing if the window leaves an image, has no texture in some direction, slants too much
-/// or ends farther than one pixel from `start`, or if the steps do not converge.
+/// Returns nothing if the window leaves an image or has no texture in some direction. Also returns
+/// nothing if it slants too much, ends more than one pixel from `start`, or does not converge.
 [[nodiscard]] std::optional<WindowShift> refine_shift(ImageView<const std::uint8_t> left,
                                                       ImageView<const std::uint8_t> right,
                                                       int u_px,

@@ -43,10 +43,10 @@ struct CellMeasurement {
 /// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of
 /// the heights, so single outliers do not count. It climbs to the centre of the points around the
 /// start (mean shift). If too few points share that height, it tries the next lower start. The
-/// variance is the larger of the mean variance and the scatter of the points, divided by the number
-/// of independent errors, plus the systematic part. Many points without a common height are a
-/// vertical face (a wall, a person) with the height of the upper quantile; few such points give no
-/// result. `z_m` and `var_m2` must be finite and of equal length.
+/// variance is the sum of two parts. One is the systematic part. The other is the larger of mean
+/// variance and scatter, divided by the number of independent errors. Many points without a common
+/// height are a vertical face (a wall, a person) with the height of the upper quantile; few such
+/// points give no result. `z_m` and `var_m2` must be finite and of equal length.
 ///
 /// This is the reference version; `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
@@ -78,8 +78,8 @@ struct Surface {
     float scatter_m2 = 0.0F;
 };
 
-/// Computes a surface from sums over `points` > 0 points: the sum of the offsets from the centre,
-/// the sum of their squares, and the sum of the variances.
+/// Computes a surface from sums over `points` > 0 points. `sum_m`: offsets from the centre.
+/// `sum_sq_m2`: squares of these offsets. `sum_var_m2`: variances.
 [[nodiscard]] inline Surface surface_of(
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
     const auto n = static_cast<float>(points);

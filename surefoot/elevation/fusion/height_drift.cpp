@@ -61,7 +61,7 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
         1,
         100000,
         "a cell is old after this number of frames with an uncertain motion (covariance above 0) "
-        "since an observation last agreed with it, if its height error also reaches min_drift_m");
+        "since its last agreeing observation; its height error must also reach min_drift_m");
     visitor.number(
         "min_drift_m",
         min_drift_m,

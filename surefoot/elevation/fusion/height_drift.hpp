@@ -65,10 +65,10 @@ struct HeightDriftReport {
 /// holds for all cells aligned no later than the last cell of that half: they drifted together, and
 /// their earlier drift has mean zero. It does not hold for younger cells.
 ///
-/// Sigma covers the errors that all heights of a frame share: `systematic_sigma_m` (of frame and
-/// map), tilt times distance, and depth scale times camera height. Sigma also covers the ground
-/// slope times the horizontal drift, and the motion since the residuals were taken. The random
-/// part comes from the scatter of tiles; cells of a tile share the errors of the matcher.
+/// Sigma covers the errors that all heights of a frame share. These are `systematic_sigma_m` (of
+/// frame and map), tilt times distance, and depth scale times camera height. Sigma also covers the
+/// ground slope times the horizontal drift, and the motion since the residuals were taken. The
+/// random part comes from the scatter of tiles; cells of a tile share the errors of the matcher.
 class HeightDrift {
   public:
     struct Frame {

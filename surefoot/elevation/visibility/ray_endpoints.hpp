@@ -28,8 +28,8 @@ class RayEndpoints {
     /// Returns the observed height of a cell; NaN = not observed.
     [[nodiscard]] float z_m(std::size_t cell) const noexcept { return z_m_[cell]; }
     /// True if lines of sight passed at `low_m` and at `high_m` over the middle of a cell and ended
-    /// beyond it: the space between is free. In front of a surface's near edge only the lower line
-    /// passes, behind its far edge only the upper one; inside the surface neither passes.
+    /// beyond it. Then the space between is free. In front of a surface's near edge only the lower
+    /// line passes, behind its far edge only the upper one; inside the surface neither passes.
     [[nodiscard]] bool passed_through(grid::Cell cell, float low_m, float high_m) const;
 
   private:
