@@ -14,7 +14,7 @@ class RowBlocks {
     explicit RowBlocks(const grid::GridGeometry& geometry) : nx_(geometry.nx), ny_(geometry.ny) {}
 
     [[nodiscard]] int count() const noexcept { return (ny_ + kRows - 1) / kRows; }
-    /// Return the first row of a block, and the row after its last row.
+    /// `first` is the first row of a block, `last` the row after the block's last row.
     [[nodiscard]] int first(int block) const noexcept { return block * kRows; }
     [[nodiscard]] int last(int block) const noexcept { return std::min(first(block) + kRows, ny_); }
     [[nodiscard]] static int of_row(int iy) noexcept { return iy / kRows; }

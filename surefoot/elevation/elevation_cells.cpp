@@ -10,10 +10,10 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Trust in an overhead object: an observation adds two, a line of sight through the object
-/// subtracts one. Two observations are enough; a single observation may be a wrong match. A former
-/// height of the cell with more than one observation gets the largest trust. All three values are
-/// an ASSUMPTION.
+/// Trust in an overhead object. An observation adds kOverheadSeen; a line of sight through the
+/// object subtracts one. The object limits the clearance from kOverheadSure on. So two observations
+/// are enough; a single observation may be a wrong match. A former height of the cell with more
+/// than one observation gets the largest trust, kOverheadMost. All three values are an ASSUMPTION.
 constexpr int kOverheadSeen = 2;
 constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
@@ -22,7 +22,7 @@ constexpr int kOverheadMost = 8;
 /// observation.
 constexpr float kNewObservation = 0.25F;
 constexpr float kFirstObservation = 0.5F;
-/// Evidence per frame that a surface is gone, for a surface that every observation showed.
+/// Evidence that one contradicting frame adds against a surface that every observation showed.
 constexpr int kGone = 16;
 
 }  // namespace
@@ -117,7 +117,8 @@ void ElevationCells::update(std::size_t cell,
     }
     if (result.outcome == FusionOutcome::inflated) {
         const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
-        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not from motion
+        // The motion did not cause this growth.
+        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;
         var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
             see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
@@ -157,7 +158,8 @@ bool ElevationCells::see_through(std::size_t cell) {
     std::uint16_t& evidence = seen_through_.data()[cell];
     evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
     if (evidence < visibility.frames * kGone) return false;
-    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);  // never overflows
+    // The limit keeps the sum within 16 bits.
+    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);
     return true;
 }
 

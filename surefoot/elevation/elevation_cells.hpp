@@ -48,7 +48,7 @@ class ElevationCells {
         float* horizontal_drift_m;
     };
     [[nodiscard]] Memory memory_of_row(int iy) noexcept;
-    /// Call once for every uncertain motion.
+    /// Call once for every uncertain motion (with a covariance that is not zero).
     void count_motion() noexcept { ++motions_; }
     [[nodiscard]] std::uint32_t motions() const noexcept { return motions_; }
     [[nodiscard]] CellAlignment alignment() noexcept {
@@ -63,7 +63,7 @@ class ElevationCells {
                 const CellObservation& seen,
                 const FrameObservation& look,
                 FusionCounts& counts);
-    /// True if the height of the cell is clearly above a line of sight over the cell.
+    /// True if the line is below the cell's height by more than the margin of `visibility`.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
     /// Counts one frame whose line of sight passes through the surface of the cell. Returns true
     /// after enough such frames without an agreeing observation: the surface is gone. Call only for
@@ -78,9 +78,9 @@ class ElevationCells {
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// Writes the height of the highest visible surface of each cell. This may be the lowest
-    /// observed top of an object that stands on known ground in two frames (a person stepped in).
-    /// NaN = unknown cell. `out_m` takes the size of the layers.
+    /// Writes the height of the highest visible surface of each cell. If two frames observed an
+    /// object that stands on known ground (a person), this is the lowest observed top of the
+    /// object. NaN = unknown cell. `out_m` takes the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// Notes that a line of sight passed through the lowest object above a cell.
     void see_no_more_above(std::size_t cell);
@@ -108,7 +108,7 @@ class ElevationCells {
     void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
-    /// Returns the first trust in the present height, if this height turns out to hang over ground.
+    /// Returns the trust that the present height gets when it becomes an overhead object.
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     [[nodiscard]] bool is_sure_of_overhead(std::size_t cell) const;
@@ -136,8 +136,8 @@ class ElevationCells {
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: the object stands on the ground
     /// Known cell: lower end of its surface. Unknown cell: lowest line of sight over the cell.
     ElevationLayers::Layer bottom_m_;
-    /// If a share s of the observations shows a surface, n misses in a row have the probability
-    /// (1 - s)^n. So such a surface counts as gone only after 1/s times as many frames.
+    /// If a share s of the observations shows a surface, the probability of n misses in a row is
+    /// (1 - s)^n. So the surface is gone after 1/s times as many frames as with s = 1.
     grid::SlidingLayer<std::uint8_t> steady_;         ///< share s at the last agreement [1/16]
     grid::SlidingLayer<std::uint16_t> seen_through_;  ///< sum of `steady_` in contradicting frames
 };

@@ -20,9 +20,9 @@ namespace surefoot::elevation {
 struct ElevationConfig {
     double resolution_m = 0.025;
     double length_m = 6.0;
-    /// Error of the camera's roll and pitch in one frame: mounting, vibration, rolling shutter.
+    /// 1-sigma error of the camera's roll and pitch in one frame: mounting, vibration, shutter.
     double camera_tilt_sigma_rad = 0.001;
-    /// A surface this far above the height of a cell hangs over it: a table top, a lintel.
+    /// A surface that is higher than this above a cell hangs over it: a table top, a lintel.
     double min_overhead_m = 0.3;
     FusionConfig fusion;
     ReductionConfig reduction;

@@ -19,8 +19,8 @@ struct ElevationLayers {
     grid::SlidingLayer<std::int64_t>
         seen_ns;               ///< last time that a measurement agreed with the height; 0 = never
     Layer horizontal_drift_m;  ///< 1 sigma of the body's horizontal drift since `seen_ns`
-    Layer highest_m;           ///< robust highest point in the cell since the height was first set
-    Layer lowest_m;            ///< robust lowest point: a wall or an edge spans more than a floor
+    Layer highest_m;           ///< robust highest point in the cell since the height was set
+    Layer lowest_m;            ///< robust lowest point; far below `highest_m` for a wall or an edge
     Layer clearance_m;         ///< distance from height to lowest object above; NaN = no object
     /// Unknown cells only: the ground is lower than this height. Lines of sight passed here in at
     /// least two frames, because a single frame may hold a wrong match. The layer is evidence of
@@ -29,8 +29,8 @@ struct ElevationLayers {
     /// Share of agreeing observations among about the last four of the cell; 1/2 right after the
     /// height was set.
     Layer confidence;
-    /// Measured points divided by the points that level ground would give in the same observations
-    /// (Oniga and Nedevschi 2010). A wall gives many times 1. NaN = measured without a camera.
+    /// Measured points divided by the points that level ground would give in the same views (Oniga
+    /// and Nedevschi 2010). A wall gives far more than 1. NaN = no camera measured it from above.
     Layer density_ratio;
 };
 

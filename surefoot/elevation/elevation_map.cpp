@@ -15,8 +15,8 @@
 namespace surefoot::elevation {
 namespace {
 
-/// A cell with this many times the points of level ground at its lowest height is a face, seen from
-/// the side. The floor under a table top and the top together give at most twice as many.
+/// A cell with more than this many times the points of level ground at its lowest height is a face,
+/// seen from the side. The floor under a table top and the top together give at most twice as many.
 /// ASSUMPTION.
 constexpr float kFaceDensity = 3.0F;
 
@@ -27,8 +27,8 @@ Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
     return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
 }
 
-/// False for a measurement whose sums left the range of a float. Such a measurement is neither a
-/// height nor a ray endpoint.
+/// False if no point gave the measurement, or if its sums left the range of a float. Such a
+/// measurement gives neither a height nor a ray endpoint.
 bool says_something(const CellMeasurement& measured) {
     return measured.points > 0 && std::isfinite(measured.z_m) && std::isfinite(measured.var_m2);
 }

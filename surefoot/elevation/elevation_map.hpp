@@ -51,7 +51,7 @@ class ElevationMap {
                      const DepthImage& depth,
                      std::int64_t time_ns,
                      Executor& executor = serial());
-    /// Fuses a cloud, as `add` fuses an image. Does not count points that are not finite.
+    /// Fuses a cloud, as `add` fuses an image. Skips invalid points (see `points_from_cloud`).
     FusionCounts add_points(std::span<const MeasuredPoint> points,
                             const Pose& T_body_sensor,
                             const Pose& T_odom_body,
@@ -60,11 +60,11 @@ class ElevationMap {
     /// Fills only unknown cells, from an earlier map in this odom. Returns the number of filled
     /// cells.
     ///
-    /// A remembered map is as accurate as its placement. `placement_covariance` belongs to the body
-    /// at `T_odom_body` in the region's frame (right perturbation, see pose.hpp). It blurs every
-    /// cell like a motion does. `min_height_var_m2` and the horizontal variance of rounding to a
-    /// cell (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells becomes 0,
-    /// because clocks differ. Allocates; do not call it for every frame.
+    /// Every cell gets the errors of the placement. `placement_covariance` belongs to the body at
+    /// `T_odom_body` in the region's frame (right perturbation, see pose.hpp). It blurs every cell
+    /// like a motion does. `min_height_var_m2` and the horizontal variance of rounding to a cell
+    /// (resolution^2 / 12 per axis) are always added. `seen_ns` of the cells becomes 0, because
+    /// clocks differ. Allocates; do not call it for every frame.
     [[nodiscard]] Result<std::int64_t> insert(const grid::MapRegion& region,
                                               const Pose& T_odom_body,
                                               const Matrix6& placement_covariance);
@@ -75,8 +75,8 @@ class ElevationMap {
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
     /// Writes the highest surface of each cell in odom, for display and rating. The surface is
     /// `height_m`, or the top of an object that two frames observed on known ground. `height_m`
-    /// then stays the ground until enough frames contradict it; `clearance_m` tells how low the
-    /// object begins. NaN = unknown. Does not allocate if `out_m` has the size of the map.
+    /// then stays the ground until enough frames contradict it; `clearance_m` is the distance from
+    /// the ground to this top. NaN = unknown. Does not allocate if `out_m` has the size of the map.
     void surface(grid::Layer& out_m) const { cells_.surface(out_m); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;

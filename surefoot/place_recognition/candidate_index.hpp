@@ -26,7 +26,7 @@ class CandidateIndex {
     CandidateIndex();
     /// Adds a keyframe; its number must be below kMostKeyframes.
     void add(int keyframe, std::span<const Feature> features);
-    /// Returns the keyframes below `end`, most votes first. Of equal ones the older comes first.
+    /// Returns the keyframes below `end` with votes, most votes first. Equal votes: older first.
     [[nodiscard]] std::vector<Candidate> find(std::span<const Feature> features, int end) const;
 
   private:

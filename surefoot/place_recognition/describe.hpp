@@ -17,15 +17,15 @@ struct DescribeConfig {
     int corners = 6000;
     int grid_columns = 12;  ///< features are spread over this grid of cells
     int grid_rows = 8;
-    /// Most features per cell. The cells of a floor (about two thirds of the image) cannot fill the
-    /// list alone, so walls, doors and objects always contribute.
+    /// Largest number of features per cell. The cells of a floor (about two thirds of the image)
+    /// cannot fill the list alone, so walls, doors and objects always contribute.
     int cell_features = 6;
     double max_outlier_probability = 0.3;  ///< largest outlier probability of a feature's disparity
-    double min_disparity_px = 2.0;         ///< excludes points beyond about 20 m of a ZED
+    double min_disparity_px = 2.0;         ///< excludes points more than about 20 m from a ZED
 };
 
 /// Detects corners of the rectified left image that have depth, spread over the image. Describes
-/// them. Returns at most kMostFeatures, in an order that depends on the image alone.
+/// them. Returns at most kMostFeatures, in an order that depends on these inputs alone.
 ///
 /// Method: oriented BRIEF (Rublee et al. 2011, ORB) without the orientation. The machine stands
 /// upright, so a rotated pattern in the image is another object. The descriptors tolerate rotations

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kNone = 257;  ///< larger than any distance
 
-/// Returns the index of the smallest distance in a row or column. Returns -1 if that distance is
-/// not clearly the smallest.
+/// Returns the index of the smallest distance in a row or column. Returns -1 if that distance
+/// exceeds the limit or is not clearly the smallest.
 int best_of(const MatchConfig& config,
             std::span<const Feature> others,
             std::span<const std::uint16_t> distances,

@@ -33,7 +33,8 @@ std::optional<std::string> rig_problem(const camera::RectifiedRig& rig) {
     if (!in(rig.baseline_m, 10.0))
         return fmt::format("a baseline of {} m; it must be above 0 and at most 10", rig.baseline_m);
     if (!is_rigid(rig.T_body_camera))
-        return "a camera pose in base_link that is not finite, not rigid or too far from base_link";
+        return "a camera pose in base_link that is not finite, not rigid or more than 10 km from "
+               "base_link";
     return std::nullopt;
 }
 
@@ -66,7 +67,7 @@ std::optional<std::string> Place::problem() const {
         auto problem = view_problem(keyframes[i].view);
         if (!problem && !is_rigid(keyframes[i].T_map_body))
             problem =
-                "a pose in the map that is not valid: not finite, not rigid or too far from the "
+                "a pose in the map that is not finite, not rigid or more than 10 km from the "
                 "origin";
         if (problem) return fmt::format("keyframe {} has {}", i, *problem);
     }

@@ -70,6 +70,6 @@ struct Place {
 inline constexpr int kMostKeyframes = 500;
 inline constexpr int kMostFeatures = 400;  ///< features per view
 inline constexpr double kMostImage_px = 16384.0;
-inline constexpr double kMostDistance_m = 1e4;  ///< distance of a keyframe from the origin
+inline constexpr double kMostDistance_m = 1e4;  ///< largest |x|, |y| or |z| of a pose
 
 }  // namespace surefoot::place_recognition

@@ -11,8 +11,8 @@ namespace surefoot::place_recognition {
 struct MemoryConfig {
     ComparisonConfig comparison;
     int min_features = 60;
-    int candidates = 5;  ///< compared keyframes; comparing takes nearly all of a query's time
-    /// Keyframes within this distance and angle of a compared keyframe are skipped: nothing new.
+    int candidates = 5;  ///< number of compared keyframes; they take nearly all of a query's time
+    /// Keyframes within this distance and angle of a compared keyframe are not compared.
     double near_m = 0.4;
     double near_deg = 20.0;
     /// Two answers farther apart than this distance or angle count as two places.
@@ -22,7 +22,7 @@ struct MemoryConfig {
     double max_rival = 0.5;
 };
 
-/// Result of comparing one view with all keyframes.
+/// Result of comparing one view with the most similar keyframes.
 struct Answer {
     Refusal refusal = Refusal::no_candidate;
     int keyframe = -1;  ///< keyframe that explains the view best, even if refused

@@ -23,7 +23,7 @@ struct TrackerConfig {
     int recent_keyframes = 10;
     /// Number of successive keyframes that must agree on T_map_odom before it is accepted.
     int confirmations = 2;
-    int max_misses = 1;  ///< keyframes without a result that are allowed in between
+    int max_misses = 1;  ///< allowed number of keyframes without a result in between
     double agree_m = 0.15;
     double agree_deg = 2.5;
     /// Error that is added to a recognition's covariance: landmarks of one view share their errors.
@@ -36,8 +36,8 @@ struct TrackerConfig {
 struct Sighting {
     std::int64_t time_ns = 0;
     Refusal refusal = Refusal::none;
-    int keyframe = -1;   ///< the best stored keyframe
-    bool saved = false;  ///< true for the saved place, false for this run
+    int keyframe = -1;   ///< number of the best stored keyframe; -1 = none
+    bool saved = false;  ///< true: `keyframe` is of the saved place; false: of this run
     Comparison comparison;
     std::optional<Pose> T_map_odom;  ///< set if the refusal is none
 };
@@ -57,7 +57,7 @@ class PlaceTracker {
     explicit PlaceTracker(const TrackerConfig& config, Place saved = {});
 
     void follow(const MotionEstimate& motion);
-    /// If a new keyframe is due, makes it of these rectified images and tries to recognise it.
+    /// If a new keyframe is due, makes it from this image and depth, and tries to recognise it.
     std::optional<Sighting> see(const camera::RectifiedRig& rig,
                                 ImageView<const std::uint8_t> left,
                                 const DepthImage& depth);
@@ -68,8 +68,8 @@ class PlaceTracker {
     /// Number of keyframes of this run.
     [[nodiscard]] int keyframes() const noexcept { return graph_.nodes(); }
     [[nodiscard]] const std::vector<Sighting>& sightings() const noexcept { return sightings_; }
-    /// Returns the saved place plus the new keyframes of this run. Without a saved place, returns
-    /// all keyframes of this run. If the saved place was not recognised, returns it unchanged.
+    /// Returns the saved place plus those keyframes of this run that are not near another returned
+    /// keyframe. If the saved place was not recognised, returns it unchanged.
     [[nodiscard]] Place place() const;
 
   private:

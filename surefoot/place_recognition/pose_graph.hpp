@@ -29,8 +29,8 @@ class PoseGraph {
     /// Moves all poses rigidly so that the pose of one node becomes `T_map_body`. Gives `solve` its
     /// start value as long as the pose in the map is unknown.
     void place(int node, const Pose& T_map_body);
-    /// Computes the best poses of all nodes. Returns false, with unchanged poses, when nothing
-    /// fixes the graph or the equations cannot be solved.
+    /// Computes the best poses of all nodes. Returns false, with unchanged poses, if nothing fixes
+    /// the graph, or if the search fails or diverges.
     bool solve();
 
     [[nodiscard]] int nodes() const noexcept { return static_cast<int>(poses_.size()); }

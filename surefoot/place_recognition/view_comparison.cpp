@@ -51,7 +51,7 @@ std::vector<PointMatch> point_matches(const ComparisonConfig& config,
 struct Answers {
     std::vector<int> who;                ///< checked features
     std::vector<FeatureMatch> agreeing;  ///< (checked feature, found feature)
-    std::vector<int> asked;              ///< checked features per part of the other image
+    std::vector<int> asked;              ///< number of checked features per part of the other image
     std::vector<int> found;
 };
 

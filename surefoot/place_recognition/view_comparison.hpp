@@ -28,8 +28,8 @@ struct ComparisonConfig {
     double max_parts_against = 0.2;  ///< largest share of parts that may contradict
     // Features off the level surface on which most features agree (the floor) must agree too.
     int min_asked_off_floor = 15;          ///< smallest number of these features
-    double min_agreeing_off_floor = 0.15;  ///< smallest agreeing share; near 0 if the floor moved
-    double level_m = 0.01;      ///< unevenness of a floor, beyond the error of disparity_px
+    double min_agreeing_off_floor = 0.15;  ///< smallest agreeing share of these features
+    double level_m = 0.01;      ///< unevenness of a floor [m], beyond the error of disparity_px
     int min_parts = 5;          ///< least number of parts with an inlier
     double max_sigma_m = 0.05;  ///< largest sigma of the position
     double max_sigma_deg = 1.5;

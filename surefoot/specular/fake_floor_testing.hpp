@@ -79,7 +79,7 @@ inline FakeFloor with_mirror(FakeFloor floor, double angle_rad, double offset_m,
     };
 }
 
-/// A camera 1 m above the floor, 32 deg down.
+/// A camera at base_link that looks 32 deg down; `fake_body` is 1 m above the floor.
 inline camera::RectifiedRig fake_rig() {
     camera::RectifiedRig rig{480, 300, 260.0, 260.0, 240.0, 150.0, 0.12, {}};
     rig.T_body_camera = T_body_optical();

@@ -14,10 +14,10 @@ constexpr double kAhead_m = 1.0;     ///< distance from the body to the middle o
 constexpr double kSlack_m = 0.25;    ///< the window moves if its centre is off by more than this
 constexpr double kNearest_m = 0.25;  ///< smallest depth along the optical axis
 constexpr unsigned kRowPhases = 4;
-/// Largest distance of a measured point above or below the plane to which the point belongs.
+/// A measured point belongs to the plane up to this distance above or below the plane.
 constexpr double kHeightTolerance_m = 0.06;
-/// Largest weight of a cell's mean. A frame at one metre adds a weight of 1, so the mean follows a
-/// change of the floor within about this many frames.
+/// Largest weight of a cell's mean. A sample at a depth of one metre adds a weight of 1. So the
+/// mean follows a change of the floor within about this many samples.
 constexpr float kMostWeight = 8.0F;
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 

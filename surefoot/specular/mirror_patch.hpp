@@ -51,7 +51,7 @@ class MirrorPatch {
                 double angle_rad);
 
     [[nodiscard]] const PatchDetail& fine() const noexcept { return fine_; }      ///< full detail
-    [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half detail
+    [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half as fine
 
   private:
     void halve();
@@ -65,8 +65,8 @@ class MirrorPatch {
 };
 
 /// Computes the detail of a brightness image (NaN = unknown; a row is a line). Divides the
-/// Laplacian by the mean of its absolute values in a tile, limits the result, and subtracts the
-/// means along and across the lines. `work`: scratch memory of the same size.
+/// Laplacian by its mean strength in the tile and in the whole image. Limits the result, and
+/// subtracts the means along and across the lines. `work`: scratch memory of the same size.
 void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
 
 }  // namespace surefoot::specular

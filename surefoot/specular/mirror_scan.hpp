@@ -25,8 +25,8 @@ struct PatchLine {
 ///
 /// A mirror on a floor shows a second floor: the first floor reversed. The search tries all lines
 /// at half the resolution, then the best lines at full resolution with small rotations. The noise
-/// is the median and the median absolute deviation of neighbouring lines, over the same part. No
-/// allocation after construction.
+/// is measured on neighbouring lines, over the same part: their median, and their mean absolute
+/// deviation from it. No allocation after construction.
 class MirrorScan {
   public:
     MirrorScan();

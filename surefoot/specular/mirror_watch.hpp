@@ -24,7 +24,7 @@ namespace surefoot::specular {
 struct SuspectedPane {
     Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
     double offset_m = 0.0;
-    double from_m = 0.0;  ///< start of the observed part, counted along `left()`
+    double from_m = 0.0;  ///< start of the observed part [m], counted along `left()`
     double to_m = 0.0;
     double score = 0.0;        ///< score of the last observation; see PatchLine
     double correlation = 0.0;  ///< of the last observation: near 1 for a mirror, near 0.1 for glass

@@ -19,7 +19,7 @@ struct PairSums {
 /// Lines nearer to each other than this share grain and blur, so their pairs do not count.
 inline constexpr int kLeastApart = 10;
 
-/// Sums for mirror line `twice`: lines i and twice - i mirror each other about line twice / 2.
+/// Computes the sums for mirror line `twice`: lines i and twice - i mirror about line twice / 2.
 /// Lines farther apart than `most_apart` do not count. Blocks must be 8 or 16 cells long.
 [[nodiscard]] PairSums pair_sums(const PatchDetail& detail, int twice, int most_apart);
 /// Reference implementation of `pair_sums`, cell by cell, with the same result.

@@ -40,17 +40,18 @@ void SpecularConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    50.0,
                    "smallest score at which a suspected line is kept [sigma of the noise]");
-    visitor.integer("forget_observations",
-                    forget_observations,
-                    1,
-                    100,
-                    "number of observations below keep_score after which a line is removed");
+    visitor.integer(
+        "forget_observations",
+        forget_observations,
+        1,
+        100,
+        "number of consecutive observations below keep_score after which a line is removed");
     visitor.number("unique_ratio",
                    unique_ratio,
                    1.0,
                    10.0,
                    "smallest ratio of the best line's score to the second best line's score at "
-                   "which the best line is suspected");
+                   "which the best line is suspected; glass needs a ratio of at least 2");
     visitor.integer("directions_per_frame",
                     directions_per_frame,
                     1,

@@ -18,7 +18,7 @@ struct SpecularConfig {
     double mirror_score = 7.0;         ///< smallest score of a mirror line (see mirror_correlation)
     double glass_score = 11.0;  ///< smallest score of any other line: glass reflects 5 to 15 %
     double keep_score =
-        3.5;  ///< `forget_observations` observations with a lower score delete a pane
+        3.5;  ///< `forget_observations` observations in a row with a lower score delete a pane
     int forget_observations = 4;
     /// Smallest ratio of the best score to the score of any other line of the same direction. Tiled
     /// floors are symmetric about many lines; a mirror makes one line.

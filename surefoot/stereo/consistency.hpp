@@ -14,10 +14,10 @@ namespace surefoot::stereo {
 /// is hidden there. Matches outside the right image become NaN too. No second pass is needed.
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px);
 
-/// Writes 255 into `jumps` on both sides of a disparity jump. There the next known pixel of the
-/// row or column differs by more than `jump_px` plus 0.4 px per pixel of distance. Also marks the
-/// middle between two such pixels 4 px apart. The slope of ground at a usable angle is smaller
-/// (baseline / camera height); the slope of the ramps that matchers draw behind edges is larger.
+/// Writes 255 into `jumps` on both sides of a disparity jump. There the next known pixel of the row
+/// or column differs by more than `jump_px` plus 0.4 px per pixel of distance. Also marks the
+/// middle of two pixels 4 px apart with such a difference. Ground at a usable angle has a smaller
+/// slope (baseline / camera height). The ramps that matchers draw behind edges have a larger slope.
 void mark_jumps(Executor& executor,
                 const Image<float>& disparity_px,
                 double jump_px,

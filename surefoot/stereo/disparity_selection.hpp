@@ -9,12 +9,12 @@ namespace surefoot::stereo {
 
 struct SelectionConfig {
     int uniqueness_percent = 5;  ///< smallest margin of the best cost below the second best [%]
-    int left_right_px = 1;       ///< largest difference to the cheapest claim on its right pixel
+    int left_right_px = 1;       ///< largest difference to the cheapest match of the right pixel
 };
 
 /// Converts winners into disparities [px]. NaN if the match is not unique, lies outside the right
-/// image or has disparity 0 (infinitely far). NaN too if another left pixel has the same match at
-/// lower cost. A parabola through three costs gives the fraction of a pixel.
+/// image or has disparity 0 (infinitely far). NaN too if a cheaper match claims the same right
+/// pixel (see `left_right_px`). A parabola through three costs gives the fraction of a pixel.
 void select_disparities(const SelectionConfig& config,
                         const Winners& winners,
                         Executor& executor,

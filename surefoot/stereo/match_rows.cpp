@@ -273,7 +273,7 @@ void sum_windows_row(const std::uint8_t* counts,
     }
 }
 
-/// Spreads in steps of 1, 2, 4 and 8. Any sum of these steps gives a distance.
+/// Spreads in steps of 1, 2, 4 and 8. Every distance up to kFarthest_px is a sum of these steps.
 void spread_along_row(const std::uint8_t* HWY_RESTRICT mark,
                       int width,
                       std::uint8_t* scratch,

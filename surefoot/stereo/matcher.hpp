@@ -62,7 +62,7 @@ class Matcher {
 /// Makes OpenCV's block matcher, followed by the same steps as make_sgbm_matcher.
 [[nodiscard]] std::unique_ptr<Matcher> make_bm_matcher(const MatcherConfig& config);
 
-/// Makes a matcher of SemiGlobalSearch, select_disparities, SpeckleFilter and Finisher.
+/// Makes our semi-global matcher on census words; census_matcher.cpp shows its steps.
 [[nodiscard]] std::unique_ptr<Matcher> make_census_matcher(const MatcherConfig& config);
 
 /// Makes the matcher that `config.algorithm` names.

@@ -20,7 +20,7 @@ constexpr int kSgbmPrefilterCap = 63;
 /// Runs one of OpenCV's searches and converts its disparities.
 class OpenCvMatcher final : public Matcher {
   public:
-    /// A border of `margin_px` on every side of the image gets no match.
+    /// `margin_px`: width of the border of an image in which `search` finds no match.
     OpenCvMatcher(const MatcherConfig& config, cv::Ptr<cv::StereoMatcher> search, int margin_px)
         : left_right_tolerance_px_(config.left_right_tolerance_px),
           margin_px_(margin_px),

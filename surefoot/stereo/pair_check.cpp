@@ -49,7 +49,8 @@ std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
     double best = 0.0;
     cv::Point at;
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
-    // If the maximum lies at the edge of the search area, the true maximum may lie beyond the area.
+    // If the maximum lies in the first or last row of the search area, the true maximum may lie
+    // beyond the area.
     if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
     const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);
     score(peak & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1.0);

@@ -38,8 +38,8 @@ struct RefinedRow {
     const float* gradient_grey_px = nullptr;  ///< rms grey slope along the row in the window
     const float* shift_px = nullptr;          ///< change of the smoothed disparity
 };
-/// Called once for each refined row `v`, from any thread. The data of the row are valid only during
-/// the call, so no image of them is needed.
+/// Called once for each refined row `v`, from any thread. The data are valid only during the call,
+/// because no image stores them.
 using RefinedRows = std::function<void(int v, const RefinedRow&)>;
 
 /// Refines disparities to sub-pixels: smooths them along surfaces, then registers both images along
@@ -56,7 +56,7 @@ using RefinedRows = std::function<void(int v, const RefinedRow&)>;
 /// from the sums (cameras differ in brightness). The sums are exact integers, so that the result
 /// does not depend on the row blocks. The gradient comes from both images, which makes g and e
 /// uncorrelated under noise at every fraction of a pixel. A second step would amplify the noise,
-/// because the box window has negative frequencies. Cost: O(1) per pixel for any window.
+/// because the box window inverts some frequencies. Cost: O(1) per pixel for any window.
 class SubpixelRefiner {
   public:
     explicit SubpixelRefiner(const RefineConfig& config);
@@ -95,8 +95,8 @@ class SubpixelRefiner {
 /// that a slanted plane keeps its value. `row` has `radius_px` unknown pixels before and after it.
 void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
 /// Averages down the columns for row `v`; near the image border fewer neighbours count. With
-/// `lag_rows`, uses row `v + lag_rows` and its neighbours instead, where this row differs from row
-/// `v` by at most half of `same_surface_px`. This limit keeps edges in place.
+/// `lag_rows`, averages around row `v + lag_rows` instead. The centre stays row `v` where both rows
+/// differ by more than half of `same_surface_px`, so edges stay in place.
 void smooth_down(
     const Image<float>& in, int v, int radius_px, double same_surface_px, int lag_rows, float* out);
 

@@ -86,8 +86,8 @@ void smooth_along_row(const SmoothRow& row) {
         for_columns(0, row.width, [&](auto d, int u) { smooth_here<true>(d, row, row.steps, u); });
 }
 
-/// Writes the position in the right row of the lanes from `u` on: whole pixel (or kNowhere) and
-/// fraction.
+/// Writes the position in the right row of the lanes from `u` on: whole pixel (0 = outside the row
+/// or beside a jump) and fraction.
 template <class D>
 HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     const hn::RebindToSigned<D> d32;

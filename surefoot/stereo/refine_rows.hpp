@@ -33,7 +33,7 @@ struct SmoothRow {
 void smooth_along(const SmoothRow& row);
 
 /// Evidence of a pixel about its shift. Lower half: gradient [1/16 grey level per pixel]. Upper
-/// half: grey difference between the cameras. kUnused marks a pixel without evidence.
+/// half: grey difference left - right [1/16]. kUnused marks a pixel without evidence.
 inline constexpr std::int32_t kUnused = std::numeric_limits<std::int32_t>::min();
 
 struct WarpRow {
@@ -48,7 +48,7 @@ struct WarpRow {
     // right pixels around that position, two in a word.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
-    std::int32_t* pairs = nullptr;  ///< 2 width
+    std::int32_t* pairs = nullptr;  ///< 2 * width elements
 };
 /// Computes the grey difference and gradient of every pixel at its disparity.
 void warp(const WarpRow& row);
@@ -68,7 +68,7 @@ void slide(const std::int32_t* entering,
 
 struct SolveRow {
     const std::int32_t* columns[kSums] = {};
-    std::int32_t* prefix[kSums] = {};  ///< scratch, width + 2 * radius_px + 1 + kPadding each
+    std::int32_t* prefix[kSums] = {};  ///< scratch: width + 2 * radius_px + 1 + kPadding elements
     int radius_px = 0;
     int width = 0;
     float enough = 0.0F;
@@ -91,7 +91,7 @@ struct RateRow {
     const std::uint8_t* jump_distance_px = nullptr;
     const std::uint8_t* unknown_count = nullptr;  ///< see UnknownCounts
     int unknown_radius_px = 0;
-    int unknown_rows = 0;  ///< rows of the windows that lie inside the image
+    int unknown_rows = 0;  ///< number of rows of the windows inside the image
     int width = 0;
     float* sigma_px = nullptr;
     float* outlier_probability = nullptr;

@@ -41,7 +41,7 @@ struct RigSelfCalibration {
 ///   rows:    dv / f = p (1 + y^2) - r x + m y
 ///   columns: du / f = p x y + r y + m x
 /// Row errors should be 0. They give p, r and m, and so the error of every disparity. Example: a
-/// focal length 0.06 % too long shifts disparities at the border of a ZED's image by 0.2 px, which
+/// focal length 0.06 % too long shifts disparities at the border of a ZED's image by 0.2 px. This
 /// is 1 cm at 1.5 m. Method: least squares with Huber's weights.
 ///
 /// Rotation about y (yaw) is not estimated. It moves rows by x y, as a decentred lens does, so an

@@ -11,7 +11,7 @@
 namespace surefoot::stereo {
 
 /// Runs of known pixels of a row whose neighbours differ by at most a limit. The search handles 64
-/// pixels at a time, so that its cost depends on the number of runs, not on the number of pixels.
+/// pixels at a time, so that the number of runs decides its cost, more than the number of pixels.
 class RowRuns {
   public:
     void find(const float* disparity_px, int width, float same_px) {

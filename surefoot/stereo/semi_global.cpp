@@ -100,7 +100,8 @@ struct CensusPlanes {
     }
 };
 
-/// State of a path at one column or row: costs per disparity, one extra row, and the least cost.
+/// State of a path at one column or row: costs per disparity, one extra entry (255), and the least
+/// cost.
 struct PathState {
     std::uint8_t* costs = nullptr;
     std::uint8_t* least = nullptr;

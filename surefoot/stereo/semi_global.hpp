@@ -26,9 +26,9 @@ struct SemiGlobalConfig {
 /// Bits of a census word. A bit tells if a neighbour in a chequered 9 x 7 window is darker.
 inline constexpr int kCensusBits = 30;
 
-/// Rows by which disparities lag behind, because no path comes from below. On floor with the ZED's
-/// noise the lag causes an error of 0.14 px; a shift by two rows corrects it to less than 0.01 px
-/// (docs/lab/matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
+/// Number of rows by which disparities lag behind, because no path comes from below. On floor with
+/// the ZED's noise the lag causes an error of 0.14 px; a shift by two rows corrects it to less than
+/// 0.01 px (docs/lab/matching.md; lab/pixel_locking: scenes floor and cross_fall, seeds 21-24).
 inline constexpr int kSearchLag_rows = 2;
 
 /// Result of the search for every pixel of the left image: the disparity of least cost, and the
@@ -54,7 +54,7 @@ void search_plainly(const SemiGlobalConfig& config,
                     ImageView<const std::uint8_t> right,
                     Winners& out);
 
-/// Fast version of search_plainly, with the same bytes. A register holds 64 rows (for paths along
+/// Fast version of search_plainly, with the same bytes. The lanes hold 64 rows (for paths along
 /// rows) or 64 columns, so that no step needs a neighbouring lane. The cost volume covers only
 /// 64 x 64 pixels and stays in the cache. Run-time dispatch picks the widest instructions of the
 /// processor. Threads share strips of rows. After the first pair of a size nothing is allocated.

@@ -132,7 +132,7 @@ HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
     turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
 }
 
-/// Shifts each byte to the right, because no instruction set has an instruction for this.
+/// Shifts each byte to the right. No instruction set has one instruction for this.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #if HWY_TARGET == HWY_SCALAR
     return hn::Set(kBytes, static_cast<std::uint8_t>(hn::GetLane(value) >> shift));

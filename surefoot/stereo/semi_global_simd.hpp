@@ -18,8 +18,8 @@ inline constexpr int kCensusRow = kCensusBytes * kLanes;
 /// column by column (row by row after the transposition). So loops over disparities, and the
 /// transposition of one group, use only a few memory pages.
 inline constexpr int kGroup = 8;
-/// Sizes with one disparity and one column of padding. Without padding, addresses a power of two
-/// apart would share their cache lines.
+/// Sizes [bytes] of a column and of a group, with one disparity and one column of padding. Without
+/// padding, addresses a power of two apart would share their cache lines.
 inline constexpr int kSumsColumn = (kGroup + 1) * kLanes;
 inline constexpr int kSumsGroup = (kLanes + 1) * kSumsColumn;
 
@@ -46,14 +46,14 @@ void transpose(const std::uint8_t* in,
 
 /// A block of up to 64 columns of 64 rows; the rows lie side by side in the lanes.
 struct RowBlock {
-    const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
+    const std::uint8_t* left = nullptr;   ///< kCensusRow bytes per column
     const std::uint8_t* right = nullptr;  ///< `disparities` more columns precede column 0
-    const std::uint8_t* grey = nullptr;   ///< [column] kLanes
+    const std::uint8_t* grey = nullptr;   ///< kLanes bytes per column
     /// Grey values of the previous column on the path; at the image edge, of its first column.
     const std::uint8_t* grey_before = nullptr;
-    std::uint8_t* state = nullptr;  ///< path costs: (disparities + 1) * kLanes, updated
-    std::uint8_t* least = nullptr;  ///< least path cost: kLanes, updated
-    std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [column] kSumsColumn: [d] kLanes
+    std::uint8_t* state = nullptr;  ///< path costs, (disparities + 1) * kLanes bytes; updated
+    std::uint8_t* least = nullptr;  ///< least path cost, kLanes bytes; updated
+    std::uint8_t* sums = nullptr;   ///< groups (kSumsGroup) of columns (kSumsColumn) of disparities
     std::uint8_t* match = nullptr;  ///< matching costs, laid out like the sums
     int columns = 0;
     int disparities = 0;
@@ -86,10 +86,10 @@ struct ColumnStep {
     const std::uint8_t* right[kCensusBytes] = {};  ///< pointers to the column of disparity 0
     const std::uint8_t* grey = nullptr;
     const std::uint8_t* grey_above = nullptr;
-    const std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [d] kLanes, paths along rows
+    const std::uint8_t* sums = nullptr;   ///< groups (kSumsGroup) of sums of the paths along rows
     const std::uint8_t* match = nullptr;  ///< laid out like the sums
-    std::uint8_t* state = nullptr;        ///< path from above: (disparities + 1) * kLanes, updated
-    std::uint8_t* least = nullptr;        ///< least cost of that path: kLanes, updated
+    std::uint8_t* state = nullptr;        ///< path from above, (disparities + 1) * kLanes; updated
+    std::uint8_t* least = nullptr;        ///< least cost of that path, kLanes bytes; updated
     int disparities = 0;
     Penalties penalties;
 };

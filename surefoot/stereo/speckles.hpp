@@ -17,8 +17,8 @@ inline constexpr int kSpeckleRange_px = 2;
 
 /// Removes small islands: groups of fewer than `min_size` pixels become NaN. Neighbours along a row
 /// or column belong together if they differ by at most `same_px`. Works on runs of each row with
-/// union-find, so the cost grows with the number of edges in the image, not with its pixels. Joins
-/// runs within bands of rows first, then across the borders of the bands.
+/// union-find, so the cost grows mainly with the number of edges in the image. Joins runs within
+/// bands of rows first, then across the borders of the bands.
 class SpeckleFilter {
   public:
     void remove(Executor& executor, int min_size, double same_px, Image<float>& disparity_px);

@@ -14,21 +14,21 @@ struct WindowShift {
     double rows_px = 0.0;
 };
 
-/// Half the side of the window [px]; the centre pixel comes on top.
+/// Half the side of the window [px], without the centre pixel.
 inline constexpr int kShiftHalf_px = 7;
 
 /// Refines a whole-pixel match of the window around (u_px, v_px) of `left` to a fraction of a
 /// pixel. `start` is the whole-pixel shift.
 ///
 /// Method: Gauss-Newton on the grey values (Lucas and Kanade 1981); steps use only gradients of the
-/// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the slant of the
-/// columns along both sides of the window (most of a pixel per window for ground seen from above).
-/// A parabola through a correlation prefers whole pixels: with texture of two pixels it loses a
-/// tenth of every fraction. Here only the interpolation could do so, and it uses six pixels. Noise
-/// adds no bias: the noise of the left gradients is independent of the right image's noise.
+/// left image (Baker and Matthews 2004). Unknowns: both shifts, gain, offset, and the change of the
+/// column shift along both sides of the window (nearly a pixel for ground seen from above). A
+/// parabola through a correlation prefers whole pixels: with texture of two pixels it loses a tenth
+/// of every fraction. Here only the interpolation can err so; it uses six pixels. Noise adds no
+/// bias: the noise of the left gradients is independent of the right image's noise.
 ///
-/// Returns nothing if the window leaves an image, has no texture in some direction, or ends
-/// farther than one pixel from `start`.
+/// Returns nothing if the window leaves an image or has no texture in some direction. Also returns
+/// nothing if it slants too much, ends more than one pixel from `start`, or does not converge.
 [[nodiscard]] std::optional<WindowShift> refine_shift(ImageView<const std::uint8_t> left,
                                                       ImageView<const std::uint8_t> right,
                                                       int u_px,

@@ -94,14 +94,14 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    0.1,
                    100.0,
                    "largest distance of a point from the surface to which it belongs [sigma of the "
-                   "point]; surface_relief_m is added");
+                   "cell's points]; surface_relief_m is added");
     visitor.number(
         "surface_relief_m",
         surface_relief_m,
         0.0,
         1.0,
-        "height range of the ground within one cell [m]; the limit window_sigma grows by this "
-        "value");
+        "height range of the ground within one cell; added to the distance that window_sigma "
+        "allows");
     visitor.number("points_per_independent",
                    points_per_independent,
                    1.0,

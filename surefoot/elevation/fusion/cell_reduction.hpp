@@ -43,10 +43,10 @@ struct CellMeasurement {
 /// Finds the highest surface among the samples of a cell. The search starts at an upper quantile of
 /// the heights, so single outliers do not count. It climbs to the centre of the points around the
 /// start (mean shift). If too few points share that height, it tries the next lower start. The
-/// variance is the larger of the mean variance and the scatter of the points, divided by the number
-/// of independent errors, plus the systematic part. Many points without a common height are a
-/// vertical face (a wall, a person) with the height of the upper quantile; few such points give no
-/// result. `z_m` and `var_m2` must be finite and of equal length.
+/// variance is the sum of two parts. One is the systematic part. The other is the larger of mean
+/// variance and scatter, divided by the number of independent errors. Many points without a common
+/// height are a vertical face (a wall, a person) with the height of the upper quantile; few such
+/// points give no result. `z_m` and `var_m2` must be finite and of equal length.
 ///
 /// This is the reference version; `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
@@ -55,8 +55,8 @@ struct CellMeasurement {
 
 // Parts that both `reduce_cell` and `reduce_cells` use.
 
-inline constexpr int kClimbs = 3;    ///< number of steps; 3 end within a few percent of the window
-inline constexpr int kMaxTries = 4;  ///< start heights tried before a cell counts as pure scatter
+inline constexpr int kClimbs = 3;    ///< steps; after 3 the error is a few % of the window
+inline constexpr int kMaxTries = 4;  ///< largest number of start heights that are tried per cell
 
 /// Returns the number of points that a surface needs in a cell of `n` points.
 [[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {
@@ -78,8 +78,8 @@ struct Surface {
     float scatter_m2 = 0.0F;
 };
 
-/// Computes a surface from three sums over `points` > 0 points: of the offsets from the centre, of
-/// their squares, and of the variances.
+/// Computes a surface from sums over `points` > 0 points. `sum_m`: offsets from the centre.
+/// `sum_sq_m2`: squares of these offsets. `sum_var_m2`: variances.
 [[nodiscard]] inline Surface surface_of(
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
     const auto n = static_cast<float>(points);
@@ -99,7 +99,7 @@ struct Surface {
                               config.systematic_sigma_m * config.systematic_sigma_m);
 }
 
-/// Result for a cell in which no surface has enough points: a vertical face, or nothing (0 points).
+/// Returns the result for a cell without a surface of enough points: a vertical face, or 0 points.
 /// `seen` holds the extremes.
 [[nodiscard]] CellMeasurement face_of(const ReductionConfig& config,
                                       const CellMeasurement& seen,

@@ -14,9 +14,9 @@ namespace surefoot::elevation {
 ///   lower = min over |dx|, |dy| <= r of (h - k sigma),   upper = max of (h + k sigma),
 ///   r = ceil(k drift / resolution) of the requested cell.
 /// The fused map of the reference implementation (Fankhauser 2014) takes weighted quantiles in an
-/// ellipse, in 0.3 s at 12 mm of uncertainty and in 19 s at 100 mm. A square without weights is on
-/// the safe side, and its time is bounded: a table of minima over blocks of 1, 2, 4, ... cells
-/// answers a square of any size with four look-ups.
+/// ellipse: 0.3 s at 12 mm of uncertainty, 19 s at 100 mm. A square without weights is on the safe
+/// side, and its time is bounded. A table of minima over blocks of 1, 2, 4, ... cells answers a
+/// square of any size with four look-ups (more at the border).
 class HeightBounds {
   public:
     struct Input {

@@ -17,7 +17,7 @@ constexpr double kBin_m = 1e-4;  ///< bin width of the histogram [m]
 constexpr int kBins = 2 * 1000 + 1;
 constexpr int kTileCells = 8;
 constexpr int kLeastOfTile = 4;  ///< smallest number of agreeing cells in a tile, of sixteen
-constexpr double kAgreeingSigmas = 2.5;  ///< same factor as the gate of the fusion
+constexpr double kAgreeingSigmas = 2.5;  ///< same as the default of elevation.gate_sigma
 /// Variance of a median divided by that of a mean, for normal noise: pi / 2.
 constexpr double kMedianLoss = 1.5708;
 constexpr double kSlopeChi2 = 13.8;  ///< exceeded by chance in 0.1 % of cases, 2 degrees of freedom
@@ -60,14 +60,15 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
         min_motions,
         1,
         100000,
-        "a cell is old after this number of uncertain motions since its last alignment, "
-        "if its height error also reaches min_drift_m");
-    visitor.number("min_drift_m",
-                   min_drift_m,
-                   0.0,
-                   1.0,
-                   "a cell is old only if the motions since its last alignment cause at least this "
-                   "height error (1 sigma)");
+        "a cell is old after this number of frames with an uncertain motion (covariance above 0) "
+        "since its last agreeing observation; its height error must also reach min_drift_m");
+    visitor.number(
+        "min_drift_m",
+        min_drift_m,
+        0.0,
+        1.0,
+        "a cell is old only if the motions since an observation last agreed with it cause "
+        "at least this height error (1 sigma)");
     visitor.number("level_m",
                    level_m,
                    0.0,
@@ -78,31 +79,33 @@ void HeightDriftConfig::describe(ConfigVisitor& visitor) {
                     kept_motions,
                     0,
                     100000,
-                    "number of uncertain motions after which the residual of an old cell expires");
+                    "the height difference of an old cell is kept for this number of frames with "
+                    "an uncertain motion (covariance above 0)");
     visitor.integer("min_cells",
                     min_cells,
                     1,
                     4096,
-                    "smallest number of old cells that a height correction needs; only one cell of "
-                    "four is counted");
-    visitor.integer(
-        "min_tiles",
-        min_tiles,
-        4,
-        1000000,
-        "smallest number of squares of 8 x 8 cells with old cells that a height correction needs");
+                    "smallest number of cells in the older half of the old cells that a height "
+                    "correction needs; one cell of four is counted");
+    visitor.integer("min_tiles",
+                    min_tiles,
+                    4,
+                    1000000,
+                    "smallest number of squares of 8 x 8 cells that a height correction needs; a "
+                    "square counts if at least four of its cells show the offset");
     visitor.number(
         "min_spread_m",
         min_spread_m,
         0.0,
         100.0,
-        "smallest standard deviation of the positions of the old cells, along their longer axis");
-    visitor.number(
-        "agreeing_share",
-        agreeing_share,
-        0.5,
-        1.0,
-        "smallest share of the old cells that must show the same height offset within their noise");
+        "smallest standard deviation of the positions of the squares of 8 x 8 cells that "
+        "show the height offset, along their longer axis");
+    visitor.number("agreeing_share",
+                   agreeing_share,
+                   0.5,
+                   1.0,
+                   "smallest share of the counted cells (see min_cells) that must show the same "
+                   "height offset within their noise");
     visitor.number("significance_sigmas",
                    significance_sigmas,
                    0.1,

@@ -20,14 +20,14 @@ struct HeightDriftConfig {
     int min_motions = 10;
     double min_drift_m = 0.003;        ///< smallest height error of these motions (1 sigma)
     double level_m = 0.03;             ///< largest height difference to the cells two cells aside
-    int kept_motions = 15;             ///< residuals of old cells expire after these motions
-    int min_cells = 40;                ///< smallest number of old cells; one cell of four is used
+    int kept_motions = 15;             ///< residuals of old cells are kept for this many motions
+    int min_cells = 40;                ///< fewest cells in the older half; one cell of four is used
     int min_tiles = 8;                 ///< fewest tiles of 8 x 8 cells; matcher errors span a tile
-    double min_spread_m = 0.3;         ///< smallest standard deviation of positions, longer axis
-    double agreeing_share = 0.8;       ///< smallest share of old cells with the offset within noise
+    double min_spread_m = 0.3;         ///< smallest spread of the tiles, longer axis (1 sigma)
+    double agreeing_share = 0.8;       ///< smallest share of these cells with the same offset
     double significance_sigmas = 3.0;  ///< smallest significant offset [sigma]
     double motion_sigmas = 3.0;        ///< a larger offset is not a drift [sigma of the motion]
-    double depth_scale_sigma = 0.002;  ///< depth error of one frame; looks like a height offset
+    double depth_scale_sigma = 0.002;  ///< relative depth error of one frame (1 sigma)
 
     void describe(ConfigVisitor& visitor);
 };
@@ -36,11 +36,11 @@ struct HeightDriftConfig {
 enum class HeightDriftReason : std::uint8_t {
     off,
     no_old_ground,     ///< the frame shows no ground that may have drifted
-    few_cells,         ///< too few cells or tiles, or too close: offset and tilt look alike
-    no_common_offset,  ///< the cells disagree: ground that changed, not a drift
-    not_significant,   ///< the frame's own error explains the offset, or there is none
-    tilted,            ///< the offsets slope: a tilt error of the camera, not a drift
-    frame_is_off,      ///< recently aligned ground is off as well: the frame is wrong
+    few_cells,         ///< too few cells or tiles, or too close to tell offset and tilt apart
+    no_common_offset,  ///< the cells disagree, because the ground changed
+    not_significant,   ///< the frame's own error explains the offset, or it is below 0.1 mm
+    tilted,            ///< the offsets slope, because the camera has a tilt error
+    frame_is_off,      ///< recently aligned ground shows an offset too: the frame is wrong
     beyond_motion,     ///< the offset exceeds the motion's drift: other ground, or a lost pose
     moved,
 };
@@ -60,15 +60,15 @@ struct HeightDriftReport {
 /// observes old ground again shows the drift: all its heights differ from the map's by the same
 /// offset.
 ///
-/// The offset is the median of measurement - map over old, level cells, weighted by the
-/// variances of both without the motion's part. It rests on the older half of these cells (by
-/// alignment). It holds for all cells aligned no later than the last cell of that half: they
-/// drifted together, and their earlier drift has mean zero. It does not hold for younger cells.
+/// The offset is the median of measurement - map over old, level cells, weighted by the inverse
+/// variance without the motion's part. It uses the older half of these cells (by alignment). It
+/// holds for all cells aligned no later than the last cell of that half: they drifted together, and
+/// their earlier drift has mean zero. It does not hold for younger cells.
 ///
-/// Sigma covers the errors that all heights of a frame share: `systematic_sigma_m` (of frame and
-/// map), tilt times distance, and depth scale times camera height. Sigma also covers the ground
-/// slope times the horizontal drift, and the motion since the residuals were taken. The random
-/// part comes from the scatter of tiles; cells of a tile share the errors of the matcher.
+/// Sigma covers the errors that all heights of a frame share. These are `systematic_sigma_m` (of
+/// frame and map), tilt times distance, and depth scale times camera height. Sigma also covers the
+/// ground slope times the horizontal drift, and the motion since the residuals were taken. The
+/// random part comes from the scatter of tiles; cells of a tile share the errors of the matcher.
 class HeightDrift {
   public:
     struct Frame {
@@ -114,10 +114,10 @@ class HeightDrift {
         double slope_chi2 = 0.0;  ///< chi^2 of the test for "no slope", 2 degrees of freedom
     };
 
-    /// Common offset of the older half of the old cells.
+    /// Evidence of the older half of the old cells for a common offset.
     struct Evidence {
         std::int64_t asked = 0;
-        std::int64_t agreeing = 0;  ///< cells with the offset within noise; base of fields below
+        std::int64_t agreeing = 0;  ///< cells with the offset; the next fields are their means
         Eigen::Vector2d ground_slope = Eigen::Vector2d::Zero();
         double drift_m = 0.0;  ///< horizontal drift (1 sigma)
         double motion_var_m2 = 0.0;

@@ -21,10 +21,10 @@ struct FusionConfig {
     double gate_sigma = 2.5;            ///< largest innovation that passes the gate [sigma]
     double min_height_var_m2 = 9e-6;    ///< lower limit, (3 mm)^2: averaging leaves some errors
     double max_height_var_m2 = 2.5e-3;  ///< (50 mm)^2: a contradicted cell beyond this is replaced
-    /// Largest addition for a rejected measurement, (10 mm)^2. Adds less if less explains it.
+    /// Largest addition for a rejected measurement, (10 mm)^2. Smaller if less explains it.
     double multi_height_var_m2 = 1e-4;
-    /// One rejected measurement multiplies the cell's sigma by at most this factor. The errors of
-    /// cells that have just rejected a measurement grow from 2.5 to 4 mm (docs/lab/gate_scenes.md).
+    /// One rejected measurement multiplies the cell's sigma by at most this factor. The constant
+    /// addition alone overstates the error (docs/decisions/027-contradiction-doubles-sigma.md).
     double contradiction_growth = 2.0;
     double scan_duration_s = 0.0;  ///< duration for `same_scan` of `fuse`; 0 = rule is off
     GateVariance gate_variance = GateVariance::cell_and_measurement;
@@ -43,7 +43,7 @@ struct Height {
 enum class FusionOutcome : std::uint8_t {
     fused,     ///< agreed: Kalman update
     inflated,  ///< disagreed: the cell keeps its height; its variance grows
-    replaced,  ///< disagreed: variance at its limit, or higher surface of the same scan
+    replaced,  ///< disagreed: variance above its limit, or higher surface of the same scan
     ignored,   ///< disagreed: lower surface of the same scan; the upper one stays
 };
 [[nodiscard]] std::string_view to_string(FusionOutcome outcome) noexcept;
@@ -63,9 +63,9 @@ struct FusionResult {
 /// Kalman update of one cell with one measurement. Pure: no clock, no map, no logging. Both heights
 /// must be finite and both variances positive.
 ///
-/// `same_scan`: the cell was measured less than `scan_duration_s` ago. Then two heights that
-/// disagree belong to two surfaces above each other, and the upper one stays. Measurements that are
-/// already one per cell and frame do not need this rule.
+/// `same_scan`: a measurement agreed with the cell at most `scan_duration_s` ago. Then two heights
+/// that disagree belong to two surfaces above each other, and the upper one stays. Measurements
+/// that are already one per cell and frame do not need this rule.
 [[nodiscard]] FusionResult fuse(const FusionConfig& config,
                                 const Height& cell,
                                 const Height& measured,

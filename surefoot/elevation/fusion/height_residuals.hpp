@@ -12,8 +12,8 @@
 
 namespace surefoot::elevation {
 
-/// Last alignment of each cell with the body, indexed by iy * nx + ix. A cell is aligned when an
-/// observation agrees with it, or when its height is corrected by the height drift.
+/// Last alignment of each cell with the body, indexed by iy * nx + ix. A cell is aligned when its
+/// height is set, when an observation agrees with it, or when the height drift corrects its height.
 struct CellAlignment {
     const float* var_m2;        ///< height variance without the motion since the alignment
     const std::uint32_t* step;  ///< number of uncertain motions at the alignment
@@ -57,16 +57,16 @@ class HeightResiduals {
     };
     /// Collects residuals from every second cell of every second row. Skips cells that are not
     /// level: the map two cells aside, along x or y, is unknown or differs by more than `level_m`.
-    /// Also skips cells that are not finite or have no variance. Returns the number of old cells
-    /// with a residual. Allocates only to grow.
+    /// Also skips cells that are not finite or have no variance. Returns the number of new
+    /// residuals of old cells. Allocates only to grow.
     std::size_t gather(const Input& input);
     /// Deletes the residuals of old cells after their use.
     void forget() { old_.clear(); }
 
-    /// Cells whose last alignment is at least `min_motions` ago, and whose height the motion may
-    /// have moved by `min_drift_m` (1 sigma) or more since.
+    /// Cells whose last alignment is at least `min_motions` motions ago, and whose height these
+    /// motions may have moved by `min_drift_m` (1 sigma) or more.
     [[nodiscard]] const std::vector<HeightResidual>& old() const noexcept { return old_; }
-    /// Cells aligned fewer than `min_motions` ago. They show the error of this frame itself.
+    /// Cells aligned fewer than `min_motions` motions ago. They show this frame's own error.
     [[nodiscard]] const std::vector<HeightResidual>& recent() const noexcept { return recent_; }
 
   private:

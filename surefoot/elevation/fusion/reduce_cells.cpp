@@ -11,9 +11,9 @@
 #include <cstring>
 #include <limits>
 
-// Processes sixteen samples of a cell at a time, in one, two or four registers. Float sums add
-// sixteen columns first and then use one fixed tree, as `LaneSum` does. So the register width does
-// not change the result. Most cells hold no more than sixteen samples.
+// Processes sixteen samples of a cell at a time, in one, two or four registers. Every float sum
+// first fills sixteen columns and then adds the columns in one fixed tree, as `LaneSum` does. So
+// the register width does not change the result. Most cells hold no more than sixteen samples.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::elevation::HWY_NAMESPACE {

@@ -8,8 +8,8 @@
 namespace surefoot::elevation {
 
 /// Runs `reduce_cell` for neighbouring cells; every instruction set gives the same bytes. Cell i
-/// owns the samples [begin[i], begin[i + 1]). Reads up to `CellGroups::kSlack` beyond the last
-/// sample. A cell without a measurement gets 0 points.
+/// owns the samples [begin[i], begin[i + 1]). Reads up to `CellGroups::kSlack` elements beyond the
+/// last sample. A cell without a measurement gets 0 points.
 void reduce_cells(const ReductionConfig& config,
                   const std::uint32_t* begin,
                   int cells,

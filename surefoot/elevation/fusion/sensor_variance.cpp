@@ -170,7 +170,7 @@ void SensorConfig::describe(ConfigVisitor& visitor) {
 RayVariance model_variance(const SensorConfig& config, const SensorReading& r) noexcept {
     switch (config.model) {
         case SensorModel::matcher: return matcher_variance(config, r);
-        case SensorModel::perfect: return {0.0 * r.range_m, 0.0 * r.range_m};  // keeps a NaN
+        case SensorModel::perfect: return {0.0 * r.range_m, 0.0 * r.range_m};  // NaN stays NaN
         case SensorModel::laser: return laser(config, r);
         case SensorModel::kinect: return kinect(config, r);
         case SensorModel::stereo: return stereo(config, r);

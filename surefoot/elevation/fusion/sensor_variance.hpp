@@ -12,7 +12,7 @@ namespace surefoot::elevation {
 
 /// Error model of one measured point.
 enum class SensorModel : std::uint8_t {
-    matcher,            ///< Surefoot: disparity sigma of the matcher per pixel
+    matcher,            ///< Surefoot: uses the disparity sigma that the matcher gives each pixel
     perfect,            ///< no sensor error; the pose error stays
     laser,              ///< Pomerleau 2012
     kinect,             ///< structured light, Nguyen 2012
@@ -105,8 +105,8 @@ struct RayVariance {
 
 /// Returns the height variance of a point, from the Jacobians of the sensor and of its pose:
 ///   var h = along n^2 + lateral (1 - n^2) + J Sigma J^T,  n = up . p/|p|,  J = [up^T, (p x up)^T]
-/// p_sensor_m: the point; up_sensor: unit vector against gravity; both in the frame that the pose
-/// covariance (translation, rotation; right perturbation; see pose.hpp) belongs to, |p| > 0.
+/// `p_sensor_m`: the point, not at the origin. `up_sensor`: unit vector against gravity. Both are
+/// in the frame to which the pose covariance belongs (right perturbation, see pose.hpp).
 [[nodiscard]] double height_variance_m2(const RayVariance& ray,
                                         const Eigen::Vector3d& p_sensor_m,
                                         const Eigen::Vector3d& up_sensor,

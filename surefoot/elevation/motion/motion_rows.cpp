@@ -27,7 +27,7 @@ void blur(const MotionPolynomials& p,
         const float xy = p.xy[0] + x * p.xy[1] + z * (p.xy[2] + x * p.xy[3] + z * p.xy[4]);
         const float half = 0.5F * (xx - yy);
         const float larger = 0.5F * (xx + yy) + std::sqrt(half * half + xy * xy);
-        const float more_m2 = larger > 0.0F ? larger : 0.0F * z;  // keeps a NaN
+        const float more_m2 = larger > 0.0F ? larger : 0.0F * z;  // NaN stays NaN
         height_var_m2[i] += height > 0.0F ? height : 0.0F;
         drift_m[i] = std::sqrt(drift_m[i] * drift_m[i] + more_m2);
     }

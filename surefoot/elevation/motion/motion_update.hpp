@@ -30,8 +30,8 @@ class MotionNoise {
 
     /// Returns the variance that the motion adds to the height of a cell, never negative.
     [[nodiscard]] double height_var_m2(double x_m, double y_m) const noexcept;
-    /// Returns the horizontal variance in its worst direction: the larger eigenvalue of the
-    /// covariance of (dx, dy), never negative. Its sum over motions bounds that of their total.
+    /// Returns the horizontal variance in its worst direction: the larger eigenvalue of
+    /// cov(dx, dy), never negative. The sum over several motions is an upper limit.
     [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
 
     /// Cells of a row along x, from the body in odom axes.
@@ -41,7 +41,7 @@ class MotionNoise {
         double step_m = 0.0;
         double body_z_m = 0.0;  ///< height of the body in odom; heights count from here
     };
-    /// Adds the motion's variances to those of remembered cells (drift is a sigma), in floats.
+    /// Adds the motion's variances to those of remembered cells, in floats. The drift is a sigma.
     /// Every instruction set gives the same bytes. NaN stays NaN.
     void blur_row(const Row& row,
                   int cells,

@@ -88,8 +88,8 @@ KnownCell agreed(const FusionConfig& fusion,
         }
         cell.count = std::max(later.count, earlier.count);
     } else {
-        // `fuse` without an upper limit: a variance above the limit of the live map stays
-        // unchanged.
+        // Calls `fuse` without an upper limit, so that it does not lower a variance above the limit
+        // of the live map.
         FusionConfig unbounded = fusion;
         unbounded.max_height_var_m2 = std::numeric_limits<double>::infinity();
         const Height fused = fuse(unbounded, later.height(), earlier.height()).cell;
@@ -148,14 +148,16 @@ std::optional<std::string> problem_of(const MapRegion& into,
     if (auto problem = from.problem()) return problem;
     if (into.resolution_m != from.resolution_m) {
         return fmt::format(
-            "maps with cells of {} m and of {} m cannot be merged; give maps of one cell size",
+            "maps with cells of {} m and of {} m cannot be merged; give maps with the same cell "
+            "size",
             into.resolution_m,
             from.resolution_m);
     }
     if (into.frame != from.frame) {
-        return fmt::format("one map is in frame {}, the other in frame {}; give maps in one frame",
-                           into.frame,
-                           from.frame);
+        return fmt::format(
+            "one map is in frame {}, the other in frame {}; give maps of the same frame",
+            into.frame,
+            from.frame);
     }
     if (errors == RegionErrors::shared && into.frame_since_ns != from.frame_since_ns) {
         return fmt::format(
@@ -167,7 +169,7 @@ std::optional<std::string> problem_of(const MapRegion& into,
             from.frame_since_ns);
     }
     if (const auto problem = grid::united(into.box, from.box).problem())
-        return "a map around both would have " + *problem;
+        return "no map fits around both regions: " + *problem;
     return std::nullopt;
 }
 

@@ -24,7 +24,7 @@ struct MergeCounts {
 /// Merges `from` into `into`, which grows to the smallest box around both. The order of the two
 /// regions does not change the cells. Rules for a cell:
 /// * known in one region: the cell is copied;
-/// * known in both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`): with shared
+/// * known in both, and they agree (`mahalanobis_sq` within `fusion.gate_sigma`). With shared
 ///   errors the height of smaller variance stays unchanged (covariance intersection in one
 ///   dimension, Julier and Uhlmann 1997). With independent errors, equation 6.1 (Lange 2016) fuses
 ///   both. The cell takes time, drift and confidence of the later observation. Of the extremes,
@@ -34,8 +34,8 @@ struct MergeCounts {
 ///
 /// Stamp, pose and configuration come from the region with the later stamp. The cells of the other
 /// region must include the motion between the stamps (`pay_for_motion`). Fails without changes if
-/// resolution or frame differ, or if the merged region is too large. With independent errors only
-/// the frame names must match: the caller guarantees that they mean the same place.
+/// resolution or frame differ, or if the merged region is too large. With independent errors,
+/// `frame_since_ns` may differ: the caller guarantees that both frames are at the same place.
 [[nodiscard]] Result<MergeCounts> merge(grid::MapRegion& into,
                                         const grid::MapRegion& from,
                                         const FusionConfig& fusion,

@@ -239,7 +239,7 @@ TEST(MergeRegionsInWords, WhatDoesNotFitIsSaidAndChangesNothing) {
     EXPECT_TRUE(merge(into, b, {}, RegionErrors::independent).ok());
     b = a;
     b.box.first_ix = 1'000'000'000'000;
-    refused(b, RegionErrors::shared, "a map around both would have");
+    refused(b, RegionErrors::shared, "no map fits around both regions");
     b = a;
     b.count.data()[0] += b.count.data()[0] == 0 ? 1U : 0U;
     b.height_m.data()[0] = kNanF;

@@ -17,10 +17,10 @@ class ElevationMap;
     const ElevationMap& map, const std::optional<grid::LatticeBox>& window = std::nullopt);
 
 /// Adds to every cell the uncertainty of a body motion that ended in `T_frame_body`, or of the
-/// placement of the region as seen from that pose. The region is then relative to that pose.
-/// `covariance`: see `ElevationMap::follow`. Cells become unknown if their variance leaves the
-/// range of a float. Returns an error and changes nothing if the pose or the covariance is not
-/// finite, because the position of the cells is then unknown.
+/// region's placement. The region is then relative to that pose. `covariance`: see
+/// `ElevationMap::follow`. Cells become unknown if their variance or drift leaves the range of a
+/// float. Returns an error and changes nothing if the pose or the covariance is not finite, because
+/// the position of the cells is then unknown.
 [[nodiscard]] Status pay_for_motion(grid::MapRegion& region,
                                     const Pose& T_frame_body,
                                     const Matrix6& covariance);

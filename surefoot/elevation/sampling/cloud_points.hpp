@@ -20,8 +20,8 @@ struct MeasuredPoint {
 };
 
 /// Converts a cloud into points over a grid: range filter, height cut, height with its variance.
-/// Replaces the contents of `points` and counts the rejected points. Points that are not finite or
-/// at the sensor's origin are skipped and not counted. `grid_origin_m` as in `points_from_depth`.
+/// Replaces the contents of `points` and counts the rejected points. Points at the sensor's origin
+/// or with invalid values are skipped and not counted. `grid_origin_m`: see `points_from_depth`.
 void points_from_cloud(const ElevationConfig& config,
                        std::span<const MeasuredPoint> cloud,
                        const Pose& T_body_sensor,

@@ -108,7 +108,8 @@ class DepthWalk {
             return;
         }
         const RayVariance ray = ray_variance(config_.sensor, reading);
-        // Same result as height_variance_m2() if the pose has only equal errors of roll and pitch.
+        // Gives the same result as height_variance_m2() if the pose has only equal errors of roll
+        // and pitch.
         const double n_sq = ray_up * ray_up / ray_sq;
         const double beside_camera_sq_m2 = z_m * z_m * (ray_sq - ray_up * ray_up);
         const double var_m2 =

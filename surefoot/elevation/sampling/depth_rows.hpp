@@ -53,9 +53,9 @@ struct RowCounts {
     std::size_t samples = 0;
 };
 
-/// Writes the samples of the accepted pixels of a row, from left to right: the model `matcher` of
-/// `points_from_depth`, in floats. Every instruction set gives the same bytes. May write up to
-/// `CellSamples::kSlack` elements beyond the last sample of `out`.
+/// Writes the samples of the accepted pixels of a row, from left to right. Uses the sensor model
+/// `matcher`, as `points_from_depth` does, but in floats. Every instruction set gives the same
+/// bytes. May write up to `CellSamples::kSlack` elements beyond the last sample of `out`.
 RowCounts samples_of_row(const DepthFrame& frame, const DepthRow& row, CellSamples::Columns out);
 
 }  // namespace surefoot::elevation

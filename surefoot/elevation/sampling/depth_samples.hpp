@@ -15,9 +15,9 @@
 
 namespace surefoot::elevation {
 
-/// Converts a depth image into samples of cells, in floats: the result of `points_from_depth` and
-/// `samples_from_points` for the sensor model `matcher`, without a list of points. Every executor
-/// and instruction set gives the same bytes. Not thread-safe.
+/// Converts a depth image into samples of cells, in floats, without a list of points. The result is
+/// that of `points_from_depth` and `samples_from_points` with the sensor model `matcher`. Every
+/// executor and instruction set gives the same bytes. Not thread-safe.
 class DepthSampler {
   public:
     /// True if this class supports the config. Other sensor models and cloud filters need points.
@@ -45,7 +45,7 @@ class DepthSampler {
     double cy_px_ = 0.0;
     Eigen::Matrix3d R_odom_camera_ = Eigen::Matrix3d::Identity();
     std::vector<float> nothing_px_;  ///< a row of NaN
-    std::vector<float> padded_px_;   ///< a row of disparities between NaN, per block
+    std::vector<float> padded_px_;   ///< per block: a row of disparities, NaN on both sides
     std::vector<RowCounts> counts_;  ///< one entry per block
 };
 

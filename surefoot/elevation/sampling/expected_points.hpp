@@ -13,7 +13,7 @@ namespace surefoot::elevation {
 /// optical axis and h below the camera covers the solid angle A h / r^3. A pixel covers the solid
 /// angle (z / r)^3 / (fx fy). So the number is
 ///   n = A fx fy h / z^3.
-/// A vertical surface shows more pixels (Oniga and Nedevschi 2010 detect obstacles by it).
+/// A vertical surface shows more pixels (Oniga and Nedevschi 2010 use this to detect obstacles).
 class ExpectedPoints {
   public:
     ExpectedPoints(const camera::RectifiedRig& rig,

@@ -41,7 +41,7 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                    1.0,
                    90.0,
                    "largest angle between line of sight and surface normal at which a pixel on a "
-                   "level surface is used, for example on a distant table top");
+                   "level surface (a distant table top) is used");
     visitor.number("level_deg",
                    level_deg,
                    0.0,

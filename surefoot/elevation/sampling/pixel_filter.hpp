@@ -14,11 +14,11 @@ struct PixelFilterConfig {
     double max_outlier_probability = 0.5;
     bool surface_check = true;  ///< checks jumps and incidence; needs neighbours in the image
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
-    double jump_px = 0.5;       ///< largest departure from a disparity that is linear in the pixel
+    double jump_px = 0.5;       ///< largest difference to the mean of two opposite neighbours
     double jump_sigma = 2.0;    ///< added to jump_px [sigma of the disparity]
-    /// Matchers bridge depth edges with ramps along the line of sight. At 70 deg (`min_points` = 3)
-    /// 2 % of the cells hidden behind drop edges get invented ground, and 97 % of the visible
-    /// floor stays (docs/lab/correlated_depth.md).
+    /// Matchers bridge depth edges with ramps along the line of sight. At 70 deg (`min_points` =
+    /// 3), 2 % of the cells hidden behind drop edges get invented ground. 97 % of the visible floor
+    /// stays (docs/lab/correlated_depth.md).
     double max_incidence_deg = 70.0;
     /// A distant table top is observed at 80-84 deg; without its pixels, the floor under it becomes
     /// the surface. A table top is level; a bridge along the line of sight is not.
@@ -40,7 +40,7 @@ struct Neighbours {
     float below_px = 0.0F;
 };
 
-/// Filter settings that a pixel needs.
+/// Filter settings and constants of the frame, in floats, for the check of a pixel.
 struct SurfaceLimits {
     float fx_px = 0.0F;
     float fy_px = 0.0F;
@@ -70,7 +70,7 @@ class SurfaceCheck {
                  double fy_px,
                  const Eigen::Vector3d& up_camera = Eigen::Vector3d::Zero());
 
-    /// False for a disparity jump, grazing incidence, or no neighbours in one direction.
+    /// False for a disparity jump, grazing incidence, or no neighbour along the row or column.
     [[nodiscard]] bool accepts(const Neighbours& around,
                                float disparity_px,
                                float sigma_px,

@@ -52,12 +52,15 @@ void PrefilterConfig::describe(ConfigVisitor& visitor) {
                    1000.0,
                    "largest distance of a point from the sensor; used if range is true");
     visitor.boolean(
-        "height", height, "true: drop points lower than min_height_m or higher than max_height_m");
+        "height",
+        height,
+        "true: drop points higher than max_height_m and cell heights lower than min_height_m");
     visitor.number("min_height_m",
                    min_height_m,
                    -100.0,
                    100.0,
-                   "smallest height of a point over base_link; used if height is true");
+                   "smallest height of a cell over base_link; lower ground gets no height and is "
+                   "evidence of a drop; used if height is true");
     visitor.number("max_height_m",
                    max_height_m,
                    -100.0,

@@ -13,7 +13,7 @@
 
 namespace surefoot::elevation {
 
-/// Filters that remove points before a cloud reaches the map; each has its own switch.
+/// Filters that remove points before they reach the map. Each filter has its own switch.
 struct PrefilterConfig {
     bool range = true;
     double min_range_m = 0.3;
@@ -78,7 +78,7 @@ class CloudFilter {
                                        double radius_m,
                                        int enough) const;
 
-    std::vector<std::uint32_t> first_;  ///< hash table: the point that represents a cube
+    std::vector<std::uint32_t> first_;  ///< hash table of cubes: one point of each cube
     std::vector<Cube> cubes_;           ///< one cube per point
     std::vector<std::uint32_t> next_;   ///< per point: the next point in the same cube
     std::vector<std::uint8_t> keep_;

@@ -9,8 +9,8 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Smallest distance [cells] from the camera, the larger of x and y. Nearer cells have no useful
-/// direction.
+/// Smallest distance [cells] from the camera: the larger of |dx| and |dy|. Nearer cells have no
+/// useful direction.
 constexpr float kNearest = 2.0F;
 /// First cell beyond a surface in which an endpoint counts. A surface covers one or two cells, so a
 /// nearer endpoint may lie on the surface itself.

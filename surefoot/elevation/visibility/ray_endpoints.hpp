@@ -14,7 +14,7 @@ namespace surefoot::elevation {
 ///
 /// Lines to the floor under a table pass below the top, so an observed floor does not contradict
 /// the top. Only a line through the remembered top contradicts it. All lines start at the camera,
-/// so the line through a position is known. The cells along this line tell if it ended beyond it.
+/// so the line through a position is known. The cells along the line show if it ended farther away.
 class RayEndpoints {
   public:
     /// Starts a frame with the camera at `camera_m` in odom, without any observed cell.
@@ -28,8 +28,8 @@ class RayEndpoints {
     /// Returns the observed height of a cell; NaN = not observed.
     [[nodiscard]] float z_m(std::size_t cell) const noexcept { return z_m_[cell]; }
     /// True if lines of sight passed at `low_m` and at `high_m` over the middle of a cell and ended
-    /// beyond it: the space between is free. In front of a surface's near edge only the lower line
-    /// passes, behind its far edge only the upper one; inside the surface neither passes.
+    /// beyond it. Then the space between is free. In front of a surface's near edge only the lower
+    /// line passes, behind its far edge only the upper one; inside the surface neither passes.
     [[nodiscard]] bool passed_through(grid::Cell cell, float low_m, float high_m) const;
 
   private:

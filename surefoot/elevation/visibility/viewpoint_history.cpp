@@ -9,7 +9,7 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr std::size_t kCapacity = 1024;
-/// Poses closer than this share of the limits have one entry.
+/// A pose closer to the newest entry than this share of the limits adds no entry.
 constexpr double kSharedEntry = 0.25;
 
 double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
@@ -24,15 +24,15 @@ void ViewpointConfig::describe(ConfigVisitor& visitor) {
         min_translation_m,
         0.0,
         10.0,
-        "smallest translation of the camera between two independent views of a cell. A view with "
-        "less translation and less rotation does not lower the variance of the cell");
+        "smallest translation of base_link between two independent views of a cell. A view with "
+        "less translation and less rotation is not averaged with the earlier view");
     visitor.number(
         "min_rotation_deg",
         min_rotation_deg,
         0.0,
         180.0,
-        "smallest rotation of the camera between two independent views of a cell. A view with less "
-        "translation and less rotation does not lower the variance of the cell");
+        "smallest rotation of base_link between two independent views of a cell. A view with less "
+        "translation and less rotation is not averaged with the earlier view");
 }
 
 ViewpointHistory::ViewpointHistory(const ViewpointConfig& config)

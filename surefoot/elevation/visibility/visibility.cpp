@@ -11,7 +11,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Smallest distance |dx| + |dy| [cells] from the camera. Nearer cells have no useful direction.
 constexpr float kNearest = 2.0F;
-/// Number of rings before its end in which a line gives no evidence. The surface at the end covers
+/// A line gives no evidence in this number of rings before its end. The surface at the end covers
 /// one or two cells.
 constexpr int kEndRings = 3;
 

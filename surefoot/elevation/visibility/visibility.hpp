@@ -17,12 +17,12 @@ struct VisibilityConfig {
     bool cleanup = true;
     /// Lines of sight over unknown cells bound the depth of the ground there.
     bool drops = true;
-    double margin_m = 0.05;  ///< lines of sight this far below a height contradict it
+    double margin_m = 0.05;  ///< lines of sight more than this below a height contradict the height
     double sigmas = 3.0;     ///< added to margin_m [sigma of the height]
     /// This many contradicting frames, without an agreeing frame between them, remove a surface
     /// that every observation showed. A surface in every third observation needs 3 times as many.
     int frames = 3;
-    /// A neighbour of equal height, confirmed this recently, keeps a cell from removal.
+    /// A neighbour of equal height that was confirmed within this time keeps the cell.
     double neighbour_s = 0.4;
 
     void describe(ConfigVisitor& visitor);

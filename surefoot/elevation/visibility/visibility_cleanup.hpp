@@ -15,9 +15,9 @@
 namespace surefoot::elevation {
 
 /// Visibility clean-up: applies the free-space evidence of a frame to the cells. It removes
-/// overhead objects, bounds the depth of unknown ground, and (if configured) removes remembered
-/// surfaces in the free space. Every executor gives the same bytes; no allocation after the first
-/// frame of a size.
+/// overhead objects. If configured, it also bounds the height of unknown ground, and removes
+/// remembered surfaces in the free space. Every executor gives the same bytes; no allocation after
+/// the first frame of a size.
 class VisibilityCleanup {
   public:
     explicit VisibilityCleanup(const ElevationConfig& config);
@@ -52,7 +52,7 @@ class VisibilityCleanup {
 
     VisibilityConfig config_;
     float margin_m_;
-    float hangs_m_;  ///< surfaces this far above ground hang over it
+    float hangs_m_;  ///< a surface higher than this above the ground hangs over it
     float sigmas_;
     grid::GridGeometry geometry_;
     Eigen::Vector3d camera_m_ = Eigen::Vector3d::Zero();
