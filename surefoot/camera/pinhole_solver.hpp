@@ -78,7 +78,7 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
     return p;
 }
 
-/// Returns the pixel of a point, or nullopt for a point at or behind the camera plane.
+/// Returns the pixel of a point, or nullopt at or behind the camera plane or without a distortion.
 template <typename Distort>
 std::optional<Eigen::Vector2d> project(const Intrinsics& k,
                                        const Distort& distort,

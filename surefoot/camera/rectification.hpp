@@ -11,7 +11,7 @@ namespace surefoot::camera {
 
 /// Parameters of the virtual pinhole cameras of rectified images.
 struct RectificationConfig {
-    double rectified_focal_px = 0.0;  ///< 0 = smallest without black pixels
+    double rectified_focal_px = 0.0;  ///< 0 = smallest focal length without black pixels
     int rectified_width_px = 0;       ///< 0 = width of the raw images
     int rectified_height_px = 0;
     /// Largest view angle across and down, if the focal length is chosen automatically. A wider

@@ -6,8 +6,8 @@
 #include <string_view>
 
 /// Checks whether a baseline can be in metres. A calibration offers no other check of its unit.
-/// Every rig passes `baseline_problem` (in StereoRig::problem). Every file that is read also passes
-/// `baseline_warning`.
+/// StereoRig::problem tests every rig with `baseline_problem`. Every file that is read is also
+/// tested with `baseline_warning`.
 namespace surefoot::camera {
 
 inline constexpr double kMinBaseline_m = 1e-3;

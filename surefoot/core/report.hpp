@@ -51,7 +51,7 @@ struct GroundObservation {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, points to the sensor
     double height_m = 0.0;                              ///< distance from the sensor to the plane
     double inlier_ratio = 0.0;
-    double rms_m = 0.0;  ///< rms distance of the inliers
+    double rms_m = 0.0;  ///< rms distance of the inliers from the plane
 };
 
 /// All values of one frame that a dashboard, a log or a benchmark shows.
@@ -69,7 +69,7 @@ struct FrameReport {
     GroundObservation ground;  ///< ground plane in the body frame
     FusionCounts fusion;
     std::int64_t known_cells = 0;  ///< known map cells after this frame
-    /// Wall time per stage [ms]. The only values that differ between equal runs.
+    /// Wall time per stage [ms]. Only these values differ between equal runs.
     std::array<double, kStageCount> stage_ms{};
 };
 

@@ -25,8 +25,8 @@ struct Error {
 };
 
 /// A value, or the reason for its absence. The reason is a failure of the user's files,
-/// configuration or messages. A broken invariant of the code is SUREFOOT_ASSERT instead. Events in
-/// the scene (blur, gaps) are enum values in a report.
+/// configuration or messages. SUREFOOT_ASSERT reports a broken invariant of the code. Events in the
+/// scene (blur, gaps) are enum values in a report.
 template <typename T>
 class [[nodiscard]] Result {
   public:

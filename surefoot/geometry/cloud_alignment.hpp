@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Directions that surfaces do not fix, out of six (three of them are rotations). Edges fix
-    /// some: ends of surfaces between points (faces of steps in a height map). Only borders of the
-    /// clouds fix others. In free directions the guess stays unchanged. On a bare floor the three
-    /// numbers add up to three.
+    /// Numbers of the six directions (three shifts, three rotations) that surfaces do not fix.
+    /// Edges fix some: ends of surfaces between points, as at steps in a height map. Only borders
+    /// of the clouds fix others. Free directions keep the guess. On a bare floor the three numbers
+    /// add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

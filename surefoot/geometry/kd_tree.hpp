@@ -34,10 +34,10 @@ struct Cylinder {
 };
 
 /// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). The tree
-/// owns the points and stores them leaf by leaf, without an index: 12 bytes a point and
-/// about one byte more for the nodes. Points are floats, relative to a near origin.
-/// Distances equal those of a search through all points, to the last bit. Searches are const
-/// and thread-safe.
+/// owns the points and stores them leaf by leaf, without an index: 12 bytes a point and one
+/// to two bytes more for the nodes. Points are floats, relative to a near origin. Distances
+/// equal those of a search through all points, to the last bit. Searches are const and
+/// thread-safe.
 ///
 /// Equal points form one leaf of any size, so that a cloud of copies is not slower than others.
 ///

@@ -82,7 +82,7 @@ struct FixedRun {
 
 /// Returns the cells of row `iy`, limited to `within`, whose open square overlaps the open polygon
 /// (separating axes; touching an edge does not count). They form one run, because the polygon is
-/// convex. Exact; costs one division per edge that is not parallel to the row. `relative` is
+/// convex. Exact; costs two divisions per edge that is not parallel to the row. `relative` is
 /// relative to the grid's origin and has an area; row and cells lie within its bounds.
 [[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
                                              std::int64_t side,

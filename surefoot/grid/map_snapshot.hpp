@@ -27,7 +27,7 @@ struct SnapshotEdge {
     std::int32_t to_x_tenth_mm = 0;
     std::int32_t to_y_tenth_mm = 0;
     std::int32_t upper_tenth_mm = 0;  ///< height of the ground above the edge
-    /// Ground below the edge; if it was not visible, an upper bound.
+    /// Height of the ground below the edge, or an upper bound if it was not visible.
     std::int32_t lower_tenth_mm = 0;
     std::int32_t height_sigma_tenth_mm = 0;  ///< sigma of upper minus lower, rounded up
     std::int32_t across_sigma_tenth_mm = 0;  ///< sigma of the line's position, rounded up

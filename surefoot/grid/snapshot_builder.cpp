@@ -288,7 +288,7 @@ class Labeller {
     std::size_t size_ = 0;
 };
 
-/// A row or column of the snapshot, in one direction.
+/// Cells of a row or column in the order of a walk: forward, or backward with a negative stride.
 struct Line {
     std::ptrdiff_t first = 0;
     std::ptrdiff_t stride = 1;
