@@ -27,7 +27,7 @@ struct RectificationConfig {
 /// One real camera behind a rectified image.
 struct RectifiedCamera {
     Camera camera;
-    Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< optical frames
+    Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< from raw to rectified
     double offset_x_m = 0.0;  ///< x of the camera centre in the rectified left frame
 };
 

@@ -21,7 +21,7 @@ enum class GroundReason : std::uint8_t {
     few_inliers,  ///< inlier ratio below its limit
     small,        ///< area or extent below its limit
     not_lowest,   ///< something lies more than a high step below the plane
-    rough,        ///< inlier scatter above its limit, or points just above and below
+    rough,        ///< inlier scatter above its limit, or many points just beyond the inliers
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
 
@@ -31,7 +31,7 @@ struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
     double tilt_rad = 0.0;  ///< angle between the normal and `up_hint`
-    double area_m2 = 0.0;   ///< area of occupied squares of two voxel sides, along the normal
+    double area_m2 = 0.0;   ///< area of occupied squares (side: 2 voxels), seen along the normal
     /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
     double image_share = 0.0;
     /// Zero if the noise of the points is unknown.

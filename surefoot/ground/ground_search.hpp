@@ -15,7 +15,7 @@ namespace surefoot::ground {
 /// Planes are drawn through three points near each other. Of random triples, only one in a thousand
 /// lies on a floor that fills a tenth of the image. Points near the best plane refine the plane
 /// (`refine_plane`) and are removed; then the search continues. A plane is the ground when
-/// * it fills `min_image_share` of the image,
+/// * it fills `min_image_share` of the image and fixes its tilt (`max_search_sigma_deg`),
 /// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
 /// * nothing lies more than a high step below it. This excludes table tops, beds, seats and tilted
 ///   backs, if the edge of the object is in view.

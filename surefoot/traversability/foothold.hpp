@@ -16,22 +16,22 @@
 namespace surefoot::traversability {
 
 /// Limits for a position where the whole foot may stand. The figures are those of the REX's machine
-/// file and of the gate's rule for flat ground (design.md). The gate judges one foot in one pose of
-/// one movement. This search judges every cell, for a foot with any yaw.
+/// file and of the gate's rule for flat ground (foot_support.hpp). The gate judges one foot in one
+/// pose of one movement. This search judges every cell, for a foot with any yaw.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
     double foot_width_m = 0.190;   ///< shorter side of the foot
     double margin_m = 0.05;        ///< position error of an edge: up to two cells
-    double band_m = 0.10;          ///< width of the solid ground that is required around F
+    double band_m = 0.10;          ///< width of the solid ground that is required around the foot
     /// Where two edges meet, a matcher puts the nearer ground up to three cells too far over the
     /// lower ground. So a drop that begins up to this far beyond the band may reach into it.
     double corner_m = 0.075;
-    double drop_m = 0.05;       ///< ground that is lower than the foot by more is a drop
+    double drop_m = 0.05;       ///< ground that is lower than the foot by more than this is a drop
     double max_slope = 0.1051;  ///< rise over run: tan 6 deg
     double patch_side_m = 0.05;
     double max_residual_m = 0.025;   ///< largest distance of a patch mean from the foot's plane
     double sigma_factor = 3.4;       ///< one-sided error probability 3e-4
-    double independent_cells = 4.0;  ///< most cells of a patch whose errors count as independent
+    double independent_cells = 4.0;  ///< largest number of independent cells in a patch
     /// A semi-global matcher shares its errors over 30-50 px: over 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
     double clearance_m = 2.05;  ///< height of the tallest user who stands on the foot plates
@@ -41,8 +41,8 @@ struct FootholdConfig {
     void describe(ConfigVisitor& visitor);
     /// Returns the first reason why this config cannot be used, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
-    /// True if cells of this size are not larger than a foot, and not so small that the cells of a
-    /// foot exceed the memory. On other grids every cell is unknown.
+    /// True if cells are at most as large as `foot_radius_m`, and foot, margin, band and corner
+    /// reach at most 63 cells from the middle of the foot. On other grids every cell is unknown.
     [[nodiscard]] bool fits(double resolution_m) const noexcept;
 };
 

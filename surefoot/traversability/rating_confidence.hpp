@@ -27,8 +27,8 @@ struct ConfidenceLayers {
 ///
 /// The patch is that of the gate (foot_support.hpp). The variance of a mean of n cells is
 ///   (mean of their variances) / k,   k = min(n, independent_cells),
-/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With 10 mm,
-/// a patch is not resolvable above sigma = 2.94 mm; the gate's limit is 3 mm.
+/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With a step
+/// of 10 mm, a patch is not resolvable above 2.94 mm; the gate's limit is 3 mm.
 ///
 /// Confidence, with v = mean variance in the disc of the normals, n = its known cells, and f =
 /// their share of all its cells:
@@ -88,7 +88,7 @@ class RatingConfidence {
     RunDisc surface_;
     RunDisc steps_;  ///< second disc of the step filter
     RunDisc patch_;
-    float inverse_moment_m2_;  ///< 1 / m
+    float inverse_moment_m2_;  ///< 1 / m of the disc of the normals
     float error_range_;        ///< d
     int nx_ = 0;
     int ny_ = 0;

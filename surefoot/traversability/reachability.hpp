@@ -25,7 +25,7 @@ struct Stance {
 /// between consecutive cells. reach_step_m is the smallest of these over all ways (minimax path). A
 /// way leads from known cell to known 4-neighbour. It never crosses an unknown cell or a gap, not
 /// even of one cell. Up and down count alike: the smallest step up and the smallest step down may
-/// lie on different ways. So two layers would promise a way that does not exist. Heights are
+/// lie on different ways. So a layer for each would promise a way that does not exist. Heights are
 /// rounded to 0.1 mm as for the gate. For these heights the result is exact. It does not depend on
 /// the order of the visits.
 ///
