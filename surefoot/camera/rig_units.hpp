@@ -11,7 +11,7 @@
 namespace surefoot::camera {
 
 inline constexpr double kMinBaseline_m = 1e-3;
-/// Largest valid baseline: above every camera of a walking machine, below every baseline in mm.
+/// Largest valid baseline: above every camera of a walking machine, below all baselines in mm.
 inline constexpr double kMaxBaseline_m = 5.0;
 
 /// Returns why a baseline cannot be used and its probable unit: "is it in mm (then 60.8 mm)?".

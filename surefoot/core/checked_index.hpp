@@ -35,7 +35,7 @@ template <std::integral Int, std::floating_point Real>
     return value > Real{0} ? std::numeric_limits<Int>::max() : std::numeric_limits<Int>::lowest();
 }
 
-/// The integer part of a number, moved into [least, most]. A value of NaN counts as 0.
+/// Returns the integer part of a number, limited to [least, most]. NaN counts as 0.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr Int clamped_integer(Real value, Int least, Int most) noexcept {
     return std::clamp(saturated_integer<Int>(value), least, most);

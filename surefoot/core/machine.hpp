@@ -11,8 +11,8 @@ namespace surefoot {
 /// A rectangle on the ground, parallel to the axes of base_link. Lengths are integers in units of
 /// 0.1 mm ("tenth_mm") as in the map snapshot, so that every computer decides the same.
 struct GroundBox {
-    std::int32_t center_x_tenth_mm = 0;  ///< centre, forward of base_link
-    std::int32_t center_y_tenth_mm = 0;  ///< centre, left of base_link
+    std::int32_t center_x_tenth_mm = 0;  ///< position of the centre, forward of base_link
+    std::int32_t center_y_tenth_mm = 0;  ///< position of the centre, left of base_link
     std::int32_t length_tenth_mm = 0;    ///< along x
     std::int32_t width_tenth_mm = 0;     ///< along y
 };
@@ -72,7 +72,7 @@ struct StepLimits {
 struct GateLimits {
     std::array<StepLimits, kMovementClassCount> step{};
     double min_normal_z = 1.0;                  ///< cosine of the largest tilt of a foot plane
-    std::int32_t patch_side_tenth_mm = 500;     ///< side of the patches that judge a foot
+    std::int32_t patch_side_tenth_mm = 500;     ///< side of the square patches under a foot
     std::int32_t patch_residual_tenth_mm = 0;   ///< limit of |residual| + sigma_factor * sigma
     std::int32_t patch_sigma_tenth_mm = 0;      ///< a patch with a larger sigma is not resolvable
     double sigma_factor = 3.4;                  ///< 3.4: error probability 3e-4 (one-sided, normal)

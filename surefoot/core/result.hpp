@@ -18,7 +18,7 @@ enum class ErrorCode {
     interrupted,  ///< the user stopped the run: exit 1
 };
 
-/// A failure with its message: what, where, value, limit, and what to do.
+/// A failure with its message: what happened, where, value, limit and what to do.
 struct Error {
     ErrorCode code = ErrorCode::input;
     std::string message;

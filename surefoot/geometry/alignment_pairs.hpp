@@ -32,14 +32,14 @@ struct Pair {
     /// normal belongs to neither surface.
     double edge = 0.0;
     double ball_m = 0.0;       ///< radius of the ball that gives the normal or the border
-    double thickness_m = 0.0;  ///< rms of the points in the ball across the surface
+    double thickness_m = 0.0;  ///< rms distance of the points in the ball from the surface
     std::uint32_t reference = Neighbour::kNone;
     bool counts = false;
 };
 
 /// Returns the spacing of a square lattice with `others` + 1 points in a disc of this radius.
 [[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
-/// Median over the pairs that count; 0 if no pair counts.
+/// Returns the median over the pairs that count, or 0 if no pair counts.
 [[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);
 
 /// Pairs of nearest points. Keeps the normals of known points between calls of `at`.
@@ -70,7 +70,7 @@ class SurfacePairs {
     const AlignmentConfig& config_;
     Executor& executor_;
     std::vector<Pair> pairs_;
-    std::vector<Known> nearest_;  ///< one per moved point; often valid in the next step too
+    std::vector<Known> nearest_;  ///< data of the nearest reference point of each moved point
 };
 
 /// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the means of

@@ -39,7 +39,7 @@ Lever lever_of(std::span<const Vector3f> points_m) {
     return lever;
 }
 
-/// Rotates about the pivot, then shifts.
+/// Applies a step to the pose: rotates about the pivot, then shifts.
 void apply(const Vector6d& x, const Lever& lever, Pose& T) {
     const Eigen::Quaterniond turn = exp_so3(x.tail<3>() / lever.length_m);
     T.translation_m = turn * (T.translation_m - lever.pivot_m) + lever.pivot_m + x.head<3>();

@@ -59,7 +59,8 @@ struct OneNearest {
     }
 };
 
-/// Keeps several nearest points, sorted by insertion: they are few.
+/// Keeps several nearest points in order of distance. Sorts by insertion, because the points are
+/// few.
 struct SomeNearest {
     Vector3f query_m;
     std::span<Neighbour> found;
@@ -315,8 +316,8 @@ class CylinderRegion {
   private:
     Vector3f middle_m_;
     Eigen::Matrix3f axes_;
-    Vector3f reach_m_;  ///< reach along each axis
-    Vector3f box_m_;    ///< reach along the axes of the box
+    Vector3f reach_m_;  ///< half extent of the cylinder along each column of `axes_`
+    Vector3f box_m_;    ///< half extent of the cylinder along x, y and z
     float slack_m_ = 0.0F;
 };
 

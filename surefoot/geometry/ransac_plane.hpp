@@ -22,7 +22,7 @@ struct RansacPlaneOptions {
     double tolerance_m = 0.05;  ///< a point within this distance of the plane is an inlier
     /// Tolerance per point; nearer inliers count more. Empty = `tolerance_m` for all points.
     std::span<const double> tolerance_of_m;
-    double confidence = 0.9999;  ///< sought probability of a triple of inliers only
+    double confidence = 0.9999;  ///< wanted probability of having drawn a triple of inliers
     int max_iterations = 1000;
     /// The search ends when it has probably (`confidence`) drawn a plane with this share of points.
     double least_inlier_ratio = 0.0;

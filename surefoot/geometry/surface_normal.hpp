@@ -18,7 +18,7 @@ namespace surefoot::geometry {
 
 /// A surface through a few points.
 struct LocalSurface {
-    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< result of `surface_normal`
+    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit normal as from `surface_normal`
     float thickness_m = 0.0F;  ///< rms of the points across the surface: noise, or an edge
 };
 

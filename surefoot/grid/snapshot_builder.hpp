@@ -58,9 +58,9 @@ struct SnapshotInput {
     double drop_reach_m = 0.5;
 };
 
-/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds so
-/// that no cell seems safer than it is: sigma and drift upward, clearance downward. NaN and too
-/// large values become unknown or the largest value. After an error `out` is not intact: a gate
+/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds
+/// sigma and drift up and clearance down, so that rounding never makes a cell seem safer. NaN and
+/// too large values become unknown or the largest value. After an error `out` is not intact: a gate
 /// that still receives it answers ERROR.
 ///
 /// This function computes two layers:

@@ -26,7 +26,7 @@ struct GroundConfig {
     double search_up_deg = 10.0;
     double search_down_deg = 65.0;
     double search_roll_deg = 20.0;
-    double min_image_share = 0.04;      ///< least share of pixels; half of a floor may lack depth
+    double min_image_share = 0.04;      ///< smallest share of pixels; half a floor may lack depth
     double max_search_sigma_deg = 1.2;  ///< largest sigma of the tilt; a strip fixes only one axis
     double max_search_rms_m = 0.045;    ///< largest scatter; boulders of 0.1 m scatter by 0.04 m
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int kStrips = 32;             ///< number of strips; a split lies between two strips
 constexpr double kRim = 0.02;           ///< share of the points beyond the strips at either end
 constexpr int kLeastPoints = 100;       ///< smallest number of points on either side of a split
-constexpr double kLeastLength_m = 0.3;  ///< least length of the returned side
+constexpr double kLeastLength_m = 0.3;  ///< smallest length of the returned side
 /// Two planes fit better than one if one plane leaves squared residuals that are larger by more
 /// than this share. At a step of four times a point's noise, two planes leave a third of the
 /// squared residuals. With the distortion of a lens they leave more. ASSUMPTION.

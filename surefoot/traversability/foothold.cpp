@@ -421,7 +421,11 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    10000.0,
                    "largest number of cells in a patch whose errors count as independent");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+        "correlation_m",
+        correlation_m,
+        0.001,
+        10.0,
+        "distance on the ground within which errors of the stereo matcher are correlated");
     visitor.number("clearance_m", clearance_m, 0.0, 100.0, "required free height over the foot");
     visitor.number("overhead_side_m",
                    overhead_side_m,

@@ -61,7 +61,7 @@ class RatingConfidence {
         /// Rounded up to whole 1e-9 m2. Values above 0.1 m2 or not finite count as 0.1 m2.
         ImageView<const float> height_var_m2;
         const PaddedLayer&
-            step_height_m;  ///< Traversability::rated_step_heights(), all cells rated
+            step_height_m;  ///< Traversability::rated_step_heights() of the whole map
         const TraversabilityLayers& rating;
     };
     /// Computes all cells; the layers of `out` take the size of the map.
@@ -93,7 +93,7 @@ class RatingConfidence {
     int nx_ = 0;
     int ny_ = 0;
     int margin_ = 0;                     ///< cells beyond the map that runs may cover
-    std::vector<std::uint64_t> before_;  ///< sums before a cell in its row: known cells, variances
+    std::vector<std::uint64_t> before_;  ///< packed sums of the cells before a cell in its row
     std::vector<std::uint64_t> sum_;     ///< sums of one row of discs
     std::vector<float> known_;           ///< number of known cells in `sum_`
     std::vector<float> variance_m2_;
