@@ -9,7 +9,7 @@ namespace surefoot {
 /// lets the gate say OK. The numeric values are part of the snapshot file format.
 enum class CameraState : std::uint8_t {
     unknown = 0,  ///< no new, whole and well-exposed image yet
-    frozen = 1,   ///< the camera delivers the same images again
+    frozen = 1,   ///< the camera repeats earlier images
     corrupt = 2,  ///< torn or damaged images
     ok = 3,
     overexposed = 4,  ///< too many image pixels are saturated

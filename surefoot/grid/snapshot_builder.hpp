@@ -23,11 +23,11 @@ struct SnapshotInput {
     /// assumption.
     ImageView<const float> drift_m;
     ImageView<const float> clearance_m;  ///< optional: free height above the cell
-    /// Optional, for unknown cells: rays passed at this height, so the ground lies lower. The gate
-    /// then accepts no operator attestation of level ground there.
+    /// Optional, for unknown cells: rays passed at this height, so the ground lies lower. If this
+    /// height is below an attested level by more than a drop, the gate ignores the attestation.
     ImageView<const float> free_above_m;
     ImageView<const float>
-        drop_evidence;  ///< optional: 0..1 from rays that passed below the ground
+        drop_evidence;  ///< optional: evidence of a drop at the cell, 0 (none) to 1 (proven)
     /// Optional: cells with a value other than 0 have an untrusted measurement and become unknown.
     ImageView<const std::uint8_t> hidden;
     /// A line in odom where the ground drops; see SnapshotEdge.

@@ -32,7 +32,7 @@ struct GroundConfig {
 
     int window = 10;                    ///< number of the latest observations in the average
     int min_agreeing = 5;               ///< number of these observations that must agree
-    double max_disagreement_deg = 1.5;  ///< an observation farther from the others is left out
+    double max_disagreement_deg = 1.5;  ///< observations farther from the others are left out
     double max_disagreement_m = 0.03;
 
     void describe(ConfigVisitor& visitor);

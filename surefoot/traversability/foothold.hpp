@@ -147,7 +147,7 @@ class FootholdFinder {
     [[nodiscard]] TurnedFoot turned_foot(int yaw) const;
     /// Returns minus the lowest proven height in B.
     [[nodiscard]] float low_in_band(int ix, int iy) const;
-    /// True if ground within `corner_m` of B is proven to be lower than p by half a drop;
+    /// True if ground in B or within `corner_m` of it is proven lower than p by half of `drop_m`;
     /// `low_near` is minus the lowest proven height there.
     [[nodiscard]] bool drop_begins(double middle_m, double slope, float low_near) const;
     /// True if a plane under the foot is too steep at one of the yaws. F must be known.

@@ -98,7 +98,7 @@ class RatingConfidence {
     std::vector<float> known_;           ///< number of known cells in `sum_`
     std::vector<float> variance_m2_;
     grid::Layer sigma_m_;          ///< sqrt(v)
-    grid::Layer slope_sigma_rad_;  ///< slope sigma of level ground
+    grid::Layer slope_sigma_rad_;  ///< sigma of the slope of level ground
     grid::Layer roughness_sigma_m_;
     grid::Layer flips_;  ///< Q
 };

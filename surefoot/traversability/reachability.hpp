@@ -47,7 +47,7 @@ struct Stance {
 /// one bucket per length, Dial 1969). Allocates only to grow. Not thread-safe.
 class Reachability {
   public:
-    static constexpr int kStanceCells = 16;     ///< fewest cells of a stance; 0.01 m2 at 25 mm
+    static constexpr int kStanceCells = 16;     ///< smallest number of cells; 0.01 m2 at 25 mm
     static constexpr double kSurface_m = 0.05;  ///< height range of one surface under the body
     /// Heights beyond this are unknown, as for the gate.
     static constexpr double kHighest_m = 1000.0;

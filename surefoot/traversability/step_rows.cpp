@@ -29,7 +29,7 @@ struct RatingConstants {
     float smallest_above;  ///< smallest float that is not below the critical step
     float inverse;         ///< 1 / critical step
     float enough;          ///< number of critical cells for the full step height
-    float share;           ///< 1 / number of critical cells
+    float share;           ///< 1 / `enough`
 };
 
 }  // namespace
