@@ -67,8 +67,8 @@ struct SnapshotInput {
 /// - `component`: connected known cells (4 neighbours, heights within `connect_step_m`), numbered
 ///   from 1 in the order of their first cell. Surfaces beyond 65535 get no number.
 /// - `drop_evidence`: 255 on the *upper* cell of a measured drop. Each measured cell is compared
-///   with the next measured cell along its row and column, across at most `drop_reach_m` of
-///   occluded region, and with rays that passed over occluded cells. The cell is an upper cell if
+///   with the next measured cell along its row and column, at most `drop_reach_m` away. It is also
+///   compared with rays that passed over occluded cells up to there. The cell is an upper cell if
 ///   such a cell or ray lies lower by more than `drop_step_m`. The lower cell gets no evidence: for
 ///   a machine that stands on it, the lower ground is no drop (the floor beside a table).
 [[nodiscard]] Status build_snapshot(const SnapshotInput& input, MapSnapshot& out);

@@ -238,8 +238,8 @@ double roughness_m(const Census& census) {
     return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
 }
 
-/// Returns true if a measured point lies more than `step_m` below a plane, and noise (5 sigma of
-/// the inverse range) cannot explain that it lies behind the plane.
+/// Returns true if a measured point lies more than `step_m` below a plane. Returns false if noise
+/// (5 sigma of the inverse range) can explain that the point lies behind the plane.
 bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m) {
     if (-plane.signed_distance_m(all.points[i]) <= step_m) return false;
     // First order in the inverse range, as `Sighting::off_m`: a far point that only noise puts

@@ -8,7 +8,7 @@
 namespace surefoot::ground {
 
 /// Finds the ground when the mount of the camera is unknown. The optical axis may lie between
-/// `search_up_deg` above and `search_down_deg` below the horizon, rolled by up to
+/// `search_up_deg` above and `search_down_deg` below the horizon. The camera may roll by
 /// `search_roll_deg`, at any allowed height. Points are in camera body axes: x along the optical
 /// axis, y left, z up when the axis is level. No `up_hint` is needed.
 ///

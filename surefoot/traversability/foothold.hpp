@@ -41,8 +41,8 @@ struct FootholdConfig {
     void describe(ConfigVisitor& visitor);
     /// Returns the first reason why this config cannot be used, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
-    /// True if cells are at most as large as `foot_radius_m`, and foot, margin, band and corner
-    /// reach at most 63 cells from the middle of the foot. On other grids every cell is unknown.
+    /// True if cells are at most as large as `foot_radius_m`, and the foot with margin, band and
+    /// corner reaches at most 63 cells from its middle. On other grids every cell is unknown.
     [[nodiscard]] bool fits(double resolution_m) const noexcept;
 };
 
@@ -81,10 +81,10 @@ struct FootholdGround {
 /// - tilted: p is steeper than `max_slope` at k sigma. The disc has one independent error per
 ///   square of `correlation_m`, at an rms distance of half the radius from its diameter;
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
-///   mean (variance of the cells over their number, at most `independent_cells`);
-/// - low: `clearance_m` is too small over as many cells of F as a square of `overhead_side_m` has.
-///   Fewer such cells (wrong matches, but also cables), or any in B (the far rim of a table top is
-///   too flat to be measured), are unsure;
+///   mean. Its variance is that of a cell over the number of cells (at most `independent_cells`);
+/// - low: the free height is below `clearance_m` over as many cells of F as fit in a square of
+///   `overhead_side_m`. Fewer such cells (wrong matches, but also cables), or any in B (the far rim
+///   of a table top is too flat to be measured), are unsure;
 /// - unreachable: the cell has no `reach_step_m`.
 /// A limit that is only exceeded when k sigma are added gives unsure. Also unsure are
 /// - cells with ground in B, or within `corner_m` beyond B, that is proven to lie more than half of

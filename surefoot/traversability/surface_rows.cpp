@@ -27,7 +27,7 @@
 // Heights are absolute, not relative to the centre cell, because otherwise discs could not share
 // the sums of a row. First moments lose no precision by that. In n zz - z z, however, the square of
 // a height far from 0 would cancel. So z^2 is split into a multiple of 2^-20 m^2 (sums of these are
-// exact) and a rest, and the square of the centre height is subtracted from each part.
+// exact) and a rest. The square of the centre height is subtracted from each part.
 //
 // Scatter = n * (sum of products) - (product of sums), with z in cells too, is n^2 times the
 // covariance. On flat ground xz, yz and zz are exactly 0.
