@@ -9,7 +9,8 @@ namespace surefoot::camera {
 namespace {
 
 /// Hashes eight bytes at a time with the multiply and rotate of xxHash's rounds (Collet, XXH64).
-/// Fills the last bytes with zeros: all rows of an image have the same length.
+/// Zeros complete the last eight bytes. This is unambiguous, because all rows of an image have the
+/// same length.
 std::uint64_t hash_of(const char* bytes, std::size_t size) noexcept {
     std::uint64_t hash = 0x27d4eb2f165667c5U ^ size;
     for (std::size_t at = 0; at < size; at += sizeof(std::uint64_t)) {

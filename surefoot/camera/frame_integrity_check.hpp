@@ -36,7 +36,7 @@ class FrameIntegrityCheck {
     /// A tear needs at least this many old rows and as many new rows: the height of a JPEG block.
     static constexpr int kMinTornRows = 8;
     /// A row has structure if this many neighbouring pixels differ. With noise of one grey level,
-    /// two readings of a pixel agree in 28 % of cases; of a row, in 0.28^16 < 1e-8.
+    /// two readings of a pixel agree in 28 % of cases, and of 16 pixels in 0.28^16 < 1e-8.
     static constexpr int kMinChanges = 16;
 
   private:

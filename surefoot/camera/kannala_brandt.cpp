@@ -18,13 +18,13 @@ constexpr int kMaxSteps = 80;
 /// Residual of the inverse in normalised coordinates (rad): 1e-12 times f = 1000 px is 1e-9 px.
 constexpr double kConverged = 1e-12;
 
-/// d(theta): distance from the principal point divided by the focal length.
+/// Returns d(theta): the distance from the principal point divided by the focal length.
 double radius(const KannalaBrandt& m, double theta) {
     const double s = theta * theta;
     return theta * (1.0 + s * (m.k1 + s * (m.k2 + s * (m.k3 + s * m.k4))));
 }
 
-/// d'(theta)
+/// Returns the derivative d'(theta).
 double slope(const KannalaBrandt& m, double theta) {
     const double s = theta * theta;
     return 1.0 + s * (3.0 * m.k1 + s * (5.0 * m.k2 + s * (7.0 * m.k3 + s * 9.0 * m.k4)));

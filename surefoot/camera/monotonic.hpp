@@ -10,8 +10,8 @@ namespace surefoot::camera {
 /// folds back, and points far off the axis would appear inside the picture.
 ///
 /// Method: a polynomial lies between its smallest and largest Bernstein coefficients (Farouki 2012,
-/// section 4). If these have both signs, the interval is halved. Returns false for NaN, and if 40
-/// halvings give no decision (the polynomial touches zero).
+/// section 4). If the coefficients have both signs, the interval is halved. Returns false for NaN,
+/// and if 40 halvings give no decision (the polynomial touches zero).
 [[nodiscard]] bool positive_on(std::span<const double> coefficients, double s_max) noexcept;
 
 }  // namespace surefoot::camera

@@ -25,7 +25,7 @@ struct PinholeRadTan {
     [[nodiscard]] bool has_distortion() const noexcept {
         return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
     }
-    /// Returns nullopt for points at or behind the camera plane.
+    /// Returns nullopt for points at or behind the camera plane, and where the image folds back.
     [[nodiscard]] std::optional<Eigen::Vector2d> project(
         const Eigen::Vector3d& p_camera,
         Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;

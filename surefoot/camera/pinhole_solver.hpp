@@ -11,7 +11,7 @@
 /// on the plane z = 1. `distort` returns nullopt where the image does not grow outward.
 namespace surefoot::camera::pinhole_solver {
 
-inline constexpr int kMaxNewtonSteps = 200;  ///< 5 suffice in the image; far outside it takes more
+inline constexpr int kMaxNewtonSteps = 200;  ///< 5 suffice in the image; more are needed far out
 /// Residual of the inverse, normalised: 1e-13 times f = 1000 px is far below any practical use.
 inline constexpr double kConverged = 1e-13;
 /// Largest valid residual if rounding stops the steps earlier; 1e-7 px at f = 1000 px.
@@ -78,7 +78,7 @@ std::optional<Eigen::Vector2d> undistort(const Distort& distort, const Eigen::Ve
     return p;
 }
 
-/// Returns the pixel of a point, or nullopt for a point at or behind the camera plane.
+/// Returns the pixel of a point, or nullopt at or behind the camera plane or if `distort` fails.
 template <typename Distort>
 std::optional<Eigen::Vector2d> project(const Intrinsics& k,
                                        const Distort& distort,

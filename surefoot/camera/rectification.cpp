@@ -14,7 +14,7 @@ namespace surefoot::camera {
 namespace {
 
 constexpr int kBorderSamples = 128;  ///< samples per side of an image
-constexpr double kZoomStep = 1.002;  ///< zoom factor per step until the source covers the view
+constexpr double kZoomStep = 1.002;  ///< factor per zoom step until no pixel lacks a source
 constexpr int kMaxZoomSteps = 700;   ///< 1.002^700 = 4 times
 /// In a plane image of a wider view most pixels are near the border: at 150 deg the outermost pixel
 /// covers 1/15 of the angle of the middle pixel.

@@ -11,7 +11,7 @@ namespace surefoot::camera {
 
 /// Parameters of the virtual pinhole cameras of rectified images.
 struct RectificationConfig {
-    double rectified_focal_px = 0.0;  ///< 0 = smallest without black pixels
+    double rectified_focal_px = 0.0;  ///< 0 = smallest focal length without black pixels
     int rectified_width_px = 0;       ///< 0 = width of the raw images
     int rectified_height_px = 0;
     /// Largest view angle across and down, if the focal length is chosen automatically. A wider
@@ -27,7 +27,7 @@ struct RectificationConfig {
 /// One real camera behind a rectified image.
 struct RectifiedCamera {
     Camera camera;
-    Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< optical frames
+    Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< from raw to rectified
     double offset_x_m = 0.0;  ///< x of the camera centre in the rectified left frame
 };
 

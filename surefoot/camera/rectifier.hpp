@@ -23,8 +23,8 @@ struct RectifiedPair {
 /// real rigs. Thread-compatible: const calls may run at the same time.
 ///
 /// Each camera rotates by half of their relative rotation; then both rotate until x runs along the
-/// baseline (after Bouguet). The common focal length is the configured one, or the smallest without
-/// black pixels that shows no more than the widest view.
+/// baseline (after Bouguet). The common focal length is the configured one, or the smallest one
+/// without black pixels and with a view of at most `max_view_deg`.
 class Rectifier {
   public:
     /// Baseline that converts RGB-D depth to disparity.
@@ -48,14 +48,14 @@ class Rectifier {
     void rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const;
     /// True if rectification leaves the images unchanged.
     [[nodiscard]] bool is_identity() const noexcept;
-    /// Rectified pixel of a raw pixel; nullopt if the lens model has no ray for the raw pixel.
+    /// Rectified pixel of a raw pixel; nullopt if it has no ray or its ray points back.
     [[nodiscard]] std::optional<Eigen::Vector2d> rectified_from_raw(
         Side side, const Eigen::Vector2d& raw) const;
     /// Raw pixel, in the camera `side`, of a point in the *rectified left* optical frame.
     [[nodiscard]] std::optional<Eigen::Vector2d> raw_from_point(
         Side side, const Eigen::Vector3d& p_camera) const;
 
-    /// Exposure time of a raw row relative to the stamp [s]; 0 for a global shutter.
+    /// Returns the time from the stamp to the exposure of a raw row [s]; 0 for a global shutter.
     [[nodiscard]] double row_offset_s(double v_raw_px) const noexcept;
 
   private:

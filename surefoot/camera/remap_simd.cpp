@@ -52,7 +52,7 @@ HWY_INLINE void fetch(const std::int32_t* HWY_RESTRICT offset,
     }
 }
 
-/// (32 - fraction) p + fraction q
+/// Returns (32 - fraction) p + fraction q.
 HWY_INLINE V16 mixed(V16 p, V16 q, V16 fraction) {
     return hn::Add(hn::ShiftLeft<kShift>(p), hn::Mul(hn::Sub(q, p), fraction));
 }
@@ -108,7 +108,7 @@ void remap_here(const RemapTable::View& table,
             table.offset + first, table.fraction_x + first, table.fraction_y + first};
         const std::size_t done = blend_vectors(here, near, block, out + first);
         if (done == block) continue;
-        // The remaining pixels of the last block, in vectors padded with zeros.
+        // Blends the remaining pixels of the last block, in vectors padded with zeros.
         Fetched rest{};
         std::uint8_t fraction_x[kBlock] = {};
         std::uint8_t fraction_y[kBlock] = {};

@@ -33,15 +33,15 @@ Result<StereoRig> scaled_to(const StereoRig& rig, int width, int height) {
     if (rig.left.width == width && rig.left.height == height) return rig;
     if (const auto problem = rig.problem()) return input_error(*problem);
     if (width < 1 || height < 1 || !same_shape(rig.left, width, height)) {
-        return input_error(
-            fmt::format("a calibration for {} x {} px cannot be scaled to {} x {} px: the width "
-                        "changes by {:.4f}, the height by {:.4f}; calibrate at this resolution",
-                        rig.left.width,
-                        rig.left.height,
-                        width,
-                        height,
-                        static_cast<double>(width) / rig.left.width,
-                        static_cast<double>(height) / rig.left.height));
+        return input_error(fmt::format(
+            "a calibration for {} x {} px cannot be scaled to {} x {} px: the width "
+            "changes by the factor {:.4f}, the height by {:.4f}; calibrate at the new resolution",
+            rig.left.width,
+            rig.left.height,
+            width,
+            height,
+            static_cast<double>(width) / rig.left.width,
+            static_cast<double>(height) / rig.left.height));
     }
     StereoRig out = rig;
     out.left = scaled(rig.left, width, height);

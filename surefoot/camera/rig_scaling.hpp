@@ -6,10 +6,10 @@
 
 namespace surefoot::camera {
 
-/// The rig of the same cameras with images of width x height px. Both sides must change by exactly
-/// the same ratio s; otherwise an error. Focal lengths become s f. A pixel has its centre at whole
-/// coordinates, so principal points become (c + 0.5) s - 0.5. The distortion on the plane z = 1 and
-/// the rolling-shutter read-out time do not change.
+/// Returns the rig of the same cameras with images of width x height px. Returns an error unless
+/// both sides change by exactly the same ratio s. Focal lengths become s f. A pixel has its centre
+/// at whole coordinates, so principal points become (c + 0.5) s - 0.5. The distortion on the plane
+/// z = 1 and the rolling-shutter read-out time do not change.
 ///
 /// Sizes alone cannot distinguish a resized image from a crop of the same shape (a ZED's 1080p is a
 /// crop of its 2K). The caller must make sure that the image is resized.

@@ -84,7 +84,7 @@ TEST(RigScaling, OtherShapesAreRefusedInWords) {
     const StereoRig rig = test::euroc_rig();
     EXPECT_EQ(message(scaled_to(rig, 640, 480)),
               "a calibration for 752 x 480 px cannot be scaled to 640 x 480 px: the width changes "
-              "by 0.8511, the height by 1.0000; calibrate at this resolution");
+              "by the factor 0.8511, the height by 1.0000; calibrate at the new resolution");
     EXPECT_NE(message(scaled_to(rig, 375, 240)), "accepted");  // half, but rounded down
     EXPECT_NE(message(scaled_to(rig, 0, 0)), "accepted");
     EXPECT_NE(message(scaled_to(rig, -752, -480)), "accepted");

@@ -6,12 +6,12 @@
 #include <string_view>
 
 /// Checks whether a baseline can be in metres. A calibration offers no other check of its unit.
-/// Every rig passes `baseline_problem` (in StereoRig::problem). Every file that is read also passes
-/// `baseline_warning`.
+/// StereoRig::problem tests every rig with `baseline_problem`. Every file that is read is also
+/// tested with `baseline_warning`.
 namespace surefoot::camera {
 
 inline constexpr double kMinBaseline_m = 1e-3;
-/// Largest valid baseline: above every camera of a walking machine, below every baseline in mm.
+/// Largest valid baseline: above every camera of a walking machine, below all baselines in mm.
 inline constexpr double kMaxBaseline_m = 5.0;
 
 /// Returns why a baseline cannot be used and its probable unit: "is it in mm (then 60.8 mm)?".

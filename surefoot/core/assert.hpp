@@ -3,12 +3,12 @@
 
 namespace surefoot::detail {
 
-/// Prints the broken invariant to stderr and aborts. It is a bug in our code, not an input error.
+/// Prints the broken invariant to stderr and aborts. The code has a bug; the input is not wrong.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
 }  // namespace surefoot::detail
 
-/// Checks an invariant of the code. Active unless NDEBUG is set without SUREFOOT_ASSERTS.
+/// Checks an invariant of the code. Inactive only if NDEBUG is set and SUREFOOT_ASSERTS is not.
 #if !defined(NDEBUG) || defined(SUREFOOT_ASSERTS)
 #define SUREFOOT_ASSERT(condition)                                                              \
     do {                                                                                        \

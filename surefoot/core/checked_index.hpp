@@ -10,8 +10,8 @@
 namespace surefoot {
 
 /// True if `Int` can hold the integer part of the value: not NaN, not infinite, and in range.
-/// Converting any other value is undefined behaviour. Most processors then silently return the
-/// smallest integer.
+/// Converting any other value is undefined behaviour. An x86 processor, for example, then silently
+/// returns the smallest integer.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr bool fits_integer(Real value) noexcept {
     // The limit is 2^digits: floating point holds it exactly, but not always the largest Int.
@@ -20,14 +20,14 @@ template <std::integral Int, std::floating_point Real>
     return value < kEnd && (value >= kLow || value > kLow - Real{1});
 }
 
-/// The integer part, rounded towards zero; nullopt if `Int` cannot hold it.
+/// Returns the integer part (rounded towards zero), or nullopt if `Int` cannot hold it.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr std::optional<Int> checked_integer(Real value) noexcept {
     if (!fits_integer<Int>(value)) return std::nullopt;
     return static_cast<Int>(value);  // in range, as checked
 }
 
-/// The integer part, limited to the range of `Int`; `of_nan` if the value is NaN.
+/// Returns the integer part, limited to the range of `Int`, or `of_nan` if the value is NaN.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr Int saturated_integer(Real value, Int of_nan = 0) noexcept {
     if (fits_integer<Int>(value)) return static_cast<Int>(value);  // in range, as checked
@@ -35,7 +35,7 @@ template <std::integral Int, std::floating_point Real>
     return value > Real{0} ? std::numeric_limits<Int>::max() : std::numeric_limits<Int>::lowest();
 }
 
-/// The integer part of a number, moved into [least, most]. A value of NaN counts as 0.
+/// Returns the integer part of a number, limited to [least, most]. NaN counts as 0.
 template <std::integral Int, std::floating_point Real>
 [[nodiscard]] constexpr Int clamped_integer(Real value, Int least, Int most) noexcept {
     return std::clamp(saturated_integer<Int>(value), least, most);

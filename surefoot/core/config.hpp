@@ -6,16 +6,16 @@
 
 namespace surefoot {
 
-/// Visits the fields of a configuration. Every config struct describes itself once, in
-/// `describe(ConfigVisitor&)`: key, range, comment. The default is the member's initialiser.
-/// Readers, writers, `surefoot config` and the range checks are visitors.
+/// Visits the fields of a configuration. Every config struct lists its fields once, in
+/// `describe(ConfigVisitor&)`: key, range and comment. The initialisers of the members are the
+/// defaults. Readers, writers, `surefoot config` and the range checks are visitors.
 class ConfigVisitor {
   public:
     virtual ~ConfigVisitor() = default;
 
     virtual void begin_group(const char* name) = 0;
     virtual void end_group() = 0;
-    /// `key` ends in its unit. A value that is not finite or outside [min, max] is an error.
+    /// `key` ends in its unit. A value must be finite and within [min, max].
     virtual void number(
         const char* key, double& value, double min, double max, const char* comment) = 0;
     virtual void integer(const char* key, int& value, int min, int max, const char* comment) = 0;
@@ -26,7 +26,7 @@ class ConfigVisitor {
                         std::span<const char* const> names,
                         const char* comment) = 0;
 
-    /// An enum whose enumerators count from 0 in the order of `names`.
+    /// Visits an enum whose enumerators count from 0 in the order of `names`.
     template <typename Enum>
     void enumeration(const char* key,
                      Enum& value,

@@ -7,7 +7,7 @@ namespace surefoot {
 
 /// Result of a stereo matcher for every pixel of the rectified left image.
 struct DepthImage {
-    Image<float> disparity_px;  ///< > 0; NaN = no match
+    Image<float> disparity_px;  ///< disparity, above 0; NaN = no match
     Image<float> sigma_px;      ///< one sigma of the disparity of a correct match; NaN = no match
     Image<float> outlier_probability;  ///< probability that the match is wrong, [0, 1]
 

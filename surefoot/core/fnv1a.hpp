@@ -8,8 +8,8 @@ namespace surefoot {
 
 inline constexpr std::uint64_t kFnv1aStart = 0xcbf29ce484222325ULL;
 
-/// FNV-1a hash, 64 bit (Fowler, Noll, Vo). Detects damage and distinguishes texts; the same on
-/// every platform. No protection against an attacker. `before`: hash of the preceding bytes.
+/// Returns the 64-bit FNV-1a hash (Fowler, Noll, Vo): the same on every platform. It detects damage
+/// and distinguishes texts, but does not stop an attacker. `before`: hash of the preceding bytes.
 [[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes,
                                             std::uint64_t before = kFnv1aStart) noexcept {
     std::uint64_t hash = before;

@@ -17,28 +17,28 @@ namespace surefoot {
 struct ImuSample {
     std::int64_t time_ns = 0;
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  ///< is +g upward at rest
+    Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  ///< at rest: g, upward
 };
 
 enum class Health : std::uint8_t { ok, degraded, lost };
 [[nodiscard]] const char* to_string(Health health) noexcept;
 
-/// Reason why the health is not ok: the first reason that applies. Only `imu_gap` can come with a
-/// health that is ok.
+/// Reason for the health: the first reason that applies. Health ok has the reason `none` or
+/// `imu_gap`; every other reason comes with degraded or lost.
 enum class HealthReason : std::uint8_t {
     none,
     first_frame,           ///< no earlier frame to compare with
     few_tracks,            ///< too few points agree on one motion
     poor_geometry,         ///< points too clustered to fix all six degrees of freedom
     blur,                  ///< image too blurred or too dark for corners
-    large_residual,        ///< tracks disagree with the motion by more than their noise
-    time_gap,              ///< the source skipped frames, or its time stamps do not increase
+    large_residual,        ///< the rms reprojection error of the inliers exceeds its limit
+    time_gap,              ///< too long since the previous frame, or stamps do not increase
     repeated_image,        ///< the image equals an earlier one: no observation at this instant
     torn_image,            ///< the image combines parts of two images
     cameras_swapped,       ///< the left and right images are swapped
     imu_disagreement,      ///< the IMU contradicts the images; vision continues without it
     machine_disagreement,  ///< the motion that the machine reports contradicts the images
-    beyond_machine,        ///< motion faster than the machine allows; it is rejected
+    beyond_machine,        ///< the motion is faster than the machine allows and is rejected
     moving_scene,          ///< many points agree on another motion, e.g. of a person in view
     recovered,             ///< motion estimated again after LOST; the motion in between is unknown
     imu_gap,               ///< IMU samples are missing or invalid; vision continues without it
@@ -48,7 +48,7 @@ enum class HealthReason : std::uint8_t {
 /// Pose of the machine with its uncertainty.
 struct MotionEstimate {
     std::int64_t time_ns = 0;
-    Pose T_odom_body;                               ///< pose in odom; it never jumps
+    Pose T_odom_body;                               ///< pose of base_link in odom, without jumps
     Pose T_previous_body;                           ///< motion since the previous frame
     Matrix6 relative_covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
     Health health = Health::lost;
@@ -58,18 +58,18 @@ struct MotionEstimate {
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
 };
 
-/// Motion of base_link since the previous frame in time order; no frame is left out. The machine
-/// measures it: with its joints over the standing foot, or with its wheels.
+/// Motion of base_link since the previous frame, even if that frame is repeated or torn. The
+/// machine measures this motion with its joints over the standing foot, or with its wheels.
 struct MachineMotion {
     Pose T_previous_body;
     Matrix6 covariance = Matrix6::Zero();  ///< covariance of T_previous_body; see pose.hpp
 };
 
-/// Delivery of a frame: the evidence for a stopped, frozen or torn camera (hazards H1 and H2 of the
-/// gate). It says nothing about the scene. Counts start at the source's previous frame.
+/// Delivery of a frame: evidence for a stopped or frozen camera and for torn images (hazards H1 and
+/// H2 of the gate). `dropped` to `reconnected` count since the source's previous frame.
 struct FrameStatus {
     int dropped = 0;      ///< frames lost before delivery; the device counts them
-    int skipped = 0;      ///< frames discarded because newer ones were waiting
+    int skipped = 0;      ///< frames discarded because newer frames were waiting
     int damaged = 0;      ///< frames too short or impossible to decode
     int reconnected = 0;  ///< number of times the device was reopened
     /// Number of consecutive frames, up to this one, whose image is not new; 0 = new image.
@@ -80,9 +80,9 @@ struct FrameStatus {
     [[nodiscard]] bool is_new_and_whole() const noexcept { return repeated == 0 && !torn; }
 };
 
-/// One frame of a source: a raw stereo pair, or (RGB-D) one image with depth, or a modelled frame.
-/// A modelled frame has no image; it carries the depth or motion that the pipeline would compute.
-/// The pipeline does not compute values that the frame carries already.
+/// One frame of a source: a raw stereo pair, one image with depth (RGB-D), or a modelled frame. A
+/// modelled frame has its depth in place of images. Every frame can also carry its motion. The
+/// pipeline does not compute values that the frame carries.
 struct StereoFrame {
     std::int64_t time_ns = 0;
     int index = 0;               ///< position in the source, counted from 0
@@ -91,8 +91,8 @@ struct StereoFrame {
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
     std::optional<MachineMotion> machine_motion;
-    std::optional<DepthImage> known_depth;  ///< depth in the frame of the rectified rig
-    /// Known motion. Its odom frame begins at the first base_link of the source.
+    std::optional<DepthImage> known_depth;  ///< depth of the pixels of the rectified left image
+    /// Known motion. Its odom frame is base_link at the source's first frame.
     std::optional<MotionEstimate> known_motion;
     FrameStatus frame_status;
 };

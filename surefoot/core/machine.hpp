@@ -11,14 +11,14 @@ namespace surefoot {
 /// A rectangle on the ground, parallel to the axes of base_link. Lengths are integers in units of
 /// 0.1 mm ("tenth_mm") as in the map snapshot, so that every computer decides the same.
 struct GroundBox {
-    std::int32_t center_x_tenth_mm = 0;  ///< centre, forward of base_link
-    std::int32_t center_y_tenth_mm = 0;  ///< centre, left of base_link
+    std::int32_t center_x_tenth_mm = 0;  ///< position of the centre, forward of base_link
+    std::int32_t center_y_tenth_mm = 0;  ///< position of the centre, left of base_link
     std::int32_t length_tenth_mm = 0;    ///< along x
     std::int32_t width_tenth_mm = 0;     ///< along y
 };
 
-/// The space that some links of the machine or its user fill during a movement, relative to
-/// base_link on its straight path to the target. The box covers the whole joint trace, including
+/// Space that some links of the machine, or its user, fill during a movement. The box moves with
+/// base_link straight to the target. It covers every position of the links on the way, including
 /// the weight shift of the body. Heights count from the soles.
 struct BodyPart {
     GroundBox box;
@@ -31,7 +31,7 @@ struct Body {
     static constexpr int kMaxParts = 8;
     std::array<BodyPart, kMaxParts> parts{};
     std::int32_t count = 0;
-    std::int32_t sway_tenth_mm = 0;  ///< width added for motion that no trace covers
+    std::int32_t sway_tenth_mm = 0;  ///< margin of the parts for motion beyond their boxes
 
     [[nodiscard]] constexpr std::span<const BodyPart> all() const noexcept {
         const bool sound = count >= 0 && count <= kMaxParts;
@@ -72,25 +72,25 @@ struct StepLimits {
 struct GateLimits {
     std::array<StepLimits, kMovementClassCount> step{};
     double min_normal_z = 1.0;                  ///< cosine of the largest tilt of a foot plane
-    std::int32_t patch_side_tenth_mm = 500;     ///< side of the patches that judge a foot
+    std::int32_t patch_side_tenth_mm = 500;     ///< side of the square patches under a foot
     std::int32_t patch_residual_tenth_mm = 0;   ///< limit of |residual| + sigma_factor * sigma
     std::int32_t patch_sigma_tenth_mm = 0;      ///< a patch with a larger sigma is not resolvable
-    double sigma_factor = 3.4;                  ///< error probability 3e-4 (one-sided, normal)
-    std::int32_t patch_independent_cells = 1;   ///< most cells whose errors are independent
-    std::int32_t cell_sigma_tenth_mm = 0;       ///< cells with a larger sigma prove nothing
+    double sigma_factor = 3.4;                  ///< 3.4: error probability 3e-4 (one-sided, normal)
+    std::int32_t patch_independent_cells = 1;   ///< largest number of independent cells in a patch
+    std::int32_t cell_sigma_tenth_mm = 0;       ///< a cell with a larger sigma is not resolvable
     std::int32_t swing_clearance_tenth_mm = 0;  ///< highest obstacle below a swinging foot
-    std::int32_t foot_margin_tenth_mm = 0;      ///< width added around the path of a foot
-    std::int32_t drop_tenth_mm = 0;             ///< height difference from which ground is a drop
-    std::int32_t drop_band_tenth_mm = 0;        ///< width of solid ground beyond a landing foot
-    std::uint8_t drop_evidence = 0;             ///< smallest evidence of a drop
-    std::int32_t drift_tenth_mm = 0;            ///< 1-sigma horizontal drift since a cell was seen
+    std::int32_t foot_margin_tenth_mm = 0;      ///< margin around the path of a foot
+    std::int32_t drop_tenth_mm = 0;             ///< ground that lies lower by more is a drop
+    std::int32_t drop_band_tenth_mm = 0;        ///< width around a landing foot without a drop
+    std::uint8_t drop_evidence = 0;             ///< a cell with this evidence (1-255) is a drop
+    std::int32_t drift_tenth_mm = 0;            ///< limit of 1-sigma drift since a cell was seen
     /// Class stair: the share of a foot's length that its tread must carry, in thousandths, and the
     /// largest overhang of the foot beyond the nosing.
     std::int32_t tread_share_permille = 1'000;
     std::int32_t tread_overhang_tenth_mm = 0;
     std::int64_t frame_age_ns = 0;
     std::int64_t pose_age_ns = 0;
-    std::int64_t future_tolerance_ns = 0;          ///< largest time of a stamp after now
+    std::int64_t future_tolerance_ns = 0;          ///< a stamp may be this far in the future
     std::int64_t verdict_ttl_ns = 0;               ///< validity time of an OK
     std::int32_t attestation_radius_tenth_mm = 0;  ///< largest radius of an operator attestation
 };

@@ -6,7 +6,8 @@
 namespace surefoot {
 namespace {
 
-/// Levenshtein distance in which a swap of neighbours counts as one (optimal string alignment).
+/// Levenshtein distance in which a swap of two neighbouring characters counts as one edit (optimal
+/// string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     const std::size_t columns = b.size() + 1;
     std::vector<std::size_t> before(columns), above(columns), row(columns);
@@ -36,7 +37,8 @@ std::vector<std::string> nearest_names(std::string_view name,
         const std::string* name;
     };
     std::vector<Candidate> candidates;
-    // A key may have any length. A distance above the length of the name carries no information.
+    // A key may have any length, so only its first 128 characters are compared: the work grows with
+    // the length.
     const std::string_view key = name.substr(0, 128);
     for (const std::string& other : names) {
         const std::size_t distance = edit_distance(key, other);

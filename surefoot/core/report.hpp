@@ -21,7 +21,7 @@ struct FusionCounts {
     std::int64_t points = 0;            ///< valid depth values of the frame
     std::int64_t gated_range = 0;       ///< points rejected: too near or too far
     std::int64_t gated_height = 0;      ///< points rejected: above or below the height limits
-    std::int64_t gated_confidence = 0;  ///< rejected: disparity jump, grazing ray, likely outlier
+    std::int64_t gated_confidence = 0;  ///< rejected: disparity jump, grazing ray or likely outlier
     std::int64_t gated_density = 0;     ///< points rejected by radius outlier removal
     std::int64_t gated_border = 0;      ///< points rejected: their cell extends beyond the image
     std::int64_t outside = 0;           ///< points outside the map
@@ -33,7 +33,7 @@ struct FusionCounts {
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };
 
-/// Delivery of the frames of a run, summed up; see FrameStatus.
+/// Counts of all frames of a run by their delivery; see FrameStatus.
 struct FrameStatusCounts {
     std::int64_t repeated_frames = 0;        ///< frames whose image is not new
     std::int64_t longest_freeze_frames = 0;  ///< longest sequence of repeated frames
@@ -45,13 +45,13 @@ struct FrameStatusCounts {
     FrameStatusCounts& operator+=(const FrameStatus& frame) noexcept;
 };
 
-/// Ground plane of one frame. The producer names the coordinate frame.
+/// Ground plane of one frame. The producer names the coordinate frame and the point of `height_m`.
 struct GroundObservation {
     bool accepted = false;
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, points to the sensor
-    double height_m = 0.0;                              ///< distance from the sensor to the plane
+    double height_m = 0.0;                              ///< height of this point above the plane
     double inlier_ratio = 0.0;
-    double rms_m = 0.0;  ///< rms distance of the inliers
+    double rms_m = 0.0;  ///< rms distance of the inliers from the plane
 };
 
 /// All values of one frame that a dashboard, a log or a benchmark shows.
@@ -69,7 +69,7 @@ struct FrameReport {
     GroundObservation ground;  ///< ground plane in the body frame
     FusionCounts fusion;
     std::int64_t known_cells = 0;  ///< known map cells after this frame
-    /// Wall time per stage [ms]. The only values that differ between equal runs.
+    /// Wall time per stage [ms]. Only these values differ between equal runs.
     std::array<double, kStageCount> stage_ms{};
 };
 

@@ -18,15 +18,15 @@ enum class ErrorCode {
     interrupted,  ///< the user stopped the run: exit 1
 };
 
-/// A failure with its message: what, where, value, limit, and what to do.
+/// A failure with its message: what happened, where, value, limit and what to do.
 struct Error {
     ErrorCode code = ErrorCode::input;
     std::string message;
 };
 
 /// A value, or the reason for its absence. The reason is a failure of the user's files,
-/// configuration or messages. A broken invariant of the code is SUREFOOT_ASSERT instead. Events in
-/// the scene (blur, gaps) are enum values in a report.
+/// configuration or messages. SUREFOOT_ASSERT reports a broken invariant of the code. Events in the
+/// scene (blur, gaps) are enum values in a report.
 template <typename T>
 class [[nodiscard]] Result {
   public:

@@ -5,8 +5,8 @@
 
 namespace surefoot {
 
-/// Seeded generator, the same numbers on every platform: xoshiro256** (Blackman and Vigna 2018),
-/// state filled by splitmix64. Callers pass it in; there is no global generator.
+/// Seeded generator xoshiro256** (Blackman and Vigna 2018); splitmix64 fills its state. Callers
+/// pass it in. The numbers are the same on every platform; normal() also uses the log of libm.
 class Rng {
   public:
     explicit Rng(std::uint64_t seed) noexcept;

@@ -13,8 +13,8 @@ inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 [[nodiscard]] constexpr double seconds_from_ns(std::int64_t time_ns) noexcept {
     return static_cast<double>(time_ns) * 1e-9;
 }
-/// Rounds to the nearest nanosecond. Limits the result to 146 years on either side, so that the sum
-/// of two results fits. NaN gives 0.
+/// Rounds to the nearest nanosecond. Limits the result to +-146 years, so that the sum of two
+/// results fits. NaN gives 0.
 [[nodiscard]] constexpr std::int64_t ns_from_seconds(double time_s) noexcept {
     const double scaled = time_s * 1e9;
     constexpr std::int64_t kMost_ns = (std::int64_t{1} << 62) - 1;

@@ -10,7 +10,7 @@
 
 namespace surefoot {
 
-/// Rows of pixels in memory owned by the caller; valid only during the call that receives it.
+/// View of rows of pixels that the caller owns. Valid only during the call that receives the view.
 template <typename T>
 struct ImageView {
     T* data = nullptr;

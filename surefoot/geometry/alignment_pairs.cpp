@@ -15,14 +15,15 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t kBorderNeighbours = 31;
-/// The mean of half a disc of points lies 0.42 of its radius off the centre; the mean of 30 points
-/// of a whole disc lies 0.09 off by chance. The limit applies to the mean share of both clouds: a
-/// limit on each cloud alone would draw a border towards its chance offset. A pair begins to count
-/// at the first share and counts fully at the second, so that small steps change little.
+/// Limits of the offset at a border: the distance from a point to the mean of its neighbours,
+/// divided by the radius of their ball. The offset is 0.42 for half a disc of points, and 0.09 by
+/// chance for 30 points of a whole disc. The limits apply to the mean offset of both clouds: a
+/// limit on each cloud alone would draw a border towards its chance offset. The weight of a pair
+/// grows from 0 at kBegins to 1 at kWhole, so that small steps change little.
 constexpr double kBegins = 0.3;
 constexpr double kWhole = 0.35;
-/// Smallest share at which a point of one cloud is a candidate. If half a disc of the other cloud
-/// is there, the pair of this point just counts.
+/// Smallest offset at which a point of the moved cloud is a candidate. If the reference has an
+/// offset of 0.42 there (half a disc), the mean of both offsets is kBegins.
 constexpr double kCandidate = 0.18;
 
 std::optional<Vector3d> to_middle(const KdTree& cloud, const Vector3f& at_m, float radius_m) {
@@ -124,8 +125,9 @@ void SurfacePairs::keep_nearest() {
     for (Pair& pair : pairs_) pair.counts = pair.counts && pair.sq_apart_m2 <= limit_m2;
 }
 
-/// Marks edges: neighbours whose thickness exceeds the surface noise by a share of the point
-/// spacing belong to two surfaces.
+/// Sets `edge` of each pair. A ball that is thicker than twice the median thickness may contain
+/// points of two surfaces. Above this limit, `edge` grows from 0 to 1 over an eighth of the point
+/// spacing.
 void SurfacePairs::find_edges() {
     constexpr double kNoise = 2.0;
     constexpr double kShare = 0.125;

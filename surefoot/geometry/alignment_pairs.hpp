@@ -32,14 +32,14 @@ struct Pair {
     /// normal belongs to neither surface.
     double edge = 0.0;
     double ball_m = 0.0;       ///< radius of the ball that gives the normal or the border
-    double thickness_m = 0.0;  ///< rms of the points in the ball across the surface
+    double thickness_m = 0.0;  ///< rms distance of the points in the ball from the surface
     std::uint32_t reference = Neighbour::kNone;
     bool counts = false;
 };
 
-/// Returns the spacing of a square lattice with `others` more points in a ball of that radius.
+/// Returns the spacing of a square lattice with `others` + 1 points in a disc of this radius.
 [[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
-/// Median over the pairs that count; 0 if no pair counts.
+/// Returns the median over the pairs that count, or 0 if no pair counts.
 [[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);
 
 /// Pairs of nearest points. Keeps the normals of known points between calls of `at`.
@@ -70,12 +70,12 @@ class SurfacePairs {
     const AlignmentConfig& config_;
     Executor& executor_;
     std::vector<Pair> pairs_;
-    std::vector<Known> nearest_;  ///< one per moved point; usually still valid in the next step
+    std::vector<Known> nearest_;  ///< data of the nearest reference point of each moved point
 };
 
-/// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the mean of
-/// the points that both clouds have within the same ball. A border shifts this mean; the interior
-/// of a surface does not.
+/// Border of the moved cloud: points whose neighbours lie to one side. A pair compares the means of
+/// the points of both clouds within the same ball. A border shifts this mean; the interior of a
+/// surface does not.
 class BorderPairs {
   public:
     /// `moved`: the k-d tree of the points `moved_m`.
@@ -92,7 +92,7 @@ class BorderPairs {
     struct Border {
         std::size_t index;  ///< index of the point
         float radius_m;
-        Eigen::Vector3d to_middle_m;  ///< to the mean of its neighbours, in axes of the moved cloud
+        Eigen::Vector3d to_middle_m;  ///< from the point to the mean of its neighbours, moved axes
     };
     [[nodiscard]] Pair pair_up(const Border& border, const Pose& T, const Pair& surface) const;
 

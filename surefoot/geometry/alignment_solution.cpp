@@ -70,7 +70,7 @@ Matrix6d scatter_of(HeldBy kind,
 /// Variance of each direction that edges or borders fix. It does not fall with the number of pairs.
 double systematic_var_m2(HeldBy kind, std::span<const Pair> pairs, double cell_var_m2) {
     if (kind == HeldBy::edges) return cell_var_m2;
-    constexpr double kEnds = 0.05;  // one sigma of an error of at most 0.1 radii of a ball
+    constexpr double kEnds = 0.05;  // one sigma of an error of at most 0.1 ball radii
     const double ends_m = kEnds * median_over(pairs, &Pair::ball_m);
     return cell_var_m2 + ends_m * ends_m;
 }
@@ -126,8 +126,8 @@ Normals6 sum_up(HeldBy kind, std::span<const Pair> pairs, const Lever& lever, Ex
 
 AlignmentSolution solve(const std::array<Normals6, kHolds>& sums) {
     // Normals of noisy points are wrong by some degrees. So a surface seems to fix a direction
-    // along itself, with a share that is the square of this error. A wall across that direction
-    // fixes it equally well with one point in 200.
+    // along itself, with a share that is the square of this error [rad]. So the limit for surfaces
+    // and edges is 5e-3: a wall across that direction fixes it if it has one point in 200.
     constexpr std::array kLeastShare{5e-3, 5e-3, 5e-2};
     constexpr std::array<std::int64_t, kHolds> kFewest{0, 0, 30};
     AlignmentSolution solution;

@@ -38,7 +38,7 @@ struct Normals6 {
     Vector6d right = Vector6d::Zero();
     double sq_across_m2 = 0.0;
     double sq_apart_m2 = 0.0;
-    std::int64_t pairs = 0;  ///< number of pairs that count, with any weight
+    std::int64_t pairs = 0;  ///< number of pairs that count, also with weight 0
 
     void add(HeldBy kind, const Pair& pair, const Lever& lever);
     void add(const Normals6& other);

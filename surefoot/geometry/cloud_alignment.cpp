@@ -39,7 +39,7 @@ Lever lever_of(std::span<const Vector3f> points_m) {
     return lever;
 }
 
-/// Rotates about the pivot, then shifts.
+/// Applies a step to the pose: rotates about the pivot, then shifts.
 void apply(const Vector6d& x, const Lever& lever, Pose& T) {
     const Eigen::Quaterniond turn = exp_so3(x.tail<3>() / lever.length_m);
     T.translation_m = turn * (T.translation_m - lever.pivot_m) + lever.pivot_m + x.head<3>();
@@ -56,8 +56,9 @@ std::int64_t points_paired_with(std::span<const Pair> pairs) {
     return std::unique(points.begin(), points.end()) - points.begin();
 }
 
-/// Share of the moved points that lie at points of the reference. The limit is the distance of the
-/// nearest reference point to its neighbours, plus the scatter of the surfaces.
+/// Share of the moved points that lie at points of the reference. Such a point is no farther from
+/// its nearest reference point than the radius of that point's ball of neighbours plus three times
+/// `rms_m`.
 double overlap_of(std::span<const Pair> pairs, double rms_m) {
     std::int64_t there = 0;
     for (const Pair& pair : pairs) {
@@ -67,7 +68,8 @@ double overlap_of(std::span<const Pair> pairs, double rms_m) {
     return static_cast<double>(there) / static_cast<double>(pairs.size());
 }
 
-/// Variance of the position of an end between two points of a cloud, from a sample of its points.
+/// Variance of the position of a surface's end, which lies anywhere between two points of a cloud.
+/// Takes the point spacing from a sample of the points.
 double cell_var_m2(const KdTree& cloud) {
     constexpr std::size_t kAsked = 2000;
     constexpr int kOthers = 30;
@@ -84,8 +86,8 @@ double cell_var_m2(const KdTree& cloud) {
     return cell_m * cell_m / 12.0;
 }
 
-/// Decides whether the result is valid. With 30 points more than unknowns, the scatter gives sigma
-/// to 13 %. A normal also uses 30 neighbours.
+/// Decides whether the result is valid. There must be at least 30 points more than unknowns: the
+/// scatter then gives sigma to 13 %.
 AlignmentOutcome outcome_of(const CloudAlignment& found, bool settled, std::int64_t points) {
     constexpr std::int64_t kFewestToSpare = 30;
     constexpr double kLeastOverlap = 0.05;
@@ -148,8 +150,8 @@ CloudAlignment align_clouds(const KdTree& reference,
     if (!result.steps.empty()) {
         const AlignmentStep& last = result.steps.back();
         result.overlap = overlap_of(pairs.last(), last.rms_m);
-        // Pairs that switch back and forth would never stop. So the alignment also counts as
-        // converged if the step is small against its sigma.
+        // If pairs switch back and forth, the steps never become small enough. So the alignment
+        // also counts as converged if the step is small against its sigma.
         constexpr double kShare = 0.1;
         settled = settled || (last.step_m < kShare * result.sigma_m &&
                               last.step_rad < kShare * result.sigma_rad);

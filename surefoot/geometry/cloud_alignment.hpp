@@ -16,7 +16,7 @@ namespace surefoot::geometry {
 
 struct AlignmentConfig {
     int most_iterations = 100;
-    /// Largest number of moved points in use. A larger cloud is thinned out evenly.
+    /// Largest number of moved points that are used. A larger cloud is thinned out evenly.
     int most_points = 100000;
     int normal_neighbours = 30;  ///< number of reference points for each normal
     /// Pairs farther apart than this [m] do not count; 0 = all pairs count.
@@ -26,7 +26,7 @@ struct AlignmentConfig {
     double kept_share = 1.0;
     /// Whether common borders of both clouds fix the directions along all surfaces.
     bool borders = true;
-    double smallest_step_m = 1e-5;  ///< converged if a step is below this and the next limit
+    double smallest_step_m = 1e-5;  ///< limit of the last shift of a converged alignment
     double smallest_step_rad = 1e-5;
 };
 
@@ -46,7 +46,7 @@ enum class AlignmentOutcome : std::uint8_t {
     no_pairs,        ///< no pair counts: all pairs are too far apart, or no surface was found
     too_few_points,  ///< hardly more points than unknowns: an error would not be visible
     no_overlap,      ///< fewer than 5 % of the moved points lie where the reference has points
-    not_settled,     ///< still moving after `most_iterations`
+    not_settled,     ///< the steps are still too large after `most_iterations`
 };
 inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
     "converged", "no_pairs", "too_few_points", "no_overlap", "not_settled"};
@@ -54,10 +54,10 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Directions that surfaces do not fix, out of six (three of them are rotations). Edges fix
-    /// some: ends of surfaces between points (faces of steps in a height map). Only borders of the
-    /// clouds fix others. In free directions the guess stays unchanged. On a bare floor the three
-    /// numbers add up to three.
+    /// Numbers of the six directions (three shifts, three rotations) that surfaces do not fix.
+    /// Edges fix some: ends of surfaces between points, as at steps in a height map. Only borders
+    /// of the clouds fix others. Free directions keep the guess. On a bare floor the three numbers
+    /// add up to three.
     int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;

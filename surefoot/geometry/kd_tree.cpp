@@ -14,12 +14,13 @@ using Eigen::Vector3f;
 
 /// Largest number of points in a leaf. Searches of one million points were fastest with 8 to 16.
 constexpr std::size_t kLeaf = 12;
-/// Number of branches that are separate pieces of work.
+/// Number of levels after which every branch is a separate piece of work.
 constexpr int kParallelLevels = 5;
-/// Smaller trees are built by one thread: threads would cost more than they save.
+/// If a branch had fewer points than this, one thread builds the whole tree: threads would cost
+/// more than they save.
 constexpr std::size_t kSmallestPiece = 2048;
-/// Rounding limit of a sum of three squares. A search enters regions that touch a box within this
-/// limit.
+/// Factor for the rounding of a sum of three squares. A search in a ball also enters boxes that
+/// miss the ball by no more than this rounding.
 constexpr float kRounding = 1.0F - 4e-7F;
 
 int level_of(std::uint32_t node) noexcept {
@@ -58,7 +59,8 @@ struct OneNearest {
     }
 };
 
-/// Keeps several nearest points, sorted by insertion: they are few.
+/// Keeps several nearest points in order of distance. Sorts by insertion, because the points are
+/// few.
 struct SomeNearest {
     Vector3f query_m;
     std::span<Neighbour> found;
@@ -314,8 +316,8 @@ class CylinderRegion {
   private:
     Vector3f middle_m_;
     Eigen::Matrix3f axes_;
-    Vector3f reach_m_;  ///< reach along each axis
-    Vector3f box_m_;    ///< reach along the axes of the box
+    Vector3f reach_m_;  ///< half extent of the cylinder along each column of `axes_`
+    Vector3f box_m_;    ///< half extent of the cylinder along x, y and z
     float slack_m_ = 0.0F;
 };
 

@@ -34,10 +34,10 @@ struct Cylinder {
 };
 
 /// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). The tree
-/// owns the points and stores them leaf by leaf, without an index: 12 bytes a point and
-/// about one byte more for the nodes. Points are floats, relative to a near origin.
-/// Distances equal those of a search through all points, to the last bit. Searches are const
-/// and thread-safe.
+/// owns the points and stores them leaf by leaf, without an index: 12 bytes a point and one
+/// to two bytes more for the nodes. Points are floats, relative to a near origin. Distances
+/// equal those of a search through all points, to the last bit. Searches are const and
+/// thread-safe.
 ///
 /// Equal points form one leaf of any size, so that a cloud of copies is not slower than others.
 ///
@@ -65,7 +65,7 @@ class KdTree {
     /// Returns their number: `found.size()`, or the number of all points if that is smaller.
     std::size_t nearest(const Eigen::Vector3f& query_m, std::span<Neighbour> found) const;
 
-    /// Index of a point with exactly these coordinates; `Neighbour::kNone` if none exists.
+    /// Returns the index of a point with exactly these coordinates, or `Neighbour::kNone`.
     [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
 
     /// Counts the nodes and points that a search for `neighbours` points, or `find`, visits. Tests
@@ -124,7 +124,7 @@ class KdTree {
 
     void cut(std::uint32_t node);
     void build(std::uint32_t node);
-    /// First point of a node. The nodes of a level share the points as evenly as possible.
+    /// Returns the first point of a node. The nodes of a level share the points evenly.
     [[nodiscard]] std::size_t first_of(int level, std::uint64_t number) const noexcept {
         return static_cast<std::size_t>((points_m_.size() * number) >> level);
     }

@@ -9,7 +9,7 @@
 namespace surefoot::geometry {
 namespace {
 
-constexpr double kCollinearRatio = 1e-12;  // ratio of variances; as a ratio of lengths a millionth
+constexpr double kCollinearRatio = 1e-12;  // limit of a ratio of variances, 1e-6 for lengths
 
 /// `point_at(i)` returns point i, for i in [0, count).
 template <typename PointAt>

@@ -12,9 +12,9 @@ namespace surefoot::geometry {
 /// squared attitude differences. The signs of the inputs do not matter: q and -q are the same
 /// rotation.
 ///
-/// `rotations` are unit quaternions. `weights` (>= 0) are equally many, or empty for equal weights.
-/// The result has w >= 0. Returns nullopt if no weight is positive or a value is negative or not
-/// finite. Also returns nullopt if the mean is not unique (two rotations half a turn apart).
+/// `rotations` are unit quaternions. `weights` (>= 0): one per rotation, or empty for equal
+/// weights. The result has w >= 0. Returns nullopt if no weight is positive or a value is negative
+/// or not finite. Also returns nullopt if the mean is not unique (two rotations half a turn apart).
 [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion_mean(
     std::span<const Eigen::Quaterniond> rotations, std::span<const double> weights = {});
 

@@ -47,7 +47,7 @@ std::optional<Plane> draw_plane(Points points, const std::vector<int>& finite, R
     const Eigen::Vector3d& a = draw();
     const Eigen::Vector3d& b = draw();
     const Eigen::Vector3d& c = draw();
-    return plane_through(a, b, c);  // a point drawn twice spans no plane
+    return plane_through(a, b, c);  // no plane if a point was drawn twice
 }
 
 bool is_inlier(Points points, int index, const Plane& plane, const RansacPlaneOptions& options) {
@@ -107,8 +107,8 @@ Search search(Points points,
               Rng& rng) {
     Search result;
     double best = 0.0;
-    // Chance that all three points are inliers of the best plane so far, or of the smallest wanted
-    // plane.
+    // Chance that all three points are inliers of the best plane so far, or of a plane with the
+    // share `least_inlier_ratio`.
     double hit = std::pow(std::min(options.least_inlier_ratio, 1.0), 3);
     double missed = 1.0;  // chance that all triples so far contained an outlier
     while (result.iterations < options.max_iterations && missed > 1.0 - options.confidence) {

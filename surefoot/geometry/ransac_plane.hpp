@@ -22,9 +22,9 @@ struct RansacPlaneOptions {
     double tolerance_m = 0.05;  ///< a point within this distance of the plane is an inlier
     /// Tolerance per point; nearer inliers count more. Empty = `tolerance_m` for all points.
     std::span<const double> tolerance_of_m;
-    double confidence = 0.9999;  ///< sought probability of a triple of inliers only
+    double confidence = 0.9999;  ///< wanted probability of having drawn a triple of inliers
     int max_iterations = 1000;
-    /// The search also ends when it would have found a plane with this share of the points.
+    /// The search ends when it has probably (`confidence`) drawn a plane with this share of points.
     double least_inlier_ratio = 0.0;
     int max_refinements = 8;  ///< largest number of refits on the inliers
     std::optional<NormalCone> cone;
@@ -38,7 +38,7 @@ struct RansacPlane {
 };
 
 /// Returns the plane with the most inliers (Fischler and Bolles 1981), refitted by least squares.
-/// Returns nullopt if no admissible triple was drawn or the refined plane leaves the cone.
+/// Returns nullopt without an admissible triple, or if the refined plane leaves the cone.
 /// Deterministic for equal points, options and generator state. Only finite points can be inliers.
 [[nodiscard]] std::optional<RansacPlane> ransac_plane(std::span<const Eigen::Vector3d> points,
                                                       const RansacPlaneOptions& options,

@@ -10,7 +10,7 @@
 namespace surefoot::geometry {
 
 /// Returns the unit normal of the surface around `middle_m`: the direction in which the points of
-/// the ball are thinnest. It points up (z > 0), on a wall along the larger of x and y. Returns
+/// the ball are thinnest. It points up (z > 0), or on a wall along +x or +y (the larger). Returns
 /// nullopt for fewer than three points, or for points on one line or at one position.
 [[nodiscard]] std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
                                                             const Eigen::Vector3f& middle_m,
@@ -18,7 +18,7 @@ namespace surefoot::geometry {
 
 /// A surface through a few points.
 struct LocalSurface {
-    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< result of `surface_normal`
+    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit normal as from `surface_normal`
     float thickness_m = 0.0F;  ///< rms of the points across the surface: noise, or an edge
 };
 

@@ -60,7 +60,7 @@ class ConvexArea {
     int hull_count_ = 0;
     int right_count_ = 0;
     int left_count_ = 0;
-    double radius_ = 0.0;       ///< [cells]
+    double radius_ = 0.0;       ///< radius of the area [cells]
     double rightmost_y_ = 0.0;  ///< y of the point that lies farthest to the right
     double leftmost_y_ = 0.0;
     std::int64_t first_row_ = 0;

@@ -15,8 +15,8 @@ struct FixedPoint {
     friend bool operator==(const FixedPoint&, const FixedPoint&) = default;
 };
 
-/// Position of the cells of a snapshot: cell (ix, iy) covers [origin + i * side, origin + (i+1) *
-/// side].
+/// Position of the cells of a snapshot [0.1 mm]: cell (ix, iy) covers [origin + i * side, origin +
+/// (i+1) * side].
 struct FixedGrid {
     std::int64_t origin_x = 0;
     std::int64_t origin_y = 0;
@@ -82,7 +82,7 @@ struct FixedRun {
 
 /// Returns the cells of row `iy`, limited to `within`, whose open square overlaps the open polygon
 /// (separating axes; touching an edge does not count). They form one run, because the polygon is
-/// convex. Exact; costs one division per edge that is not parallel to the row. `relative` is
+/// convex. Exact; costs two divisions per edge that is not parallel to the row. `relative` is
 /// relative to the grid's origin and has an area; row and cells lie within its bounds.
 [[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
                                              std::int64_t side,
@@ -92,7 +92,7 @@ struct FixedRun {
     for (int i = 0; i < relative.count; ++i) {
         const FixedPoint a = relative.vertices[static_cast<std::size_t>(i)];
         const FixedPoint b = relative.vertices[static_cast<std::size_t>((i + 1) % relative.count)];
-        // The corner farthest to the left of a -> b must have dx * (y - a.y) - dy * (x - a.x) > 0.
+        // The cell corner farthest left of a -> b must have dx * (y - a.y) - dy * (x - a.x) > 0.
         const std::int64_t dy = b.y - a.y;
         const std::int64_t y = b.x > a.x ? low_y + side : low_y;
         const std::int64_t product = (b.x - a.x) * (y - a.y);

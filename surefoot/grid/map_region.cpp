@@ -22,7 +22,7 @@ constexpr float kHighest_m = 1e6F;
 /// Tolerance for the squared length of a quaternion: covers the rounding of a file.
 constexpr double kNormTolerance = 1e-6;
 
-/// True for NaN (unknown) and for finite numbers from 0.
+/// Returns true for NaN (unknown) and for finite numbers of 0 or more.
 bool absent_or_not_negative(float value) {
     return std::isnan(value) || (std::isfinite(value) && value >= 0.0F);
 }

@@ -22,13 +22,13 @@ struct LatticeBox {
     int nx = 0;
     int ny = 0;
 
-    /// Returns what is wrong (sides, number of cells, distance from the origin), or nullopt.
+    /// Returns the first problem (sides, number of cells, distance from the origin), or nullopt.
     [[nodiscard]] std::optional<std::string> problem() const;
     friend bool operator==(const LatticeBox&, const LatticeBox&) = default;
 };
 
 /// Limits of a region: 102 m square at 25 mm (740 MB with all layers), and within 2^40 cells of the
-/// origin. There a double still resolves a millionth of a cell.
+/// origin. There a double still resolves a thousandth of a cell.
 inline constexpr int kMaxRegionSide = 1 << 14;
 inline constexpr std::int64_t kMaxRegionCells = std::int64_t{1} << 24;
 inline constexpr std::int64_t kMaxLatticeIndex = std::int64_t{1} << 40;

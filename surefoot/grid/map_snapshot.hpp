@@ -27,10 +27,10 @@ struct SnapshotEdge {
     std::int32_t to_x_tenth_mm = 0;
     std::int32_t to_y_tenth_mm = 0;
     std::int32_t upper_tenth_mm = 0;  ///< height of the ground above the edge
-    /// Ground below the edge; if it was not visible, an upper bound.
+    /// Height of the ground below the edge, or an upper bound if it was not visible.
     std::int32_t lower_tenth_mm = 0;
     std::int32_t height_sigma_tenth_mm = 0;  ///< sigma of upper minus lower, rounded up
-    std::int32_t across_sigma_tenth_mm = 0;  ///< sigma of the line's position, rounded up
+    std::int32_t across_sigma_tenth_mm = 0;  ///< sigma of the position across the line, rounded up
     friend bool operator==(const SnapshotEdge&, const SnapshotEdge&) = default;
 };
 
@@ -82,12 +82,12 @@ struct MapSnapshot {
     std::array<std::int32_t, kMaxCells> height_tenth_mm{};
     std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated
     std::array<std::uint16_t, kMaxCells>
-        drift_tenth_mm{};  ///< 1-sigma horizontal drift since last seen
+        drift_tenth_mm{};  ///< 1-sigma horizontal drift since the cell was last seen
     std::array<std::uint16_t, kMaxCells>
         clearance_tenth_mm{};                          ///< free height above; kNoCeiling = open
     std::array<std::uint16_t, kMaxCells> component{};  ///< label of the connected surface, 0 = none
     std::array<std::uint8_t, kMaxCells>
-        drop_evidence{};  ///< 0 to 255; 255 = a ray proved a drop here
+        drop_evidence{};  ///< 0 to 255; 255 = a drop is proven beside this cell
     std::array<EvidenceSource, kMaxCells> source{};
     /// Edges, nearest to the body first. The cells are valid without the edges: a drop that was not
     /// detected as a line is still a drop in the cells.

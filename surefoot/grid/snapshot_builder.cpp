@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTenthMmPerM = 1e4;
 constexpr double kFarthestM = 1e5;    ///< largest distance of pose, map and edges from odom
-constexpr double kHighestM = 1000.0;  ///< a larger height is a damaged number, not ground
+constexpr double kHighestM = 1000.0;  ///< a height beyond +-1000 m is a damaged number, not ground
 
 /// Needs lengths within kFarthestM; check() and is_sound() ensure this.
 std::int64_t tenth_mm(double length_m) {
@@ -288,7 +288,7 @@ class Labeller {
     std::size_t size_ = 0;
 };
 
-/// A row or column of the snapshot, in one direction.
+/// Cells of a row or column in the order of a walk: forward, or backward with a negative stride.
 struct Line {
     std::ptrdiff_t first = 0;
     std::ptrdiff_t stride = 1;

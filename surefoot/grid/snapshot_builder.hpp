@@ -23,11 +23,11 @@ struct SnapshotInput {
     /// assumption.
     ImageView<const float> drift_m;
     ImageView<const float> clearance_m;  ///< optional: free height above the cell
-    /// Optional, for unknown cells: rays passed at this height, so the ground lies lower. The gate
-    /// then accepts no operator attestation of level ground there.
+    /// Optional, for unknown cells: rays passed at this height, so the ground lies lower. If this
+    /// height is below an attested level by more than a drop, the gate ignores the attestation.
     ImageView<const float> free_above_m;
     ImageView<const float>
-        drop_evidence;  ///< optional: 0..1 from rays that passed below the ground
+        drop_evidence;  ///< optional: evidence of a drop at the cell, 0 (none) to 1 (proven)
     /// Optional: cells with a value other than 0 have an untrusted measurement and become unknown.
     ImageView<const std::uint8_t> hidden;
     /// A line in odom where the ground drops; see SnapshotEdge.
@@ -58,17 +58,17 @@ struct SnapshotInput {
     double drop_reach_m = 0.5;
 };
 
-/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds so
-/// that no cell seems safer than it is: sigma and drift upward, clearance downward. NaN and too
-/// large values become unknown or the largest value. After an error `out` is not intact: a gate
+/// Fills `out` and seals it with its checksum. Crops to 256 x 256 cells around the body. Rounds
+/// sigma and drift up and clearance down, so that rounding never makes a cell seem safer. NaN and
+/// too large values become unknown or the largest value. After an error `out` is not intact: a gate
 /// that still receives it answers ERROR.
 ///
 /// This function computes two layers:
 /// - `component`: connected known cells (4 neighbours, heights within `connect_step_m`), numbered
 ///   from 1 in the order of their first cell. Surfaces beyond 65535 get no number.
 /// - `drop_evidence`: 255 on the *upper* cell of a measured drop. Each measured cell is compared
-///   with the next measured cell along its row and column, across at most `drop_reach_m` of
-///   occluded region, and with rays that passed over occluded cells. The cell is an upper cell if
+///   with the next measured cell along its row and column, at most `drop_reach_m` away. It is also
+///   compared with rays that passed over occluded cells up to there. The cell is an upper cell if
 ///   such a cell or ray lies lower by more than `drop_step_m`. The lower cell gets no evidence: for
 ///   a machine that stands on it, the lower ground is no drop (the floor beside a table).
 [[nodiscard]] Status build_snapshot(const SnapshotInput& input, MapSnapshot& out);

@@ -6,8 +6,8 @@
 /// Lists all fields and layers of a snapshot once: for its checksums, its file and the audit log.
 namespace surefoot::grid {
 
-/// visit(name, value): the header in the order of memory, without magic, layout, padding and
-/// checksums.
+/// Calls visit(name, value) for the header fields in the order of memory, without magic, layout,
+/// padding and checksums.
 template <typename Snapshot, typename Visit>
 void for_each_header_field(Snapshot& s, Visit&& visit) {
     visit("version", s.version);
@@ -31,7 +31,7 @@ void for_each_header_field(Snapshot& s, Visit&& visit) {
     visit("tilt_sigma_urad", s.tilt_sigma_urad);
 }
 
-/// visit(layer): each layer has one element per cell.
+/// Calls visit(layer) for each layer of cells. Every layer has one element per cell.
 template <typename Snapshot, typename Visit>
 void for_each_snapshot_layer(Snapshot& s, Visit&& visit) {
     visit(s.height_tenth_mm);

@@ -8,7 +8,7 @@
 
 namespace surefoot::grid {
 
-/// Larger than the side of any map; sums of a few such numbers still fit an int.
+/// Exceeds the side of any map [cells]; sums of a few such numbers still fit an int.
 inline constexpr int kMostCells = 1 << 24;
 
 /// Returns the integer part of a number of cells, limited to +-kMostCells. NaN gives 0.

@@ -9,7 +9,7 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr double kSearchSigmas = 3.0;        ///< a point may be off a plane by so many sigmas
+constexpr double kSearchSigmas = 3.0;        ///< limit of the distance from a plane, in sigmas
 constexpr double kLeastTolerance_m = 0.005;  ///< smallest tolerance of a point, whatever its sigma
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace surefoot::ground {
 struct Cloud {
     std::vector<Eigen::Vector3d> points;
     std::vector<double> inverse_range_sigma;  ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;          ///< one per point (see `judge_noise`), or empty
+    std::vector<double> tolerance_m;          ///< limit of the distance from a plane; may be empty
     double band_m = 0.0;                      ///< a point farther from a plane is not on it
     Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< point whose height is wanted
 
@@ -43,8 +43,8 @@ struct Cloud {
                              const Eigen::Vector3d& sensor,
                              std::span<const std::size_t> chosen);
 
-/// Sets the band, and for each point its tolerance to a level plane. Where the sensor allows,
-/// levels half a tolerance apart are separated: points that are too noisy for this are removed.
+/// Sets the band (half of `tolerance_m`, or more if few points are precise enough) and the
+/// tolerance of each point to a level plane. Removes the points that are too noisy for the band.
 /// Only for clouds with known noise.
 void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud);
 

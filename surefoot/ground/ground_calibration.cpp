@@ -54,8 +54,9 @@ void GroundCalibration::add(const GroundSighting& sighting_body) {
 }
 
 bool GroundCalibration::agree(const GroundSighting& a, const GroundSighting& b) const {
-    // Two sigma of both observations, but at most twice the limit. Far and rough ground is observed
-    // less precisely than the limits require, and leaving such ground out would not help.
+    // The limit grows to two sigma of both observations, but at most to twice its value. Far and
+    // rough ground is observed less precisely than the limits require. Leaving such ground out
+    // would not help.
     constexpr double kSigmas = 2.0;
     const auto within = [](double off, double sigma, double limit) {
         return off <= std::clamp(kSigmas * sigma, limit, 2.0 * limit);

@@ -16,7 +16,7 @@ enum class CalibrationReason : std::uint8_t {
     accepted,
     no_observation,  ///< no accepted observation yet
     too_few,         ///< fewer accepted observations than must agree
-    disagreement,    ///< too few observations agree, or only a minority
+    disagreement,    ///< too few observations agree, or no majority
 };
 [[nodiscard]] const char* to_string(CalibrationReason reason) noexcept;
 
@@ -27,7 +27,7 @@ struct GroundAlignment {
     CalibrationReason reason = CalibrationReason::no_observation;
     int agreeing = 0;  ///< number of observations averaged
     int rejected = 0;  ///< observations in the window that disagree with the average
-    Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();  ///< unit, up
+    Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();  ///< unit, points up
     double tilt_rad = 0.0;  ///< angle between the normal and the body's z axis
     double height_m = 0.0;  ///< height of the body's origin above the plane
     /// Uncertainty of `normal_body` and `height_m`: the mean of the observations' uncertainty plus

@@ -31,7 +31,7 @@ constexpr double kHighestStep_m = 0.35;
 struct Candidate {
     geometry::Plane plane;        ///< normal up
     std::vector<NearSide> sides;  ///< the parts of the plane in use
-    geometry::PlaneFit extent;    ///< plane of the points within the tolerance
+    geometry::PlaneFit extent;    ///< fit to the points within the tolerance
     double inlier_ratio = 0.0;
     double area_m2 = 0.0;
     double begin_m = 0.0;   ///< horizontal distance to the nearest inliers
@@ -45,7 +45,7 @@ struct Candidate {
 geometry::Plane narrowed(const Points& points, const geometry::Plane& start, double tolerance_m) {
     constexpr double kSigmas = 3.0;
     constexpr double kSigmaPerMedian = 1.4826;  // sigma / median of a normal distribution
-    constexpr double kFloor_m = 0.005;          // numerical floor of the band
+    constexpr double kFloor_m = 0.005;          // smallest band
     geometry::Plane plane = start;
     double band_m = tolerance_m;
     std::vector<double> residuals_m;

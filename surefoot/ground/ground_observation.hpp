@@ -19,9 +19,9 @@ enum class GroundReason : std::uint8_t {
     few_points,   ///< not enough points in range for any plane
     no_plane,     ///< no plane within the tilt limit at an allowed height below the sensor
     few_inliers,  ///< inlier ratio below its limit
-    small,        ///< area or extent below its limit
-    not_lowest,   ///< something lies more than a high step below the plane
-    rough,        ///< inlier scatter above its limit, or points just above and below
+    small,        ///< area or extent below its limit, or tilt too uncertain
+    not_lowest,   ///< many points lie more than a high step below the plane
+    rough,        ///< inlier scatter above its limit, or many points just beyond the inliers
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
 
@@ -31,8 +31,8 @@ struct GroundSighting {
     GroundObservation observation;  ///< in the frame of the points
     GroundReason reason = GroundReason::few_points;
     double tilt_rad = 0.0;  ///< angle between the normal and `up_hint`
-    double area_m2 = 0.0;   ///< area of occupied squares of two voxel sides, along the normal
-    /// Pixels on the plane over all pixels examined; 0 if the points do not come from an image.
+    double area_m2 = 0.0;   ///< area of occupied squares (side: 2 voxels), seen along the normal
+    /// Share of the examined pixels that lie on the plane; 0 unless search_ground() computes it.
     double image_share = 0.0;
     /// Zero if the noise of the points is unknown.
     PlaneUncertainty uncertainty;

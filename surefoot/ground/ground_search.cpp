@@ -50,7 +50,7 @@ struct View {
 /// Points from which candidate planes are drawn, cube by cube.
 struct Drawable {
     View view;
-    /// For each point: range of its cube.
+    /// For each point: first index and end index of the points in its cube.
     std::vector<std::pair<std::size_t, std::size_t>> cube_of;
 };
 
@@ -64,7 +64,7 @@ struct Candidate {
     double inlier_ratio = 0.0;
     double rms_m = 0.0;
     double area_m2 = 0.0;
-    double support = 0.0;  ///< weight of the points; compares the bands of one plane
+    double support = 0.0;  ///< log-likelihood (support_of); selects the band of a plane
     Eigen::Matrix3d covariance_of_m = Eigen::Matrix3d::Zero();
     double tilt_sigma_rad = 0.0;
 
@@ -238,7 +238,8 @@ double roughness_m(const Census& census) {
     return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
 }
 
-/// Returns true if a point certainly lies more than `step_m` below a plane.
+/// Returns true if a measured point lies more than `step_m` below a plane. Returns false if noise
+/// (5 sigma of the inverse range) can explain that the point lies behind the plane.
 bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m) {
     if (-plane.signed_distance_m(all.points[i]) <= step_m) return false;
     // First order in the inverse range, as `Sighting::off_m`: a far point that only noise puts
@@ -281,7 +282,7 @@ GroundReason judge(const GroundConfig& config,
                    const Census& census,
                    const Candidate& candidate) {
     constexpr double kMinContrast = 3.0;  // evenly spread points have at most 2
-    constexpr double kMostBelow = 0.03;  // largest share of the inliers; wrong matches lie anywhere
+    constexpr double kMostBelow = 0.03;   // points below / inliers; wrong matches lie anywhere
     if (census.inliers.size() < kLeastPoints || candidate.image_share < config.min_image_share)
         return GroundReason::few_inliers;
     const double contrast = static_cast<double>(census.inliers.size()) /
@@ -312,7 +313,7 @@ double scatter_m2(const View& view, const Plane& plane, double band_m) {
 
 /// Returns the log-likelihood of a plane with this roughness, relative to points at random
 /// positions. A band that excludes half of a mulch floor gains less than a band that includes the
-/// floor. A band that includes the foot of a wall gains hardly more.
+/// floor. A band that also includes the foot of a wall gains hardly more than one without.
 double support_of(const View& view, const Candidate& candidate, double roughness_m) {
     constexpr double kAnywhere_m = 2.0;  // range over which the random points lie
     constexpr double kLeastRoughness_m = 0.001;
@@ -395,8 +396,8 @@ double least_noise_m(const View& view, const Plane& plane) {
     return *tenth;
 }
 
-/// Chooses the band that explains most. Mulch and boulders need a wider band than parquet. A strip
-/// of floor before a wall needs a band without the foot of the wall.
+/// Chooses the band with the largest support. Mulch and boulders need a wider band than parquet. A
+/// strip of floor before a wall needs a band without the foot of the wall.
 std::optional<Candidate> measured(const GroundConfig& config,
                                   const Scene& scene,
                                   const View& rest,

@@ -14,12 +14,13 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr int kStrips = 32;             ///< number of positions at which the points may be split
-constexpr double kRim = 0.02;           ///< share of the points outside the first and last position
-constexpr int kLeastPoints = 100;       ///< smallest number on either side
-constexpr double kLeastLength_m = 0.3;  ///< least length of the returned side
-/// Two planes fit better than one if they reduce the squared noise by at least this share. A step
-/// of four times a point's noise leaves a third; the distortion of a lens reduces less. ASSUMPTION.
+constexpr int kStrips = 32;             ///< number of strips; a split lies between two strips
+constexpr double kRim = 0.02;           ///< share of the points beyond the strips at either end
+constexpr int kLeastPoints = 100;       ///< smallest number of points on either side of a split
+constexpr double kLeastLength_m = 0.3;  ///< smallest length of the returned side
+/// Two planes fit better than one if one plane leaves squared residuals that are larger by more
+/// than this share. At a step of four times a point's noise, two planes leave a third of the
+/// squared residuals. With the distortion of a lens they leave more. ASSUMPTION.
 constexpr double kLeastGain = 0.25;
 
 /// Normal equations of the least squares problem for m in w = m . r about a plane, see

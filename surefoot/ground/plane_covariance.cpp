@@ -15,11 +15,12 @@
 namespace surefoot::ground {
 namespace {
 
-constexpr double kTile_rad = 0.2;  ///< side of a tile; 70 px of a ZED
+constexpr double kTile_rad = 0.2;  ///< smallest side of a tile; 70 px in the image of a ZED
 /// Size of a bump of uneven ground. At short range a bump fills a larger tile.
 constexpr double kBump_m = 0.2;
 constexpr double kLargestTile_rad = 0.6;  ///< largest side of a tile
-/// Assumed error of a whole tile, as a share of the stated sigma.
+/// Assumed error of a whole tile, as a share of the scatter of single points (at least their stated
+/// sigma).
 constexpr double kPriorShare = 0.6;
 constexpr double kPriorTiles = 4.0;  ///< weight of kPriorShare, in tiles
 constexpr double kUnknowns = 3.0;
@@ -28,7 +29,7 @@ struct Member {
     std::array<std::int64_t, 3> tile;
     Eigen::Vector3d ray;
     double sigma;     ///< sigma of the inverse range
-    double residual;  ///< in sigmas
+    double residual;  ///< distance from the plane [sigma]
 };
 
 std::vector<Member> members_of(std::span<const Eigen::Vector3d> points,

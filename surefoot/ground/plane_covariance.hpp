@@ -24,7 +24,7 @@ namespace surefoot::ground {
 
 /// Uncertainty of a plane: of its unit normal, and of the height of a point above it.
 struct PlaneUncertainty {
-    Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< [rad^2], rank 2
+    Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Zero();  ///< of the normal [rad^2]; rank 2
     double height_var_m2 = 0.0;
 
     /// One sigma of the tilt about any axis along the plane.

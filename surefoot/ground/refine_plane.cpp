@@ -10,9 +10,9 @@ namespace surefoot::ground {
 namespace {
 
 constexpr int kRounds = 8;
-constexpr double kSettled_m = 2e-5;  // a metre away
+constexpr double kSettled_m = 2e-5;  // converged below this motion of the plane at 1 m
 constexpr std::size_t kLeastPoints = 20;
-constexpr double kTukey = 4.685;            // in sigmas; 95 % efficient for normal noise
+constexpr double kTukey = 4.685;            // cut-off [sigma], 95 % efficient for normal noise
 constexpr double kSigmaPerMedian = 1.4826;  // sigma / median of a normal distribution
 constexpr double kLeastScale = 0.1;         // smallest scale, relative to the stated sigmas
 

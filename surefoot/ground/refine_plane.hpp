@@ -51,7 +51,7 @@ struct Sighting {
     }
 };
 
-/// Direction and inverse range of a point from the origin; zero at the origin or if not finite.
+/// Direction and inverse range of a point from the origin; 0 for the origin and if not finite.
 struct Beam {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
     double inverse_range = 0.0;                     ///< [1/m]

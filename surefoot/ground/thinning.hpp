@@ -17,7 +17,7 @@ namespace surefoot::ground {
                                             double voxel_m,
                                             std::size_t max_points);
 
-/// Area of the squares of side `square_m` with a point, projected along the unit `normal`.
+/// Returns the area of the squares of side `square_m` that hold a point, seen along `normal`.
 [[nodiscard]] double covered_area_m2(std::span<const Eigen::Vector3d> points,
                                      const Eigen::Vector3d& normal,
                                      double square_m);

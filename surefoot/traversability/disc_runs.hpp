@@ -14,7 +14,7 @@ struct DiscRuns {
     static constexpr int kMaxReach = 24;
 
     int reach = 0;           ///< largest |dy| [cells]
-    std::vector<int> width;  ///< [|dy|] -> index of h in the list of half widths h
+    std::vector<int> width;  ///< element |dy|: index of h in `RunsOfDiscs::half_widths`
 };
 
 /// The runs of several discs that read the same layer.

@@ -45,10 +45,10 @@ struct FootholdFinder::Row {
     std::vector<Sums> foot;            ///< sums over F; xz with x relative to the cell
     std::vector<double> yz;            ///< sum of y z over F, y in cells relative to the cell
     std::vector<double> unknown_band;  ///< number of unknown cells of B
-    std::vector<double> tight_band;    ///< number of cells of B whose clearance is not open
+    std::vector<double> tight_band;    ///< number of cells of B with too little clearance
     std::vector<float> patch_high;
     std::vector<float> patch_low;
-    std::vector<float> low_near;  ///< largest low_shown_ within the corner distance
+    std::vector<float> low_near;  ///< largest low_shown_ in B and up to corner_m beyond B
     std::vector<float> low_possible;
 
     void reset(int nx) {
@@ -383,7 +383,7 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
         margin_m,
         0.0,
         1.0,
-        "largest position error of edges in the map; the search enlarges the foot by it");
+        "largest position error of edges in the map; the search adds this margin to the foot");
     visitor.number(
         "band_m", band_m, 0.0, 1.0, "width of the solid ground that is required around the foot");
     visitor.number("corner_m",
@@ -396,7 +396,7 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    drop_m,
                    0.001,
                    1.0,
-                   "largest height of the foot above lower ground that is not a drop");
+                   "ground that lies below the foot by more than this length is a drop");
     visitor.number("max_slope",
                    max_slope,
                    0.001,
@@ -421,7 +421,11 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
                    10000.0,
                    "largest number of cells in a patch whose errors count as independent");
     visitor.number(
-        "correlation_m", correlation_m, 0.001, 10.0, "correlation length of the matcher's errors");
+        "correlation_m",
+        correlation_m,
+        0.001,
+        10.0,
+        "distance on the ground within which errors of the stereo matcher are correlated");
     visitor.number("clearance_m", clearance_m, 0.0, 100.0, "required free height over the foot");
     visitor.number("overhead_side_m",
                    overhead_side_m,

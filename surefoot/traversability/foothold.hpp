@@ -16,22 +16,22 @@
 namespace surefoot::traversability {
 
 /// Limits for a position where the whole foot may stand. The figures are those of the REX's machine
-/// file and of the gate's rule for flat ground (design.md). The gate judges one foot in one pose of
-/// one movement. This search judges every cell, for a foot with any yaw.
+/// file and of the gate's rule for flat ground (foot_support.hpp). The gate judges one foot in one
+/// pose of one movement. This search judges every cell, for a foot with any yaw.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
     double foot_width_m = 0.190;   ///< shorter side of the foot
     double margin_m = 0.05;        ///< position error of an edge: up to two cells
-    double band_m = 0.10;          ///< width of the solid ground that is required around F
+    double band_m = 0.10;          ///< width of the solid ground that is required around the foot
     /// Where two edges meet, a matcher puts the nearer ground up to three cells too far over the
     /// lower ground. So a drop that begins up to this far beyond the band may reach into it.
     double corner_m = 0.075;
-    double drop_m = 0.05;       ///< ground that is lower than the foot by more is a drop
+    double drop_m = 0.05;       ///< ground that is lower than the foot by more than this is a drop
     double max_slope = 0.1051;  ///< rise over run: tan 6 deg
     double patch_side_m = 0.05;
     double max_residual_m = 0.025;   ///< largest distance of a patch mean from the foot's plane
     double sigma_factor = 3.4;       ///< one-sided error probability 3e-4
-    double independent_cells = 4.0;  ///< most cells of a patch whose errors count as independent
+    double independent_cells = 4.0;  ///< largest number of independent cells in a patch
     /// A semi-global matcher shares its errors over 30-50 px: over 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
     double clearance_m = 2.05;  ///< height of the tallest user who stands on the foot plates
@@ -41,8 +41,8 @@ struct FootholdConfig {
     void describe(ConfigVisitor& visitor);
     /// Returns the first reason why this config cannot be used, or nothing.
     [[nodiscard]] std::optional<std::string> problem() const;
-    /// True if cells of this size are not larger than a foot, and not so small that the cells of a
-    /// foot exceed the memory. On other grids every cell is unknown.
+    /// True if cells are at most as large as `foot_radius_m`, and the foot with margin, band and
+    /// corner reaches at most 63 cells from its middle. On other grids every cell is unknown.
     [[nodiscard]] bool fits(double resolution_m) const noexcept;
 };
 
@@ -81,10 +81,10 @@ struct FootholdGround {
 /// - tilted: p is steeper than `max_slope` at k sigma. The disc has one independent error per
 ///   square of `correlation_m`, at an rms distance of half the radius from its diameter;
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
-///   mean (variance of the cells over their number, at most `independent_cells`);
-/// - low: `clearance_m` is too small over as many cells of F as a square of `overhead_side_m` has.
-///   Fewer such cells (wrong matches, but also cables), or any in B (the far rim of a table top is
-///   too flat to be measured), are unsure;
+///   mean. Its variance is that of a cell over the number of cells (at most `independent_cells`);
+/// - low: the free height is below `clearance_m` over as many cells of F as fit in a square of
+///   `overhead_side_m`. Fewer such cells (wrong matches, but also cables), or any in B (the far rim
+///   of a table top is too flat to be measured), are unsure;
 /// - unreachable: the cell has no `reach_step_m`.
 /// A limit that is only exceeded when k sigma are added gives unsure. Also unsure are
 /// - cells with ground in B, or within `corner_m` beyond B, that is proven to lie more than half of
@@ -147,7 +147,7 @@ class FootholdFinder {
     [[nodiscard]] TurnedFoot turned_foot(int yaw) const;
     /// Returns minus the lowest proven height in B.
     [[nodiscard]] float low_in_band(int ix, int iy) const;
-    /// True if ground within `corner_m` of B is proven to be lower than p by half a drop;
+    /// True if ground in B or within `corner_m` of it is proven lower than p by half of `drop_m`;
     /// `low_near` is minus the lowest proven height there.
     [[nodiscard]] bool drop_begins(double middle_m, double slope, float low_near) const;
     /// True if a plane under the foot is too steep at one of the yaws. F must be known.

@@ -103,8 +103,8 @@ enum class UnknownPolicy : std::uint8_t {
                                   double threshold,
                                   UnknownPolicy policy = UnknownPolicy::unsafe) noexcept;
 
-/// Reports on every cell that the footprint at that pose overlaps, in one pass. Cells whose centre
-/// is outside count too, because a foot on half a cell stands on its ground.
+/// Reports on every cell that the footprint at that pose overlaps, in one pass. Cells with a centre
+/// outside the footprint count too: a foot on half a cell stands on it.
 ///
 /// Reads only and keeps no state: thread-safe, and equal inputs give equal results. Allocates
 /// nothing. Cost: proportional to the cells.
@@ -122,7 +122,7 @@ struct PathScratch {
 ///
 /// A turn is cut into pieces of at most kMaxTurn_rad. Each piece is the convex hull of its two
 /// ends, enlarged by the bulge of the arcs. So no cell is missed; cells beside a turn may count
-/// too, within turn / 2 of the footprint's reach (6 mm for 0.25 m).
+/// too: up to reach * turn / 2 away (6 mm for a reach of 0.25 m).
 [[nodiscard]] FootprintReport query_path(const Footprint& footprint,
                                          std::span<const FootprintPose> poses,
                                          const FootprintLayers& layers,

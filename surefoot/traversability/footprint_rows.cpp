@@ -57,7 +57,7 @@ class Group {
     std::int64_t known_ = 0;
 };
 
-/// Returns true if the run holds a value below `least`.
+/// Adds a run to the statistics. Returns true if the run holds a value below `least`.
 HWY_INLINE bool add_run(const float* values,
                         std::int64_t count,
                         float least,

@@ -30,7 +30,7 @@ struct LaneStatistics {
 };
 
 /// Adds the cells of runs that lie within the layer. Returns the index of the first run with the
-/// smallest value so far, or -1 if an earlier call had an equally small value.
+/// smallest value so far, or -1 if an earlier call had a value at least as small.
 std::int64_t add_runs(ImageView<const float> layer,
                       std::span<const grid::CellRun> runs,
                       LaneStatistics& statistics) noexcept;

@@ -15,7 +15,7 @@ namespace {
 constexpr float kHighest = std::numeric_limits<float>::max();  ///< largest finite value
 constexpr float kGateSigmas = 3.4F;  ///< same value as GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
-constexpr float kRangeSigma = 0.87F;  ///< largest deviation of a range, for any number of cells
+constexpr float kRangeSigma = 0.87F;  ///< largest sigma of a range of errors [sigma of one error]
 constexpr float kCertain = 6.0F;      ///< beyond so many sigmas the probability (1e-9) is ignored
 
 /// One integer holds both sums of a run of cells: the number of known cells in the high bits, the
@@ -30,7 +30,7 @@ std::uint64_t packed(float height_m, float var_m2) noexcept {
     if (!std::isfinite(height_m)) return 0;
     const double v_m2 = static_cast<double>(var_m2);
     const double used_m2 = v_m2 < kLargestVariance_m2 ? std::max(v_m2, 0.0) : kLargestVariance_m2;
-    // Rounded up: no cell gets a smaller variance than it has.
+    // Rounded up: below the limit, no cell gets a smaller variance than it has.
     return (std::uint64_t{1} << kCountShift) +
            // in range: used_m2 is in [0, 0.1]; NaN has become 0.1
            static_cast<std::uint64_t>(used_m2 * kVariancesPerM2) + 1;
@@ -44,7 +44,7 @@ float variance_m2_of(std::uint64_t sum) noexcept {
                               kVariancesPerM2);
 }
 
-/// Returns P(z < x) of a standard normal x, z >= 0. Made for loops over rows.
+/// Returns P(x > z) of a standard normal x for z >= 0. A z above kCertain counts as kCertain.
 inline float upper_tail(float z) noexcept {
     const float x = z > kCertain ? kCertain : z;
     const float p =

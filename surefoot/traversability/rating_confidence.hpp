@@ -27,8 +27,8 @@ struct ConfidenceLayers {
 ///
 /// The patch is that of the gate (foot_support.hpp). The variance of a mean of n cells is
 ///   (mean of their variances) / k,   k = min(n, independent_cells),
-/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With 10 mm,
-/// a patch is not resolvable above sigma = 2.94 mm; the gate's limit is 3 mm.
+/// because neighbouring errors are partly the same error. 3.4 sigma is one-sided 3e-4. With a step
+/// of 10 mm, a patch is not resolvable above 2.94 mm; the gate's limit is 3 mm.
 ///
 /// Confidence, with v = mean variance in the disc of the normals, n = its known cells, and f =
 /// their share of all its cells:
@@ -61,7 +61,7 @@ class RatingConfidence {
         /// Rounded up to whole 1e-9 m2. Values above 0.1 m2 or not finite count as 0.1 m2.
         ImageView<const float> height_var_m2;
         const PaddedLayer&
-            step_height_m;  ///< Traversability::rated_step_heights(), all cells rated
+            step_height_m;  ///< Traversability::rated_step_heights() of the whole map
         const TraversabilityLayers& rating;
     };
     /// Computes all cells; the layers of `out` take the size of the map.
@@ -88,17 +88,17 @@ class RatingConfidence {
     RunDisc surface_;
     RunDisc steps_;  ///< second disc of the step filter
     RunDisc patch_;
-    float inverse_moment_m2_;  ///< 1 / m
+    float inverse_moment_m2_;  ///< 1 / m of the disc of the normals
     float error_range_;        ///< d
     int nx_ = 0;
     int ny_ = 0;
     int margin_ = 0;                     ///< cells beyond the map that runs may cover
-    std::vector<std::uint64_t> before_;  ///< sums before a cell in its row: known cells, variances
+    std::vector<std::uint64_t> before_;  ///< packed sums of the cells before a cell in its row
     std::vector<std::uint64_t> sum_;     ///< sums of one row of discs
     std::vector<float> known_;           ///< number of known cells in `sum_`
     std::vector<float> variance_m2_;
     grid::Layer sigma_m_;          ///< sqrt(v)
-    grid::Layer slope_sigma_rad_;  ///< slope sigma of level ground
+    grid::Layer slope_sigma_rad_;  ///< sigma of the slope of level ground
     grid::Layer roughness_sigma_m_;
     grid::Layer flips_;  ///< Q
 };

@@ -132,7 +132,7 @@ std::int32_t Reachability::lowest_surface() {
     const std::int32_t surface = tenth_mm(kSurface_m);
     std::size_t fullest = 0;
     std::size_t most = 0;
-    std::size_t end = 0;  // first height above the surface that begins at `begin`
+    std::size_t end = 0;  // index of the first height above the surface that begins at `begin`
     for (std::size_t begin = 0; begin < sorted_.size(); ++begin) {
         while (end < sorted_.size() && sorted_[end] <= sorted_[begin] + surface) ++end;
         if (end - begin >= wanted) return sorted_[begin];

@@ -25,7 +25,7 @@ struct Stance {
 /// between consecutive cells. reach_step_m is the smallest of these over all ways (minimax path). A
 /// way leads from known cell to known 4-neighbour. It never crosses an unknown cell or a gap, not
 /// even of one cell. Up and down count alike: the smallest step up and the smallest step down may
-/// lie on different ways. So two layers would promise a way that does not exist. Heights are
+/// lie on different ways. So a layer for each would promise a way that does not exist. Heights are
 /// rounded to 0.1 mm as for the gate. For these heights the result is exact. It does not depend on
 /// the order of the visits.
 ///
@@ -47,7 +47,7 @@ struct Stance {
 /// one bucket per length, Dial 1969). Allocates only to grow. Not thread-safe.
 class Reachability {
   public:
-    static constexpr int kStanceCells = 16;     ///< fewest cells of a stance; 0.01 m2 at 25 mm
+    static constexpr int kStanceCells = 16;     ///< smallest number of cells; 0.01 m2 at 25 mm
     static constexpr double kSurface_m = 0.05;  ///< height range of one surface under the body
     /// Heights beyond this are unknown, as for the gate.
     static constexpr double kHighest_m = 1000.0;

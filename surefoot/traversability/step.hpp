@@ -16,8 +16,8 @@ void step_heights(const PaddedLayer& height_m,
                   PaddedLayer& step_height_m);
 
 /// Pass 2: rates every cell with a known step height within the second disc, also unknown cells:
-///   s = min(max, n / critical_cells * max), n = number of step heights above the critical step.
-///   So one noisy cell is no obstacle. Rating = 1 - s / critical if s < critical, else 0.
+///   s = min(max, n / critical_cells * max), max = largest step height, n = number of step heights
+///   above critical. So one noisy cell is no obstacle. Rating = 1 - s / critical, at least 0.
 void rate_step(const TraversabilityConfig::Step& config,
                const PaddedLayer& step_height_m,
                const Disc& second_disc,

@@ -15,9 +15,9 @@
 #include <cstdlib>
 #include <limits>
 
-// Lanes are neighbouring columns. A stripe of columns is as wide as a register. Down a stripe,
-// every row is reduced to its runs once (`Runs`, ascending half widths), and a ring keeps the rows
-// that a disc covers.
+// The lanes hold neighbouring columns; a stripe of columns is as wide as a register. The code goes
+// down a stripe row by row. For each row it computes one `StepRun` for every half width, in
+// ascending order. A ring keeps the runs of the rows that a disc covers.
 
 #ifndef SUREFOOT_STEP_RATING_CONSTANTS
 #define SUREFOOT_STEP_RATING_CONSTANTS
@@ -29,7 +29,7 @@ struct RatingConstants {
     float smallest_above;  ///< smallest float that is not below the critical step
     float inverse;         ///< 1 / critical step
     float enough;          ///< number of critical cells for the full step height
-    float share;           ///< 1 / number of critical cells
+    float share;           ///< 1 / `enough`
 };
 
 }  // namespace
@@ -106,8 +106,8 @@ HWY_INLINE void reduce_row(const Figures& figures,
     }
 }
 
-/// Reduces the discs around the columns from `ix` on, row by row of `rect`, and calls finish(iy,
-/// pair).
+/// Computes the figures of the discs around the columns from `ix` on, for each row of `rect`, and
+/// calls finish(iy, figures).
 template <class Figures, class Finish>
 HWY_INLINE void down_the_stripe(const Figures& figures,
                                 const PaddedLayer& layer,

@@ -26,8 +26,8 @@ void step_heights(const PaddedLayer& height_m,
                   StepRun* ring,
                   PaddedLayer& step_height_m);
 
-/// traversability::rate_step in single precision: the same unknown cells, the same zeros, and other
-/// ratings within 3e-7.
+/// Computes traversability::rate_step in single precision: the same unknown cells and zeros, and
+/// all other ratings within 3e-7.
 void rate_step(const TraversabilityConfig::Step& config,
                const PaddedLayer& step_height_m,
                const RunsOfDiscs& widths,

@@ -20,14 +20,14 @@
 //   n, x, y, xx, xy, yy   small integers, exact in float
 //   z, xz, yz, zz         double
 //
-// Each row of the map is reduced to its runs once: for every half width h, the sums over the
-// columns -h ... h. The disc around a cell adds one run of each of its rows; a pair of rows dy and
-// -dy adds their sum to z, xz, zz and dy times their difference to yz.
+// For each row of the map, the code computes its runs once: for every half width h, the sums over
+// the columns -h ... h. The disc around a cell adds one run of each of its rows; a pair of rows dy
+// and -dy adds their sum to z, xz, zz and dy times their difference to yz.
 //
-// Heights are absolute, not relative to the centre cell, or rows could not be shared. First moments
-// lose no precision by that. In n zz - z z, however, the square of a height far from 0 would
-// cancel. So z^2 is split into a multiple of 2^-20 m^2 (sums of these are exact) and a rest, and
-// the square of the centre height is subtracted from each part.
+// Heights are absolute, not relative to the centre cell, because otherwise discs could not share
+// the sums of a row. First moments lose no precision by that. In n zz - z z, however, the square of
+// a height far from 0 would cancel. So z^2 is split into a multiple of 2^-20 m^2 (sums of these are
+// exact) and a rest. The square of the centre height is subtracted from each part.
 //
 // Scatter = n * (sum of products) - (product of sums), with z in cells too, is n^2 times the
 // covariance. On flat ground xz, yz and zz are exactly 0.
@@ -107,7 +107,7 @@ HWY_INLINE void load_row(const float* from, int cells, RowCells& row) {
     }
 }
 
-/// Adds the cells `dx` columns on both sides.
+/// Adds the cells on both sides, at the same distance, to the sum.
 template <class V>
 HWY_INLINE void add(V& sum, V left, V right) {
     sum = hn::Add(sum, hn::Add(left, right));
@@ -178,7 +178,7 @@ HWY_INLINE void reduce_counts(const RowCells& row,
     }
 }
 
-/// The ten sums of the discs around the columns of a strip.
+/// The ten sums of the discs around the columns of a strip; zz has two parts.
 struct DiscSums {
     HWY_ALIGN double z[kStrip];
     HWY_ALIGN double xz[kStrip];
@@ -334,8 +334,8 @@ HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
         under_way = hn::AndNot(arrived, under_way);
     }
 
-    // Perpendicular to the first two rows of (scatter - l).
-    // The length of this vector is (middle - l)(largest - l) n_z.
+    // The axis is perpendicular to the first two rows of (scatter - l). The length of their cross
+    // product is (middle - l)(largest - l) n_z.
     const Doubles a = hn::Sub(s.xx, l);
     const Doubles b = hn::Sub(s.yy, l);
     const Doubles x = minor(s.xy, s.yz, s.xz, b);
@@ -473,7 +473,8 @@ void roughness_of(const Surface& surface,
     }
 }
 
-/// Finds the runs of a disc in rows of runs, [dy + reach] around the centre.
+/// Finds the runs of a disc. `center[dy]` points to the runs of the row that lies dy rows from the
+/// centre.
 HWY_INLINE DiscOfRuns disc_of(const DiscRuns& runs, const RunSums* const* center) {
     DiscOfRuns disc;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as far as read
     disc.reach = runs.reach;

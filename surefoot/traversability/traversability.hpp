@@ -38,9 +38,9 @@ enum class Way : std::uint8_t {
 
 /// Rates a height map: normals -> slope, step, roughness -> weighted sum (Wermelinger et al. 2016).
 /// Keeps its working memory: maps of one size allocate nothing after the first. Every executor and
-/// every processor gives the same bytes. Cost: cells times radii. Discs of more than
-/// DiscRuns::kMaxReach cells, and first discs of a single cell, use the plain filters (cells times
-/// disc sizes). Not thread-safe.
+/// every processor gives the same bytes. Cost: cells times radii. With a disc radius above
+/// DiscRuns::kMaxReach cells, or a single-cell disc for normals or step heights, it uses the plain
+/// filters (cells times disc sizes). Not thread-safe.
 class Traversability {
   public:
     /// Rows of one work item for the executor.

@@ -99,12 +99,13 @@ void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
 }
 
 void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
-    visitor.number("safe_threshold",
-                   safe_threshold,
-                   0.0,
-                   1.0,
-                   "rating of a safe cell; the confidence is the probability that the true rating "
-                   "is on the same side of this value");
+    visitor.number(
+        "safe_threshold",
+        safe_threshold,
+        0.0,
+        1.0,
+        "smallest rating of a safe cell; the confidence is the probability that the true rating "
+        "is on the same side of this value");
     visitor.integer("independent_cells",
                     independent_cells,
                     1,

@@ -17,8 +17,8 @@ enum class Combine : std::uint8_t {
     zero_dominates,  ///< an exact 0 in a weighted layer forces 0, even with unknown layers
 };
 
-/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius needs
-/// at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
+/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius must
+/// be at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
 /// unknown. Defaults: critical values of `ethz`; radii between the centre distances of a 25 mm grid
 /// (no cell on the rim), large enough to average stereo noise.
 struct TraversabilityConfig {
