@@ -64,9 +64,9 @@ using Joystick = std::function<std::optional<std::uint8_t>(std::int64_t elapsed_
 /// Receives every event, on the thread of run_link(); must not block.
 using LinkEventSink = std::function<void(const LinkEvent&)>;
 
-/// Plays the REX master unit until `joystick` returns nothing. Runs on the calling thread and reads
-/// the steady clock. If there is no connection or it breaks, the link connects again after
-/// `reconnect_pause_ns`. A break is also an event.
+/// Acts as the REX master unit until `joystick` returns nothing. Runs on the calling thread and
+/// reads the steady clock. If an attempt to connect fails or the connection ends, the link connects
+/// again after `reconnect_pause_ns`. The end of a connection is also an event.
 void run_link(const LinkClientConfig& config, const Joystick& joystick, const LinkEventSink& sink);
 
 }  // namespace surefoot::rex_link

@@ -121,9 +121,10 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // above a quarter turn no angle can be excluded
+    constexpr double kQuarter_rad = 1.5;  // from here on, no angle can be excluded
     if (turn_rad >= kQuarter_rad) return false;
-    // sin(x) <= x: an undetected turn is at most a few percent above the limit.
+    // sin(x) <= x, so a turn slightly above the limit can stay undetected: up to 5 % more for a
+    // limit up to 0.5 rad, up to a right angle for a limit from 1 rad on.
     const double sine = last_.cos_yaw * map.body_sin_yaw - last_.sin_yaw * map.body_cos_yaw;
     const double cosine = last_.cos_yaw * map.body_cos_yaw + last_.sin_yaw * map.body_sin_yaw;
     return !(magnitude(sine) <= turn_rad && cosine > 0.0);

@@ -45,8 +45,8 @@ void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findi
 /// Tests the ground under one landing foot on a tread:
 /// 1. The tread ends where the first lower cell begins, minus an uncertainty: one cell, because the
 ///    map can show objects up to a cell beside their position, plus `sigma_factor` times the drift.
-///    If the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces the cell
-///    if that is less.
+///    If the snapshot has a line for the nosing, `sigma_factor` sigma of the line can replace the
+///    cell: the smaller of the two counts.
 /// 2. This tread carries the ankle and at least `tread_share` of the foot. No end overhangs by more
 ///    than `tread_overhang`. Otherwise SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks
 ///    the rule.

@@ -44,7 +44,7 @@ using Clock = std::int64_t (*)();
 /// also names the problem of the camera.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
-/// If the depth of a frame updates no map cell, the snapshot keeps the older stamp.
+/// If a frame measures less than 0.01 m^2 of the map, the snapshot keeps the older stamp.
 ///
 /// Order of calls: first `make`, then `align` with the first frames (start.hpp says which). If
 /// `align` finds no ground, it may be called with later frames. Then call `process` for every frame
@@ -124,7 +124,7 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// Returns the frame's own motion, or the odometry's; `T_odom_first`: the first base_link.
+    /// Returns the frame's own motion, or the odometry's. `T_odom_first`: first pose of base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);
@@ -143,8 +143,8 @@ class Pipeline {
                                                         const Eigen::Vector3d& up_level);
     /// Finds the ground if the mounting of the camera is unknown.
     [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
-    /// Passes the plane to the tilt drift correction. Also passes it to the mount monitor if a
-    /// machine carries the camera and the height of base_link is known.
+    /// Passes the plane to the tilt drift correction. Also passes it to the mount monitor if the
+    /// settings give the height of base_link over its ground.
     void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
     [[nodiscard]] CameraState camera_state() const noexcept;
     /// Compares the floor with its own mirror images, if a level floor is in view.

@@ -46,8 +46,8 @@ struct AuditReport {
 
 /// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate
 /// thread writes, so a slow disk never delays a verdict. Waiting entries stay in memory. If the
-/// memory is full, verdicts are dropped and counted, and the log gets a gap entry at their
-/// position. Machine and memory size are fixed at `start`. Format: audit_format.md.
+/// memory is full, entries are dropped and counted, and the log gets a gap entry at their position.
+/// The memory size is fixed at `start`. Format: docs/reference/audit_format.md.
 ///
 /// One thread must call start, push, state and stop. Any thread may call `report`.
 class AuditLog {
@@ -65,7 +65,7 @@ class AuditLog {
     void push(const Act& act) noexcept;
     /// Returns the state at `now_ns` (clock of the verdicts). An assured gate needs the state `ok`.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
-    /// Writes the waiting entries, retries a failing disk once and ends the thread. Blocks until
+    /// Writes the waiting entries, tries a failing disk once more and ends the thread. Blocks until
     /// the disk returns.
     void stop();
     [[nodiscard]] AuditReport report() const;
