@@ -138,8 +138,7 @@ void judge_snapshot(const GateLimits& limits,
 
 /// True if measured ground under the feet lies at the height of the soles. The tolerance is the
 /// largest step limit plus twice the swing clearance, for bent knees. Also true without measured
-/// ground, because there
-/// is nothing to compare.
+/// ground, because there is nothing to compare.
 bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcept {
     const Query here = query_at_body(0, map);
     const Sweep standing =

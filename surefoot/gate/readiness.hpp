@@ -41,8 +41,8 @@ struct ReadinessLimits {
 /// FAULT    -- an operator re-arms --> WARMUP
 /// ```
 /// Inhibits at once and releases slowly: one bad sample ends READY. Only `rearm` ends FAULT, and
-/// then a full warm-up begins. Pure: times are arguments, nothing is allocated.
-/// Use it from one thread.
+/// then a full warm-up begins. Pure: times are arguments, nothing is allocated. Use it from one
+/// thread.
 class Readiness {
   public:
     /// An invalid machine or invalid limits lead to FAULT / CONFIG.
