@@ -249,7 +249,7 @@ int run(Options options) {
         return fail(
             usage_error("--assured needs an audit log: give the folder of the log with --audit"));
     // Each start of the gate begins at another connection number. So a verdict from before the
-    // start never has the number of a present client.
+    // start practically never has the number of a present client.
     options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };

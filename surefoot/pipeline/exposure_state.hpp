@@ -24,8 +24,8 @@ inline constexpr int kBlack_dn = 10;
 inline constexpr double kMaxSaturatedShare = 0.25;
 inline constexpr double kMaxBlackShare = 0.75;
 
-/// Samples every fourth pixel of every fourth row of both cameras. The worse camera decides. A
-/// frame without images (modelled depth) is well exposed.
+/// Samples every fourth pixel of every fourth row. Returns the first bad state, left camera first.
+/// A frame without images (modelled depth) is well exposed.
 [[nodiscard]] ExposureState exposure_state_of(const StereoFrame& frame) noexcept;
 
 }  // namespace surefoot::pipeline

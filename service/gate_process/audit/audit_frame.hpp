@@ -9,7 +9,7 @@
 #include "service/gate_process/audit/audit_record.hpp"
 #include "service/gate_process/sockets/acts.hpp"
 
-/// A log is a chain of frames, each with the previous hash (docs/reference/audit_format.md):
+/// A log is a chain of frames (docs/reference/audit_format.md). Fields, and their sizes [bytes]:
 ///
 ///     magic+version  kind  encoding  0  stored  plain  sequence  previous  check | payload | hash
 ///     4              1     1         2  4       4      8         8         4     | stored  | 8

@@ -92,7 +92,10 @@ Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t mag
         file.write(&begin, sizeof(begin), 0);  // resize() detects a full disk
         return file;
     }
-    return channel_error(path, "other processes keep deleting it");
+    return channel_error(
+        path,
+        "other processes deleted it during each of 10 attempts to lock it; name another file "
+        "(--channel)");
 }
 
 bool ChannelFile::read(void* out, std::size_t bytes, std::size_t offset) const noexcept {

@@ -21,8 +21,8 @@ struct StepRequest;
 struct SessionLimits {
     JsonLimits json;
     RateLimit messages{200, 200};  ///< a question beyond this rate gets ERROR / OVERLOAD
-    RateLimit refusals{100, 400};  ///< messages above that rate before disconnection
-    RateLimit faults{2, 20};       ///< unreadable messages before disconnection
+    RateLimit refusals{100, 400};  ///< excess messages; beyond this rate the client is disconnected
+    RateLimit faults{2, 20};       ///< faulty messages; beyond this rate the client is disconnected
     std::size_t max_subscriptions = 32;
 };
 
