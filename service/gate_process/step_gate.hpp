@@ -54,8 +54,8 @@ struct GateReport {
     std::uint64_t allowed = 0;
 };
 
-/// The interface of the service to the gate. Use it from one thread. Every call returns within a
-/// millisecond and never waits for a disk, a network or perception. `now_ns`: steady clock.
+/// The interface of the service to the gate. Use it from one thread. Every call except `rearm`
+/// returns within 1 ms. No call waits for a disk, a network or perception. `now_ns`: steady clock.
 class StepGate {
   public:
     StepGate() = default;

@@ -86,7 +86,7 @@ bool read_id(const std::string& id, Answer& answer) {
            format_id(answer.nonce, {answer.sequence, answer.command}) == id;
 }
 
-/// resultCode of stepQuery in the reference thesis (Lange 2016).
+/// Returns the resultCode of a verdict for stepQuery in the reference thesis (Lange 2016).
 int result_code_of(AnswerVerdict verdict) {
     switch (verdict) {
         case AnswerVerdict::ok: return 0;

@@ -55,7 +55,7 @@ struct LinkEvent {
     Tone tone = Tone::cannot_judge;
     Inhibit inhibit = Inhibit::gate_error;
     std::int64_t duration_ns = 0;  ///< motion
-    std::string text;  ///< for an answer: its sentence; damaged, disconnected: the cause
+    std::string text;  ///< for an answer: its sentence; for damaged and disconnected: the cause
 };
 
 /// Returns the joystick's code (0 = at rest) at a time since the start of the run. Returns nothing

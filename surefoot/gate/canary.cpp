@@ -67,7 +67,7 @@ void make_level(grid::MapSnapshot& map) noexcept {
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
     const auto from_stance =
-        [&](grid::FixedPoint p) {  // sum of the distances to all corners of the stance area
+        [&](grid::FixedPoint p) {  // sum of the squared distances to all corners of the stance area
             std::int64_t sum_sq = 0;
             for (const grid::FixedPoint q : foot.stance.points())
                 sum_sq += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);

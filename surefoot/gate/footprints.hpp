@@ -44,8 +44,8 @@ struct FootSweep {
     grid::FixedConvex stance;   ///< sole area at the start
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
-    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by the margin
-    grid::FixedConvex band;      ///< the landing box widened by the drop band
+    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
+    grid::FixedConvex band;      ///< landing box, widened by `drop_band`
 };
 
 /// All regions that a movement needs, in odom.

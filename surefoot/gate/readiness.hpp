@@ -15,7 +15,7 @@ struct ReadinessLimits {
     std::int64_t warmup_ns = 2'000'000'000;  ///< healthy time before the first OK
     std::int32_t warmup_frames = 20;
     std::int64_t warmup_timeout_ns = 60'000'000'000;  ///< a longer warm-up is a fault
-    std::int64_t recover_ns = 1'000'000'000;          ///< healthy time after a disturbance
+    std::int64_t recover_ns = 1'000'000'000;          ///< healthy time before DEGRADED ends
     std::int32_t recover_frames = 10;
     std::int64_t degraded_timeout_ns = 10'000'000'000;
     /// Largest speed of base_link, and the extra motion between two snapshots that pose errors may
@@ -104,7 +104,7 @@ class Readiness {
     Sighting last_;
     std::int64_t now_ns_ = 0;
     std::int64_t entered_ns_ = 0;     ///< time at which the present state began
-    std::int64_t well_since_ns_ = 0;  ///< first healthy frame; valid if `well_frames_` > 0
+    std::int64_t well_since_ns_ = 0;  ///< time of first healthy frame; valid if `well_frames_` > 0
     std::int32_t well_frames_ = 0;
     bool tested_ = false;
     bool config_valid_ = false;

@@ -8,9 +8,9 @@
 namespace surefoot::gate {
 namespace {
 
-// Functions that test each of the thousands of cells of a verdict are always_inline. They have five
-// callers, so the compiler would not inline them. Inlining reduces the time per verdict from 0.055
-// ms to 0.043 ms.
+// Functions that test each of the thousands of cells of a verdict are always_inline. They have
+// several callers, so the compiler would not inline them. Inlining reduces the time per verdict
+// from 0.055 ms to 0.043 ms.
 
 /// A cell and its position.
 struct Place {

@@ -110,7 +110,7 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
 }
 
-/// Finds the start of the first ground that is lower than the tread by a drop. A cell with drop
+/// Finds the start of the first ground that lies more than `drop` below the tread. A cell with drop
 /// evidence is the last cell of the tread.
 void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const GateLimits& limits = scene.machine.limits;

@@ -17,8 +17,8 @@ struct Tread {
 
     bool known = false;              ///< every cell under the ankle is known
     std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
-    /// Start of the first cell that is lower than the tread by a drop. `heel_edge` counts backward
-    /// from the middle of the foot. kNone: no such cell in the band.
+    /// Start of the first cell more than `drop` below the tread. `heel_edge` counts backward from
+    /// the middle of the foot. kNone: no such cell in the band.
     std::int64_t toe_edge = kNone;
     std::int64_t heel_edge = kNone;
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band
@@ -39,7 +39,7 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
 /// tread. Nothing within the foot's margin and drift may be higher than `swing_clearance` above the
 /// tread. At one end of the foot, outside the ankle, the next tread may be lower by one step of the
 /// class (by `sigma_factor` sigma). Unknown ground does not count as a tread. Both feet must land
-/// at one height.
+/// at one height (within `patch_residual`).
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the ground under one landing foot on a tread:

@@ -15,7 +15,7 @@
 namespace surefoot::pipeline {
 
 struct AlignmentConfig {
-    double pitch_deg = 0.0;          ///< pitch below the horizon if not measured
+    double pitch_deg = 0.0;          ///< pitch below the horizon, used if not measured
     double still_gyro_rad_s = 0.15;  ///< largest turn rate that counts as rest:
                                      ///< MEMS bias (EuRoC 0.08 rad/s) plus noise
     double still_force_m_s2 = 0.3;   ///< largest |mean force - 9.81 m/s^2| at rest
@@ -30,9 +30,9 @@ struct AlignmentConfig {
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_exposure_s = 60.0;  ///< longest wait; cameras need 10-30 s (Lange 2016)
-    double wait_for_ground_s = 10.0;    ///< longest search of the vertical: start.hpp
-    double wait_for_search_s = 3.0;     ///< longest search, mounting unknown: start.hpp
+    double wait_for_exposure_s = 60.0;  ///< longest wait; a warm-up took 10-30 s (Lange 2016)
+    double wait_for_ground_s = 10.0;    ///< longest search for the vertical (start.hpp)
+    double wait_for_search_s = 3.0;     ///< longest search with unknown mounting (start.hpp)
     void describe(ConfigVisitor& visitor);
 };
 
@@ -52,7 +52,7 @@ struct Alignment {
 
 /// Result of the search for the ground; the text of `Alignment::reason` uses it.
 struct GroundView {
-    bool searched = false;  ///< true: searched over `ground.search_down_deg`
+    bool searched = false;  ///< true: tilts to `search_down_deg` were searched
     double search_down_deg = 0.0;
     double image_share = 0.0;  ///< image share of the best plane in any frame
     ground::GroundReason reason = ground::GroundReason::few_points;  ///< reason against that plane

@@ -67,7 +67,7 @@ class Pipeline {
     const Alignment& align(std::span<const StereoFrame> first_frames,
                            const std::optional<Pose>& T_odom_first_body = {});
 
-    /// Processes a whole frame: motion, and with Work::full depth, map and rating.
+    /// Processes a whole frame: motion, and with Work::full also depth, map, rating and features.
     FrameReport process(const StereoFrame& frame, Work work);
 
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
@@ -128,7 +128,7 @@ class Pipeline {
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);
-    /// Tests the frame and decides how much of the work is done for it.
+    /// Tests the frame and selects the work that is done for it (FrameReport::work).
     [[nodiscard]] FrameReport check(const StereoFrame& frame, Work wanted);
     /// Returns the report of a repeated or torn frame. The map and the ratings stay.
     [[nodiscard]] FrameReport skip(const StereoFrame& frame, FrameReport report);
