@@ -99,7 +99,7 @@ class Gatekeeper final : public StepGate {
                                   std::int64_t now_ns) const noexcept;
 
     Machine machine_;
-    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< see movement_count_
+    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< first movement_count_ used
     std::size_t movement_count_ = 0;
     ChannelAddress channel_;
     Audit audit_;

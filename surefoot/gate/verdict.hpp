@@ -43,8 +43,8 @@ struct Evidence {
     std::int64_t worst_x_tenth_mm = 0;
     std::int64_t worst_y_tenth_mm = 0;
     Foot foot = Foot::none;           ///< foot at the worst cell; `none`: body or no cell
-    std::int64_t value_tenth_mm = 0;  ///< value at the worst cell; 0 if it has no length
-    std::int64_t limit_tenth_mm = 0;  ///< limit of the value; 0 if the limit is no length
+    std::int64_t value_tenth_mm = 0;  ///< value of the worst finding; 0 if the value is no length
+    std::int64_t limit_tenth_mm = 0;  ///< limit of the worst finding; 0 if the limit is no length
     bool overhead = false;            ///< true: the value is the lower side of a hanging object
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. If an earlier test fails, the

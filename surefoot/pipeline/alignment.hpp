@@ -25,7 +25,7 @@ struct AlignmentConfig {
     /// an upright phase; above `max_sway_deg` after 0.5 s. ASSUMPTION, from the simulated REX: it
     /// sways by 5.4 deg, returns within 0.3 deg, and stands leaning for at most 2 s.
     double max_lean_deg = 1.0;
-    /// No step may begin if base_link leans more: mid-step, or the camera was knocked.
+    /// base_link leans more in mid-step, or after a knock of the camera: no step may begin.
     double max_lean_before_step_deg = 0.7;
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;

@@ -30,7 +30,7 @@ class MountMonitor {
     void add(const MotionEstimate& motion, const GroundObservation& ground_body);
 
     [[nodiscard]] bool moved() const noexcept { return moved_; }
-    /// True if base_link leaned in the last judged frame: mid-step, or the camera was knocked. A
+    /// True if base_link leaned in the last judged frame: in mid-step, or the camera was knocked. A
     /// knock of over `max_lean_before_step_deg` shows in the next frame, and lasts until
     /// `moved` reports it. A step ends upright, and then the lean ends.
     [[nodiscard]] bool leans() const noexcept { return leans_; }

@@ -102,7 +102,7 @@ class Pipeline {
 
     /// Returns the pose of base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
-    /// Returns the ground that the machine can reach from its stance, see Reachability. Allocates.
+    /// Returns reach_step_m of each cell: largest step on the way to it (Reachability). Allocates.
     [[nodiscard]] grid::Layer reach_step_m() const;
     /// Returns the ground class of each cell of the map, from the features. Allocates.
     [[nodiscard]] stairs::GroundClasses ground_classes() const;
@@ -191,7 +191,7 @@ class Pipeline {
     MountMonitor mount_monitor_;
     TiltDriftCorrection tilt_drift_correction_;
     std::int64_t last_fused_ns_ = 0;
-    std::uint64_t version_ = 0;  ///< number of fused frames
+    std::uint64_t version_ = 0;  ///< number of fused frames that measured enough ground
 };
 
 }  // namespace surefoot::pipeline
