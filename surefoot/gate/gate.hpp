@@ -11,7 +11,7 @@ namespace surefoot::gate {
 
 /// Source of the height of the ground under the feet before the movement.
 enum class StanceHeight : std::uint8_t {
-    map,   ///< mean of the cells under both feet
+    map,   ///< mean height of the known cells under both feet
     given  ///< the caller gives it (joint sensors, arming); the cells must be known as well
 };
 

@@ -42,7 +42,7 @@ class StageTimer {
 };
 
 /// Smallest measured area of the map that counts as an observation. A camera that works but shows
-/// nothing useful still delivers frames (hazard H3). ASSUMPTION: a tenth of a sole. A wall
+/// nothing useful still delivers frames (hazards H3 and H20). ASSUMPTION: a tenth of a sole. A wall
 /// 0.5 m ahead that fills the view measures several times this area.
 constexpr double kLeastMeasured_m2 = 0.01;
 

@@ -20,7 +20,7 @@ inline constexpr const char* kInsecureSentence =
 
 /// Address, permissions and limits of the service.
 struct ServerConfig {
-    /// An IP address. Except on loopback, every client needs a token, and TLS or `insecure` is set.
+    /// An IP address. Except on loopback, clients need a token, and TLS or `insecure` must be set.
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 9090;           ///< the rosbridge port; 0 = any free port
     Access access;                       ///< tokens and roles
