@@ -275,8 +275,7 @@ Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::in
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
         return refuse_attestation(
             "the gate has no map without faults; see the faults in /surefoot/health, and wait "
-            "until "
-            "perception is healthy");
+            "until perception is healthy");
     if (readiness_.state() == gate::GateState::fault)
         return refuse_attestation("the gate is in FAULT; re-arm it first");
     if (auto status = check_radius(radius_m); !status) return status;

@@ -7,9 +7,9 @@
 
 namespace surefoot::pipeline {
 
-/// Derives the state of the camera from its frames: a bad state starts after kBadFrames bad images
-/// and ends only after kFreshFrames good frames. One bad image starts none. This monitor runs only
-/// when a frame arrives. If no frame arrives, the gate detects the fault by the age of
+/// Derives the state of the camera from its frames. A bad state starts after kBadFrames bad images
+/// and ends only after kFreshFrames good frames. One bad image starts no bad state. This monitor
+/// runs only when a frame arrives. If no frame arrives, the gate detects the fault by the age of
 /// the last frame.
 class CameraMonitor {
   public:

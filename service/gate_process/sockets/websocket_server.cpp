@@ -326,8 +326,7 @@ void Connection::upgrade(const Entrance& entrance) {
                           ? "too many clients come from your computer: close one of them"
                           : "all slots are taken by clients that are being served: close one, or "
                             "connect with the token of a rider or of the operator, because slots "
-                            "are reserved for these "
-                            "roles");
+                            "are reserved for these roles");
     }
     role_ = entrance.role;
     has_token_ = entrance.has_token;
