@@ -45,8 +45,8 @@ namespace surefoot {
 ///
 /// Start-up: the first frames are kept until they show gravity and the ground (pipeline::StartUp),
 /// then odom is placed and the kept frames are processed. Results are in odom: z up, origin below
-/// the first base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of
-/// one core for a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
+/// the first base_link; see NOTATION.md. Not thread-safe; owns its threads. Takes about 36 ms of
+/// one core for a frame of 672 x 376 pixels (docs/evidence/headline_figures.md).
 class Perception {
   public:
     /// `rig`: the camera. If it does not state its mounting, the mounting of the machine is used.

@@ -274,7 +274,8 @@ Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::in
     fetch(now_ns);
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
         return refuse_attestation(
-            "the pose of the machine is unknown; wait until the odometry is healthy");
+            "the gate has no map without faults; see the faults in /surefoot/health, and wait "
+            "until perception is healthy");
     if (readiness_.state() == gate::GateState::fault)
         return refuse_attestation("the gate is in FAULT; re-arm it first");
     if (auto status = check_radius(radius_m); !status) return status;

@@ -53,8 +53,8 @@ class Gatekeeper final : public StepGate {
                Audit audit = {},
                AuditAct audit_act = {});
 
-    /// Reads new snapshots, advances the time and sometimes judges a canary. `boottime_ns`: steady
-    /// time that includes the time the computer slept.
+    /// Reads new snapshots, advances the time and judges a canary every 250 ms. `boottime_ns`:
+    /// steady time that includes the time the computer slept.
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
     /// A gate that requires a log gives no OK (Reason::audit) while the log cannot be written.
     void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
@@ -99,7 +99,7 @@ class Gatekeeper final : public StepGate {
                                   std::int64_t now_ns) const noexcept;
 
     Machine machine_;
-    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< movement_count_ are used
+    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< first movement_count_ used
     std::size_t movement_count_ = 0;
     ChannelAddress channel_;
     Audit audit_;

@@ -8,7 +8,7 @@
 
 namespace surefoot::gate_process {
 
-/// A rectangle of snapshot cells: first cell and size. It lies inside the map.
+/// A rectangle of snapshot cells: first cell and size in x and y [cells].
 struct CellBox {
     std::int32_t x = 0;
     std::int32_t y = 0;

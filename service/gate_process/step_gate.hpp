@@ -28,14 +28,14 @@ struct GoalQuestion {
 };
 
 /// A verdict and its text. A verdict about a goal is for display only and never permits a step: it
-/// expires when it begins.
+/// expires at the time of the decision.
 struct Answer {
     gate::Verdict verdict;
     std::string text;
 };
 
 /// The gate's answer to a movement that no client asked about. For display only: the answer never
-/// permits a step and expires when it begins.
+/// permits a step and expires at the time of the decision.
 struct Prospect {
     gate::Query query;
     gate::Verdict verdict;
@@ -54,8 +54,8 @@ struct GateReport {
     std::uint64_t allowed = 0;
 };
 
-/// The interface of the service to the gate. Use it from one thread. Every call returns within a
-/// millisecond and never waits for a disk, a network or perception. `now_ns`: steady clock.
+/// The interface of the service to the gate. Use it from one thread. Every call except `rearm`
+/// returns within 1 ms. No call waits for a disk, a network or perception. `now_ns`: steady clock.
 class StepGate {
   public:
     StepGate() = default;
@@ -79,8 +79,8 @@ class StepGate {
     [[nodiscard]] virtual Status rearm(std::uint64_t connection, std::int64_t now_ns) = 0;
     /// Attests, for the operator, that the ground within `radius_m` of base_link is safe to stand
     /// on. Replaces the previous attestation; a refusal changes nothing. Refused if the area does
-    /// not hold both soles or exceeds the machine file's limit (0: attestations are off), or if the
-    /// pose is unknown. The caller has checked the client's role.
+    /// not contain both soles or exceeds the machine file's limit (0: attestations are off), if the
+    /// map has a fault, or in FAULT. The caller has checked the client's role.
     [[nodiscard]] virtual Status attest(std::uint64_t connection,
                                         double radius_m,
                                         std::int64_t now_ns) = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step gate as a process. It reads the newest map from shared memory, answers queries over a
-// WebSocket, and records every verdict in the audit log. One thread decides; the audit log has its
-// own writing thread.
+// The step gate as a process. It reads the newest map from shared memory and answers queries over a
+// WebSocket. With --audit, it records every verdict in the audit log. One thread decides; the audit
+// log has its own writing thread.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
@@ -249,7 +249,7 @@ int run(Options options) {
         return fail(
             usage_error("--assured needs an audit log: give the folder of the log with --audit"));
     // Each start of the gate begins at another connection number. So a verdict from before the
-    // start never has the number of a present client.
+    // start practically never has the number of a present client.
     options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };
@@ -325,8 +325,8 @@ int main_with_arguments(int argc, char** argv) {
         ->type_name("MB");
     app.add_option("--max-rate",
                    options.server.session.messages.per_s,
-                   "largest number of messages from one client in a second; the gate answers "
-                   "further messages with OVERLOAD")
+                   "largest number of messages from one client in a second; the gate refuses "
+                   "further messages, and answers further step questions with OVERLOAD")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
         ->type_name("HZ");

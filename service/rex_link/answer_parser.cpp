@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Apart from tests, only this file includes nlohmann-json: it adds 6 s per translation unit.
+// In this module, only this file includes nlohmann-json: it adds 6 s of compile time to each
+// translation unit.
 #include "service/rex_link/answer_parser.hpp"
 
 #include <fmt/format.h>
@@ -17,12 +18,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepest = 8;  // deepest JSON; the gate's messages are less deep
+constexpr int kDeepest = 8;  // most levels of nested JSON; the gate uses fewer
 constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::int64_t kLongestLife_ms = 60'000;
 
-/// Finds duplicate names in an object and objects that are nested too deeply. Duplicate names must
-/// be refused: two readers of one text could read two different verdicts.
+/// Finds duplicate names in an object, and JSON with more than kDeepest levels. Duplicate names
+/// must be refused: two readers of one text could read two different verdicts.
 class Shape {
   public:
     bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -85,7 +86,7 @@ bool read_id(const std::string& id, Answer& answer) {
            format_id(answer.nonce, {answer.sequence, answer.command}) == id;
 }
 
-/// resultCode of stepQuery in the reference thesis (Lange 2016).
+/// Returns the resultCode of a verdict for stepQuery in the reference thesis (Lange 2016).
 int result_code_of(AnswerVerdict verdict) {
     switch (verdict) {
         case AnswerVerdict::ok: return 0;
@@ -189,7 +190,8 @@ Result<ParsedAnswer> parse_answer(std::string_view bytes) {
     if (message.is_discarded() || !message.is_object())
         return input_error(fmt::format("answer: its {} bytes are not a JSON object", bytes.size()));
     if (!shape.sound())
-        return input_error("answer: a name occurs twice, or the JSON is nested too deeply");
+        return input_error(
+            "answer: a name occurs twice, or the JSON has more than 8 nested levels");
     return read_response(message);
 }
 

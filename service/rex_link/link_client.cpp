@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Apart from tests, only this file includes Boost: it adds half a minute per translation unit.
+// In this module, only this file and tests include Boost: it adds half a minute of compile time to
+// each translation unit.
 #include "service/rex_link/link_client.hpp"
 
 #include <algorithm>

@@ -55,7 +55,7 @@ struct LinkEvent {
     Tone tone = Tone::cannot_judge;
     Inhibit inhibit = Inhibit::gate_error;
     std::int64_t duration_ns = 0;  ///< motion
-    std::string text;  ///< for an answer: its sentence; damaged, disconnected: the cause
+    std::string text;  ///< for an answer: its sentence; for damaged and disconnected: the cause
 };
 
 /// Returns the joystick's code (0 = at rest) at a time since the start of the run. Returns nothing
@@ -64,9 +64,9 @@ using Joystick = std::function<std::optional<std::uint8_t>(std::int64_t elapsed_
 /// Receives every event, on the thread of run_link(); must not block.
 using LinkEventSink = std::function<void(const LinkEvent&)>;
 
-/// Plays the REX master unit until `joystick` returns nothing. Runs on the calling thread and reads
-/// the steady clock. If there is no connection or it breaks, the link connects again after
-/// `reconnect_pause_ns`. A break is also an event.
+/// Acts as the REX master unit until `joystick` returns nothing. Runs on the calling thread and
+/// reads the steady clock. If an attempt to connect fails or the connection ends, the link connects
+/// again after `reconnect_pause_ns`. The end of a connection is also an event.
 void run_link(const LinkClientConfig& config, const Joystick& joystick, const LinkEventSink& sink);
 
 }  // namespace surefoot::rex_link

@@ -18,15 +18,16 @@ std::optional<std::string> RexLinkConfig::problem() const {
         return value_ns >= least_ns && value_ns <= most_ns;
     };
     if (!within(answer_timeout_ns, 1, kLongestSilence_ns))
-        return "answer_timeout_ns: must be above 0 and at most 100 ms";
+        return "answer_timeout_ns: must be from 1 to 100000000 (100 ms)";
     if (!within(max_valid_for_ns, 1, kLongestLife_ns))
-        return "max_valid_for_ns: must be above 0 and at most 300 ms";
+        return "max_valid_for_ns: must be from 1 to 300000000 (300 ms)";
     if (!within(second_question_delay_ns, 1, max_valid_for_ns))
         return "second_question_delay_ns: must be above 0 and at most max_valid_for_ns, the "
                "longest validity of the first OK";
-    if (!within(rest_pause_ns, 0, kLongest_ns)) return "rest_pause_ns: must be from 0 to 60 s";
+    if (!within(rest_pause_ns, 0, kLongest_ns))
+        return "rest_pause_ns: must be from 0 to 60000000000 (60 s)";
     if (!within(step_duration_ns, 1, kLongest_ns))
-        return "step_duration_ns: must be above 0 and at most 60 s";
+        return "step_duration_ns: must be from 1 to 60000000000 (60 s)";
     return std::nullopt;
 }
 

@@ -8,11 +8,11 @@
 
 namespace surefoot::rex_link {
 
-/// Time limits of the REX master unit. problem() accepts stricter safety limits and rejects looser
-/// safety limits.
+/// Times of the REX master unit. problem() rejects an `answer_timeout_ns` or `max_valid_for_ns`
+/// above the default.
 struct RexLinkConfig {
     std::int64_t answer_timeout_ns = 100'000'000;  ///< longest wait for an answer; then inhibits
-    std::int64_t second_question_delay_ns = 150'000'000;  ///< time after the acknowledgement tone
+    std::int64_t second_question_delay_ns = 150'000'000;  ///< wait after the acknowledgement tone
     /// Time at rest after which the joystick may ask again about a refused code.
     std::int64_t rest_pause_ns = 200'000'000;
     /// Longest validity of a verdict (docs/evidence/safety.md).
@@ -76,7 +76,7 @@ struct Motion {
 struct Actions {
     std::optional<Question> question;  ///< question to send at once
     std::optional<Tone> tone;          ///< tone to play; do not wait for its end
-    std::optional<Motion> motion;      ///< start it
+    std::optional<Motion> motion;      ///< motion to start now
     std::optional<Inhibit> inhibit;    ///< reason of the warning tone, for logs and displays
 };
 
@@ -117,7 +117,7 @@ class RexLink {
     /// only inhibit more.
     [[nodiscard]] Actions tick(std::int64_t now_ns);
 
-    /// Returns the time of the link's next own action; empty while it waits only for the user.
+    /// Returns the time of the link's next own action. Empty while the link waits for the joystick.
     [[nodiscard]] std::optional<std::int64_t> next_deadline_ns() const noexcept;
     [[nodiscard]] LinkState state() const noexcept { return state_; }
 
@@ -152,7 +152,7 @@ class RexLink {
     std::optional<std::uint64_t> nonce_;  ///< nonce of the session; empty = not connected
     std::uint8_t code_ = 0;               ///< joystick
     std::int64_t rest_since_ns_ = 0;
-    std::bitset<256> refused_;  ///< codes refused until the joystick was at rest
+    std::bitset<256> refused_;  ///< codes not asked again until the joystick was at rest
     std::int64_t motion_end_ns_ = 0;
     std::int64_t last_ns_ = 0;
 };

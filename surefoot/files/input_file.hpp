@@ -7,7 +7,7 @@
 
 #include "surefoot/core/result.hpp"
 
-/// The only module that opens a user's file for reading.
+/// Checks the kind and size of a user's file, and opens it for reading.
 namespace surefoot::files {
 
 /// Largest size of a file per format [bytes]. A larger file is refused before it is read.
@@ -53,7 +53,7 @@ class InputFile {
         std::size_t bytes = 0;    ///< bytes read into the buffer
         bool would_wait = false;  ///< true: the FIFO has no data now
     };
-    /// Reads the next bytes. Returns 0 bytes at the end of the file.
+    /// Reads the next bytes. 0 bytes without `would_wait` mean the end of the file.
     [[nodiscard]] Result<Piece> read(std::span<char> buffer);
     /// Reads `count` bytes from `offset`, or fewer if the opened file ends before. Returns an error
     /// if the file became shorter.

@@ -62,12 +62,12 @@ void make_level(grid::MapSnapshot& map) noexcept {
 }
 
 /// Returns a point well inside a landing foot, as far as possible from the present position of this
-/// foot. In a short step, the machine already stands on the ground under the middle of the landing
-/// foot.
+/// foot. The middle of the landing foot is not enough: in a short step, the machine already stands
+/// on the ground there.
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
     const auto from_stance =
-        [&](grid::FixedPoint p) {  // sum of the distances to all corners of the stance area
+        [&](grid::FixedPoint p) {  // sum of the squared distances to all corners of the stance area
             std::int64_t sum_sq = 0;
             for (const grid::FixedPoint q : foot.stance.points())
                 sum_sq += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
@@ -82,7 +82,7 @@ grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
 }
 
 /// Changes a cell of the ground that the foot newly touches. If the cell lies outside the map,
-/// changes the last cell of the map, so that the canary fails and reports the case.
+/// changes the nearest cell at the rim of the map. Then the canary fails and reports the case.
 template <typename Change>
 void change_one_cell(const Setting& s, Change&& change) noexcept {
     const grid::FixedPoint place = new_ground(s.foot);
@@ -242,8 +242,9 @@ std::int64_t length_sq(const Movement& m) noexcept {
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
 }
 
-/// True if `a` is better for the canaries than `b`. A longer movement covers more ground. The
-/// broken rules are rules for flat ground: on stairs, some of the faults would be treads.
+/// True if `a` is better for the canaries than `b`. Walking is better than stairs, because the
+/// broken rules are rules for flat ground: on stairs, some of the faults would be treads. A longer
+/// movement is better, because it covers more ground.
 bool is_harder(const Movement& a, const Movement& b) noexcept {
     if (a.movement_class != b.movement_class) return a.movement_class == MovementClass::walk;
     return length_sq(a) > length_sq(b);
@@ -254,7 +255,7 @@ bool is_harder(const Movement& a, const Movement& b) noexcept {
 const int Canaries::kBrokenRules = static_cast<int>(kFaultCount);
 
 Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
-    if (machine.problem() != nullptr) return;  // if there is no movement, every canary fails
+    if (machine.problem() != nullptr) return;  // judge_all() fails, because the verdict is CONFIG
     for (std::size_t i = 1; i < machine.movements.size(); ++i) {
         const auto code = static_cast<std::uint8_t>(i);
         if (movement_for(machine, code) == nullptr) continue;

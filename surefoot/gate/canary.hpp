@@ -9,10 +9,10 @@
 
 namespace surefoot::gate {
 
-/// Canaries: maps with known verdicts. Level ground must be OK for every movement of the machine.
-/// For the longest movement, one canary breaks each ground rule; each rule of a foot has a canary
-/// per foot. Canaries pass through decide() like every query. So a gate that always gives the same
-/// verdict is detected. Judge all before the gate is armed, then one after the other while it runs.
+/// Canaries: inputs of decide() with known verdicts. Level ground must be OK for every movement of
+/// the machine. The other canaries use the longest movement (walking first). Each breaks a rule,
+/// ground rules under each foot. Canaries detect a gate that always gives the same verdict.
+/// Judge all canaries before the gate is armed. Then judge one after the other while the gate runs.
 ///
 /// Holds one map of 0.9 MB, so allocate it on the heap. Allocates nothing after construction. One
 /// canary costs less than a millisecond.
@@ -21,7 +21,7 @@ class Canaries {
     explicit Canaries(const Machine& machine) noexcept;
 
     [[nodiscard]] int count() const noexcept { return first_fault_ + kBrokenRules; }
-    /// Result of one canary. Examples of names: "level ground, movement 9", "unknown_cells".
+    /// Result of one canary. `name`: code of `expected`, for example "UNKNOWN_CELLS"; "NONE" = OK.
     struct Outcome {
         bool passed = false;
         const char* name = "";
@@ -39,7 +39,7 @@ class Canaries {
 
     Machine machine_;
     grid::MapSnapshot map_;
-    int first_fault_ = 0;       ///< number of movements; first canary that breaks a rule
+    int first_fault_ = 0;       ///< number of movements = first canary that breaks a rule
     std::uint8_t longest_ = 0;  ///< movement of the canaries that break a rule
 };
 

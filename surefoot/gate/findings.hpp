@@ -58,7 +58,7 @@ class Findings {
     std::array<bool, kReasonCount> has_worst_{};
 };
 
-/// Copies cell, value and limit of the worst finding of the primary reason into the evidence.
+/// Copies cell, foot, value and limit of the primary reason's worst finding into the evidence.
 void show_worst_cell(const grid::MapSnapshot& map,
                      const Findings& findings,
                      Reason primary,

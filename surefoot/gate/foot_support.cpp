@@ -11,8 +11,8 @@ namespace {
 
 using grid::FixedPoint;
 
-/// Exact sums over cells. x and y are doubled coordinates from the middle of the foot, z is the
-/// height above the stance.
+/// Exact sums over cells, in units of 0.1 mm. x and y are doubled coordinates from the middle of
+/// the foot. z is the height above the stance.
 struct Sums {
     std::int64_t n = 0;
     std::int64_t x = 0, y = 0, z = 0;
@@ -31,13 +31,13 @@ struct Sums {
     }
 };
 
-/// The weighted mean of a patch. A cell whose sigma exceeds the limit of a patch weighs less, by
-/// its variance. So a cell after a rejected measurement does not spoil the patch.
+/// The weighted mean of a patch. A cell whose sigma exceeds `patch_sigma` has a smaller weight: the
+/// ratio of the two variances. So a cell with a rejected measurement does not spoil the patch.
 struct PatchSums {
     std::int64_t n = 0;
     double weight = 0.0;
     double x = 0.0, y = 0.0, z = 0.0;  ///< weighted sums of x, y and z
-    double variance = 0.0;             ///< sum of the variances, with squared weights
+    double variance = 0.0;             ///< sum of the variances times the squared weights
 
     void add(FixedPoint p, std::int64_t height, std::int64_t sigma, std::int64_t sure) noexcept {
         const auto variance_of = [](std::int64_t s) { return static_cast<double>(s * s); };
@@ -70,8 +70,9 @@ struct FootPlane {
     }
 };
 
-/// Solves the normal equations of the centred points. The sums are exact, and only + - * / without
-/// contraction follow. So all machines give the same bits.
+/// Solves the normal equations of the centred points. The sums are exact. After them, the function
+/// uses only + - * /, and the compiler makes no fused multiply-add. So all computers give the same
+/// bits.
 FootPlane fit_plane(const Sums& sums) noexcept {
     FootPlane plane;
     if (sums.n < 3) return plane;
@@ -102,7 +103,7 @@ std::int64_t rounded(double value) noexcept {
 /// The patches of a foot in the foot's axes.
 class Patches {
   public:
-    static constexpr std::int64_t kMaxPerSide = 16;  // Machine::problem() bounds the foot
+    static constexpr std::int64_t kMaxPerSide = 16;  // Machine::problem() checks this
 
     Patches(const GroundBox& box, const FixedPose& target, const GateLimits& limits) noexcept
         : pose_(target),
@@ -173,7 +174,7 @@ const StepLimits& step_limits(const Scene& scene) noexcept {
     return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
 }
 
-/// Tests the step limits. `where`: a finding; its value is the height above the stance.
+/// Tests the step limits. `where`: a finding whose value is the rise to test [0.1 mm].
 void check_rise(const StepLimits& limits, Finding where, Findings& findings) noexcept {
     const std::int64_t rise = where.value_tenth_mm;
     const auto deny = [&](Reason reason, std::int64_t value, std::int64_t limit) {
@@ -216,7 +217,7 @@ bool check_tilt(const Landing& landing) noexcept {
 }
 
 bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
-    if (patch.n == 0) return true;  // large cells leave patches empty; every cell is in one
+    if (patch.n == 0) return true;  // with large cells, some patches are empty
     const GateLimits& limits = landing.scene.machine.limits;
     const double x = patch.x / patch.weight;
     const double y = patch.y / patch.weight;
@@ -270,9 +271,10 @@ struct FootCells {
 };
 
 /// True for a single cell outside the step limits whose eight neighbours are known and within the
-/// limits. The cell must be neither an obstacle for a swinging foot nor a drop. It is a wrong match
-/// or a pebble, and the mean of its patch covers it. A real kerb or sill fills more than one cell.
-/// One such cell per foot is allowed, because the foot would stand on several such cells.
+/// limits. The cell must be neither an obstacle for a swinging foot nor a drop. Such a cell is a
+/// wrong match or a pebble, and the mean of its patch includes it. A real kerb or sill fills more
+/// than one cell. Only one such cell per foot is allowed, because the foot would stand on several
+/// of them.
 bool stands_alone(const Scene& scene,
                   std::int64_t ix,
                   std::int64_t iy,
@@ -346,7 +348,7 @@ void check_landing(const Scene& scene,
     bool flat = check_tilt(landing);
     for (std::int64_t i = 0; i < cells.patches.count(); ++i)
         flat = check_patch(landing, cells.patches[i]) && flat;
-    if (!flat) return;  // already refused, with a reason better than the cell heights
+    if (!flat) return;  // already refused: tilt or patches explain it better than cell heights
     check_rise(step_limits(scene), cells.highest, findings);
     check_rise(step_limits(scene), cells.lowest, findings);
 }

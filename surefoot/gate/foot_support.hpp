@@ -16,9 +16,9 @@ namespace surefoot::gate {
 ///    neighbouring cells are correlated. So only a fixed small number of cells counts as
 ///    independent, for any cell size. Each patch needs sigma <= `patch_sigma` and |residual to the
 ///    plane| + sigma_factor * sigma <= `patch_residual`.
-/// 5. Every cell keeps the step limits of rule 3. Example: toes on the start of a ramp step up,
-///    even if the middle of the foot does not.
-/// No mean over the whole foot decides. Each patch is tested, and the worst patch is reported.
+/// 5. Every cell keeps the step limits of rule 3; a single cell (pebble) may break them. Example:
+///    toes on the start of a ramp step up, even if the middle of the foot does not.
+/// No mean over the foot judges its evenness: each patch is tested, and the worst is reported.
 void check_landing(const Scene& scene,
                    const FootSweep& foot,
                    const GroundBox& box,

@@ -38,25 +38,25 @@ struct FixedPose {
 /// Returns the pose of base_link after the movement.
 [[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
 
-/// The regions that one foot needs for a movement.
+/// The regions that one foot needs for a movement. kBesideTenthMm widens corridor and band, too.
 struct FootSweep {
     Foot foot = Foot::none;
     grid::FixedConvex stance;   ///< sole area at the start
     grid::FixedConvex landing;  ///< sole area at the target
     grid::FixedPoint landing_center;
-    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by the margin
-    grid::FixedConvex band;      ///< the landing box widened by the drop band
+    grid::FixedConvex corridor;  ///< hull of stance and landing, widened by `foot_margin`
+    grid::FixedConvex band;      ///< landing box, widened by `drop_band`
 };
 
 /// All regions that a movement needs, in odom.
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
-    /// For each part of the body: hull of its box at start and target, widened by the sway.
+    /// For each part of the body: hull of its box at start and target, wider by sway and 25 mm.
     std::array<grid::FixedConvex, Body::kMaxParts> body;
     FixedPose target;
 };
 
-/// A rectangle in odom, parallel to its axes.
+/// A rectangle in odom, parallel to the axes of odom [0.1 mm].
 struct Extent {
     grid::FixedPoint low;
     grid::FixedPoint high;
@@ -66,9 +66,9 @@ struct Extent {
 /// Returns the smallest rectangle that contains the whole sweep.
 [[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
 
-/// Returns the extra distance by which every region grows, because the cells drifted after their
-/// measurement: `sigma_factor` times the drift (1 sigma, horizontal), as far as the margins of the
-/// regions do not cover it.
+/// Returns the margin for sweep_of() if cells drifted after their measurement: `sigma_factor` times
+/// the part of the drift (1 sigma, horizontal) above 10 mm. The usual margins cover the first 10
+/// mm.
 [[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
                                         std::int64_t drift_tenth_mm) noexcept;
 /// Returns all regions. `margin_tenth_mm` widens all except the stance and landing areas.

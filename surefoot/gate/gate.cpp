@@ -136,9 +136,9 @@ void judge_snapshot(const GateLimits& limits,
     findings.prove(Proof::camera_healthy, [&] { check_camera(camera, findings); });
 }
 
-/// True if measured ground under the feet lies at the height of the soles. The tolerance is a step
-/// plus twice the swing clearance, for bent knees. Also true without measured ground, because there
-/// is nothing to compare.
+/// True if measured ground under the feet lies at the height of the soles. The tolerance is the
+/// largest step limit plus twice the swing clearance, for bent knees. Also true without measured
+/// ground, because there is nothing to compare.
 bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcept {
     const Query here = query_at_body(0, map);
     const Sweep standing =
@@ -175,7 +175,7 @@ void judge_readiness(const Machine& machine,
     });
 }
 
-/// Tests all ground ahead of the present feet, for movements on flat ground.
+/// Tests the ground of a movement on flat ground, except the ground under the present feet.
 void judge_walk(const Scene& scene, Findings& findings) noexcept {
     findings.prove(Proof::corridors_clear, [&] { check_corridors(scene, findings); });
     findings.prove(Proof::body_clear, [&] { check_body(scene, findings); });
@@ -190,7 +190,7 @@ void judge_walk(const Scene& scene, Findings& findings) noexcept {
     });
 }
 
-/// Tests all ground ahead of the present feet, for landing on treads.
+/// Tests the ground of a movement on stairs, except the ground under the present feet.
 void judge_stair(Scene scene, Findings& findings) noexcept {
     const Treads treads = find_treads(scene);
     scene.lift_tenth_mm = lift_of(treads);
@@ -211,7 +211,7 @@ void judge_stair(Scene scene, Findings& findings) noexcept {
     });
 }
 
-/// Tests the ground of one sweep, region by region (safety.md 7, rule 4).
+/// Tests the ground of one sweep, region by region (regions.hpp).
 void judge_sweep(const Machine& machine,
                  const Query& query,
                  const Ground& ground,
@@ -255,12 +255,12 @@ void judge_terrain(const Machine& machine,
     const std::int64_t margin = drift_margin(machine.limits, drift);
     if (margin == 0 || !findings.reasons().empty()) return;
     findings = before;
-    findings.evidence.max_drift_tenth_mm = drift;  // states how far the regions were widened
+    findings.evidence.max_drift_tenth_mm = drift;  // the regions were widened by this drift
     judge_sweep(machine, query, ground, sweep_of(machine, start, movement, margin), findings);
 }
 
-/// Completes the verdict. ERROR has priority over NOT_TRAVERSABLE, and NOT_TRAVERSABLE over OK. OK
-/// only if nothing was denied and everything was proven.
+/// Completes the verdict. ERROR has priority over NOT_TRAVERSABLE, and NOT_TRAVERSABLE over OK. The
+/// verdict is OK only if no test denied and all proofs hold.
 void seal(const Machine& machine,
           const grid::MapSnapshot& map,
           const Findings& findings,

@@ -11,14 +11,14 @@ namespace surefoot::gate {
 
 /// Source of the height of the ground under the feet before the movement.
 enum class StanceHeight : std::uint8_t {
-    map,   ///< mean of the cells under both feet
+    map,   ///< mean height of the known cells under both feet
     given  ///< the caller gives it (joint sensors, arming); the cells must be known as well
 };
 
-/// Ground that an operator attested when arming. Unknown cells that lie wholly inside count as flat
-/// ground at `height`. Measured cells keep their heights, so an attestation never hides an
-/// obstacle. The attestation is valid only while base_link is inside. When base_link leaves, the
-/// caller discards the attestation for good. The caller logs and displays it. Inactive by default.
+/// Ground that an operator attested when arming. Unknown cells wholly inside count as flat ground
+/// at `height`. Measured cells keep their heights, except uncertain ones within 15 mm of `height`.
+/// So no measured obstacle above 15 mm is hidden. Valid only while base_link is inside. When
+/// base_link leaves, the caller discards the attestation for good. The caller logs and displays it.
 struct AttestedArea {
     bool active = false;
     std::int64_t center_x_tenth_mm = 0;  ///< odom
@@ -27,9 +27,9 @@ struct AttestedArea {
     std::int32_t height_tenth_mm = 0;
 };
 
-/// The question "may I make this movement from here?" A default query has no valid pose: refused.
+/// The question "may I make this movement from here?" Without a valid pose it is refused.
 struct Query {
-    std::uint8_t command = 0;     ///< joystick code 1..26, see system_facts.md 7.2
+    std::uint8_t command = 0;     ///< joystick code 1..26 (docs/reference/glossary.md)
     std::int64_t x_tenth_mm = 0;  ///< base_link in odom
     std::int64_t y_tenth_mm = 0;
     double cos_yaw = 0.0;
@@ -63,9 +63,9 @@ struct GateHealth {
 };
 
 /// Returns the faults of a snapshot at `now_ns` that do not depend on the query: damage, age, a
-/// stamp in the future, gravity, pose, camera. decide() applies the same tests. It also tests that
-/// measured ground under the feet lies at the height of the soles (PLANE_INVALID), if the machine
-/// stands on the map. An empty set means that the snapshot can be used.
+/// stamp in the future, gravity, pose, camera. decide() applies the same tests. Only this function
+/// ignores CameraState::leaning and tests that measured ground under the feet lies at the height of
+/// the soles (PLANE_INVALID). An empty set means that the snapshot can be used.
 [[nodiscard]] ReasonSet snapshot_faults(const Machine& machine,
                                         const grid::MapSnapshot& map,
                                         std::int64_t now_ns) noexcept;

@@ -49,7 +49,7 @@ Verdict judge_goal(const Machine& machine,
                    const GateHealth& health,
                    std::int64_t now_ns) noexcept {
     constexpr std::uint8_t kStay = 1;
-    Machine standing = machine;  // a machine whose only movement is to stay in place
+    Machine standing = machine;  // this machine has only one movement: to stay in place
     standing.movements = {};
     standing.movements[kStay].configured = true;
     standing.limits.step[static_cast<std::size_t>(MovementClass::walk)].enabled = true;

@@ -15,10 +15,10 @@ struct GoalPose {
     double sin_yaw = 0.0;
 };
 
-/// Decides whether the machine could stand at a goal, on ground connected to the ground where it
-/// stands (`here`; its command is ignored). For display only: the verdict never allows a step,
-/// because it expires when it begins. The function tests that the ground is connected, but it does
-/// not judge the path. Pure, like decide().
+/// Decides whether the machine could stand at a goal, on ground that is connected to its ground
+/// now. `here`: the present pose; its command is ignored. For display only: the verdict never
+/// allows a step, because it expires at the time of the decision. The function does not judge the
+/// path. Pure, like decide().
 [[nodiscard]] Verdict judge_goal(const Machine& machine,
                                  const Query& here,
                                  const GoalPose& goal,

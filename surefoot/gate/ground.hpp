@@ -40,7 +40,7 @@ struct GroundCell {
 /// The map together with the operator's attestation. Only this class makes a cell known. A cell
 /// without a measurement becomes known only if it lies wholly in the attested area. There the
 /// attestation also replaces a measurement that agrees with it but is too uncertain to decide. So
-/// measuring a cell never makes the verdict worse than leaving it unmeasured. Overhead obstacles
+/// such a measurement never makes the verdict worse than no measurement. Overhead obstacles
 /// and drop evidence stay. An unknown cell there is a drop if a ray proves it lower by more than
 /// `drop`.
 class Ground {
@@ -97,14 +97,14 @@ class Ground {
     [[nodiscard]] const AttestedArea& attested() const noexcept { return attested_; }
 
   private:
-    /// Applies the attestation to a cell. Not in the header, because few verdicts have one.
+    /// Applies the attestation to a cell. Defined in ground.cpp, because few verdicts need it.
     void take_word(std::size_t at,
                    std::int64_t ix,
                    std::int64_t iy,
                    GroundCell& cell) const noexcept;
     /// True if sigma is above 7.9 mm and the height is within 15 mm of the attested height.
     [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept;
-    /// True for an unknown cell if rays prove that its ground is below the attested ground.
+    /// For an unknown cell: true if rays prove it more than `drop` below the attested ground.
     [[nodiscard]] bool is_proven_lower(std::size_t at) const noexcept;
     /// True if the whole cell lies in the attested area.
     [[nodiscard]] bool is_attested(std::int64_t ix, std::int64_t iy) const noexcept;
@@ -117,7 +117,7 @@ class Ground {
     bool attestation_ = false;
 };
 
-/// The connected surfaces that the machine can stand on.
+/// The connected surfaces (component labels of the map) that the machine can reach.
 class ReachableSurfaces {
   public:
     void add(std::uint16_t component) noexcept;

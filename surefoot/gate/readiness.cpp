@@ -19,7 +19,7 @@ const char* ReadinessLimits::problem() const noexcept {
     constexpr std::int64_t kSecond = 1'000'000'000;
     if (!detail::within(warmup_ns, kSecond / 2, 60 * kSecond) ||
         !detail::within(recover_ns, kSecond / 2, 60 * kSecond))
-        return "warmup_ns and recover_ns must be from 0.5 s to 60 s";
+        return "warmup_ns and recover_ns must be from 500000000 (0.5 s) to 60000000000 (60 s)";
     if (!detail::within(warmup_frames, 5, 10'000) || !detail::within(recover_frames, 5, 10'000))
         return "warmup_frames and recover_frames must be from 5 to 10000";
     if (!(warmup_timeout_ns > warmup_ns && warmup_timeout_ns <= 600 * kSecond) ||
@@ -31,7 +31,7 @@ const char* ReadinessLimits::problem() const noexcept {
     if (!detail::within(jump_m, 0.001, 0.1) || !detail::within(jump_rad, 0.001, 0.2))
         return "jump_m must be from 0.001 to 0.1 m, and jump_rad from 0.001 to 0.2 rad";
     if (!detail::within(clock_gap_ns, kSecond / 1000, kSecond))
-        return "clock_gap_ns must be from 1 ms to 1 s";
+        return "clock_gap_ns must be from 1000000 (1 ms) to 1000000000 (1 s)";
     return nullptr;
 }
 
@@ -121,9 +121,10 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // above a quarter turn no angle can be excluded
+    constexpr double kQuarter_rad = 1.5;  // from here on, no angle can be excluded
     if (turn_rad >= kQuarter_rad) return false;
-    // sin(x) <= x: an undetected turn is at most a few percent above the limit.
+    // sin(x) <= x, so a turn slightly above the limit can stay undetected: up to 5 % more for a
+    // limit up to 0.5 rad, up to a right angle for a limit from 1 rad on.
     const double sine = last_.cos_yaw * map.body_sin_yaw - last_.sin_yaw * map.body_cos_yaw;
     const double cosine = last_.cos_yaw * map.body_cos_yaw + last_.sin_yaw * map.body_sin_yaw;
     return !(magnitude(sine) <= turn_rad && cosine > 0.0);

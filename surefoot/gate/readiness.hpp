@@ -12,10 +12,10 @@ namespace surefoot::gate {
 /// Times and counts of healthy input before an OK is possible, and limits of the motion.
 /// ASSUMPTION: the times come from the hazard analysis. No valid value of a limit disables a rule.
 struct ReadinessLimits {
-    std::int64_t warmup_ns = 2'000'000'000;  ///< required time of healthy input
+    std::int64_t warmup_ns = 2'000'000'000;  ///< healthy time before the first OK
     std::int32_t warmup_frames = 20;
     std::int64_t warmup_timeout_ns = 60'000'000'000;  ///< a longer warm-up is a fault
-    std::int64_t recover_ns = 1'000'000'000;          ///< healthy time after a disturbance
+    std::int64_t recover_ns = 1'000'000'000;          ///< healthy time before DEGRADED ends
     std::int32_t recover_frames = 10;
     std::int64_t degraded_timeout_ns = 10'000'000'000;
     /// Largest speed of base_link, and the extra motion between two snapshots that pose errors may
@@ -24,7 +24,7 @@ struct ReadinessLimits {
     double fastest_rad_s = 1.5708;
     double jump_m = 0.050;
     double jump_rad = 0.0524;
-    /// Largest change of the clocks' difference; a larger change means that the computer slept.
+    /// Largest change of the difference of the clocks() arguments; if larger, the computer slept.
     std::int64_t clock_gap_ns = 100'000'000;
 
     /// Returns the first problem of the limits as text, or nullptr if they are valid.
@@ -40,9 +40,9 @@ struct ReadinessLimits {
 /// any      -- a latched reason --> FAULT
 /// FAULT    -- an operator re-arms --> WARMUP
 /// ```
-/// Inhibits at once and releases slowly: one bad sample leaves READY. Only `rearm` leaves FAULT,
-/// and it starts a full warm-up. Pure: times are arguments, nothing is allocated.
-/// Use it from one thread.
+/// Inhibits at once and releases slowly: one bad sample ends READY. Only `rearm` ends FAULT, and
+/// then a full warm-up begins. Pure: times are arguments, nothing is allocated. Use it from one
+/// thread.
 class Readiness {
   public:
     /// An invalid machine or invalid limits lead to FAULT / CONFIG.
@@ -50,7 +50,7 @@ class Readiness {
 
     /// Reports the result of the self-test (canaries), at the start and while running.
     void self_tested(bool passed, std::int64_t now_ns) noexcept;
-    /// Processes a new snapshot whose version is higher than the previous one.
+    /// Processes a new snapshot. Latches a fault if its version is not above the previous version.
     void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
     /// Reports a snapshot that perception did not make. Latches a fault.
     void snapshot_forged(std::int64_t now_ns) noexcept;
@@ -104,7 +104,7 @@ class Readiness {
     Sighting last_;
     std::int64_t now_ns_ = 0;
     std::int64_t entered_ns_ = 0;     ///< time at which the present state began
-    std::int64_t well_since_ns_ = 0;  ///< valid while `well_frames_` > 0
+    std::int64_t well_since_ns_ = 0;  ///< time of first healthy frame; valid if `well_frames_` > 0
     std::int32_t well_frames_ = 0;
     bool tested_ = false;
     bool config_valid_ = false;

@@ -49,7 +49,7 @@ const char* to_string(Reason reason) noexcept {
         case Reason::edge_margin: return "EDGE_MARGIN";
         case Reason::none: return "NONE";
     }
-    return "INTERNAL";  // an invalid value from outside must never become a permission
+    return "INTERNAL";  // an invalid value counts as INTERNAL, so it never allows a step
 }
 
 const char* to_string(Decision decision) noexcept {

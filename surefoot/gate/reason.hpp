@@ -54,14 +54,14 @@ enum class Reason : std::uint8_t {
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
 
-/// Returns the code in messages and logs, for example "UNKNOWN_CELLS".
+/// Returns the code of a reason in messages and logs, for example "UNKNOWN_CELLS".
 [[nodiscard]] const char* to_string(Reason reason) noexcept;
 
 [[nodiscard]] constexpr bool is_error(Reason reason) noexcept {
     return reason < Reason::outside_map;
 }
 
-/// True for a fault that stays until an operator re-arms the gate: the map may be wrong.
+/// True for a reason that latches at once: the gate stays in FAULT until an operator re-arms it.
 [[nodiscard]] constexpr bool is_latched(Reason reason) noexcept {
     return reason == Reason::internal || reason == Reason::config || reason == Reason::clock ||
            reason == Reason::mount_moved || reason == Reason::pose_jump;

@@ -8,9 +8,9 @@
 namespace surefoot::gate {
 namespace {
 
-// Functions that test each of the thousands of cells of a verdict are always_inline. They have five
-// callers, so the compiler would not inline them. Inlining reduces the time per verdict from 0.055
-// ms to 0.043 ms.
+// Functions that test each of the thousands of cells of a verdict are always_inline. They have
+// several callers, so the compiler would not inline them. Inlining reduces the time per verdict
+// from 0.055 ms to 0.043 ms.
 
 /// A cell and its position.
 struct Place {
@@ -71,8 +71,9 @@ bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) 
     return true;
 }
 
-/// Tests every cell in every region: known, certain, not drifted. Returns false if the cell has no
-/// usable height. Nearly every cell passes after a few comparisons.
+/// Tests that a cell is known, certain and not drifted; every cell of every region must pass.
+/// Returns false if the cell has no usable height. Nearly every cell passes after a few
+/// comparisons.
 [[gnu::always_inline]] inline bool check_knowledge(const Scene& scene,
                                                    const Place& place,
                                                    Findings& findings) noexcept {
@@ -216,8 +217,8 @@ BodyOver body_over(std::span<const BodyPart> parts,
     return over;
 }
 
-/// Returns the greatest height that a swinging foot may meet. On stairs this is the nosing that the
-/// foot steps over.
+/// Returns the greatest allowed height above the stance of an object in the path of a foot. On
+/// stairs, the largest step up is added, because the foot steps over a nosing.
 std::int64_t swing_height(const Scene& scene) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const bool stairs = scene.movement.movement_class == MovementClass::stair;
@@ -250,7 +251,7 @@ struct MeanHeight {
     }
     [[nodiscard]] std::optional<std::int64_t> height_tenth_mm() const noexcept {
         if (known == 0) return std::nullopt;
-        return grid::floor_div(2 * sum + known, 2 * known);  // to nearest
+        return grid::floor_div(2 * sum + known, 2 * known);  // rounded to the nearest integer
     }
 };
 
@@ -371,8 +372,8 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
         const auto test = [&](const Place& place) {
             check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
-        // For a foot on the floor, a drop beside a table top is not a drop. So drop evidence counts
-        // only on cells on which a foot could stand, not on higher cells.
+        // A table top has drop evidence at its rim, but the floor beside it is no drop for a foot
+        // on the floor. So drop evidence does not count on cells that are too high for a foot.
         const auto evidence = [&](const Place& place) {
             const bool above =
                 place.cell.known() && rise_of(scene, place.cell) > limits.swing_clearance_tenth_mm;

@@ -44,10 +44,10 @@ struct StanceHeights {
 /// touch the attested area.
 [[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
 
-/// Tests of the four regions of safety.md 7 (4). Every cell must lie inside the map, be known (or
-/// attested), have a sigma below `cell_sigma` and a drift below `drift`. A height limit in mm must
-/// hold by `sigma_factor` sigma, else NOT_RESOLVABLE. The sigma of a single cell may be larger if
-/// the cell keeps the limits and its eight neighbours pass: the cell may be a rejected wrong
+/// Tests of the four kinds of region. Every cell must lie inside the map and be known (or
+/// attested). Its sigma must be at most `cell_sigma`, and its drift at most `drift`. If a cell
+/// keeps a height limit, but not by `sigma_factor` sigma, the reason is NOT_RESOLVABLE. A
+/// single cell may have a larger sigma if its eight neighbours pass: it may be a rejected wrong
 /// match.
 /// - check_stance: no cell under the present feet is a drop.
 void check_stance(const Scene& scene, Findings& findings) noexcept;
@@ -57,8 +57,8 @@ void check_corridors(const Scene& scene, Findings& findings) noexcept;
 /// - check_body: nothing in the path of a part of the body is higher than its lower edge, or hangs
 ///   lower than its top.
 void check_body(const Scene& scene, Findings& findings) noexcept;
-/// - check_bands: under the landing feet and within `drop_band` around them no cell is lower than
-///   `drop` or has drop evidence.
+/// - check_bands: under the landing feet and within `drop_band` around them, no cell lies more than
+///   `drop` below the stance or has drop evidence.
 void check_bands(const Scene& scene, Findings& findings) noexcept;
 
 }  // namespace surefoot::gate

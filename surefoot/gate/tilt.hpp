@@ -34,8 +34,8 @@ namespace surefoot::gate {
 
 /// Squared tangent of the steepest possible tilt against the vertical. `tan_sq` is the squared
 /// tangent of the ground's tilt against odom's z axis. Uses tan(a + b) = (tan a + tan b) / (1 - tan
-/// a tan b). For a bound of zero the result is exactly `tan_sq`. Infinite from a right angle on,
-/// and for NaN.
+/// a tan b). For a bound of zero the result is exactly `tan_sq`. Otherwise it is infinite from a
+/// right angle on, and for NaN.
 [[nodiscard]] constexpr double steepest_tan_sq(double tan_sq, double bound_tan) noexcept {
     if (bound_tan == 0.0) return tan_sq;
     if (!(tan_sq >= 0.0)) return std::numeric_limits<double>::infinity();  // NaN

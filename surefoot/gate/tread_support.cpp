@@ -61,7 +61,7 @@ class FootAxes {
         return place_of(ground_.doubled_center(ix, iy, middle_));
     }
     [[nodiscard]] std::int64_t reach() const noexcept { return reach_; }
-    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< half of it, doubled
+    [[nodiscard]] std::int64_t length() const noexcept { return length_; }  ///< doubled half length
     [[nodiscard]] std::int64_t width() const noexcept { return width_; }
     [[nodiscard]] std::int64_t ankle() const noexcept { return ankle_; }
     /// Returns half of the extent of the ankle area along the foot: half a patch, doubled.
@@ -110,7 +110,7 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
 }
 
-/// Finds the start of the first ground that is lower than the tread by a drop. A cell with drop
+/// Finds the start of the first ground that lies more than `drop` below the tread. A cell with drop
 /// evidence is the last cell of the tread.
 void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const GateLimits& limits = scene.machine.limits;
@@ -150,7 +150,8 @@ struct BandCell {
         finding.limit_tenth_mm = limit;
         findings.deny(reason, finding);
     }
-    /// Requires `value` below `limit` by `sigma_factor` sigma, as in regions.cpp.
+    /// Requires `value` below `limit` by `sigma_factor` sigma. Unlike in regions.cpp, no single
+    /// cell may have a larger sigma.
     void check_below(const GateLimits& limits,
                      std::int64_t value,
                      std::int64_t limit,
@@ -163,7 +164,8 @@ struct BandCell {
             deny(findings, Reason::not_resolvable, cell.sigma_tenth_mm, limit - value);
         }
     }
-    /// Runs the tests that every cell of every region must pass.
+    /// Tests that the cell is known, certain and not drifted. Returns false if the cell has no
+    /// usable height.
     [[nodiscard]] bool check_knowledge(const GateLimits& limits, Findings& findings) const {
         ++findings.evidence.cells;
         if (!cell.known()) {
@@ -250,8 +252,9 @@ bool is_sound(const grid::SnapshotEdge& edge) noexcept {
            edge.across_sigma_tenth_mm >= 0;
 }
 
-/// Returns the shortest extent of the tread by the nosing line of the snapshot, without drift.
-/// Empty if no line of the snapshot is this nosing. Uses the coordinates of Tread's edges.
+/// Returns the shortest distance from the middle of the foot to the nosing line of the snapshot,
+/// minus `sigma_factor` sigma of the line. Drift is not subtracted. Empty if no line of the
+/// snapshot is this nosing. The distance is doubled, like the edges of `Tread`.
 std::optional<std::int64_t> nosing_line(const Scene& scene,
                                         const FootSweep& foot,
                                         const FootAxes& axes,

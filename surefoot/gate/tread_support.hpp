@@ -17,8 +17,8 @@ struct Tread {
 
     bool known = false;              ///< every cell under the ankle is known
     std::int64_t rise_tenth_mm = 0;  ///< mean height of the ankle cells above the stance
-    /// Start of the first cell that is lower than the tread by a drop. `heel_edge` counts backward
-    /// from the middle of the foot. kNone: no such cell in the band.
+    /// Start of the first cell more than `drop` below the tread. `heel_edge` counts backward from
+    /// the middle of the foot. kNone: no such cell in the band.
     std::int64_t toe_edge = kNone;
     std::int64_t heel_edge = kNone;
     std::int64_t drift_tenth_mm = 0;  ///< largest drift of the cells of the band
@@ -39,14 +39,14 @@ void check_body_lowered(const Scene& scene, const Treads& treads, Findings& find
 /// tread. Nothing within the foot's margin and drift may be higher than `swing_clearance` above the
 /// tread. At one end of the foot, outside the ankle, the next tread may be lower by one step of the
 /// class (by `sigma_factor` sigma). Unknown ground does not count as a tread. Both feet must land
-/// at one height.
+/// at one height (within `patch_residual`).
 void check_tread_bands(const Scene& scene, const Treads& treads, Findings& findings) noexcept;
 
 /// Tests the ground under one landing foot on a tread:
 /// 1. The tread ends where the first lower cell begins, minus an uncertainty: one cell, because the
 ///    map can show objects up to a cell beside their position, plus `sigma_factor` times the drift.
-///    If the snapshot has the nosing as a line, `sigma_factor` sigma of the line replaces the cell
-///    if that is less.
+///    If the snapshot has a line for the nosing, `sigma_factor` sigma of the line can replace the
+///    cell: the smaller of the two counts.
 /// 2. This tread carries the ankle and at least `tread_share` of the foot. No end overhangs by more
 ///    than `tread_overhang`. Otherwise SUPPORT_AREA, or EDGE_MARGIN if only the uncertainty breaks
 ///    the rule.

@@ -4,7 +4,8 @@
 namespace surefoot {
 namespace {
 
-/// Selects the Kinect error model for RGB-D cameras unless the user chose a model.
+/// Selects the Kinect error model for RGB-D cameras instead of the default model `matcher`. Another
+/// model that the user chose stays.
 void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
     auto& model = settings.pipeline.elevation.sensor.model;
     if (!rig.right && model == elevation::SensorModel::matcher)

@@ -161,8 +161,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         max_sway_deg,
         0.1,
         90.0,
-        "lean of base_link at which the mount counts as moved almost at once; set it above "
-        "the lean of any gait");
+        "lean of base_link that counts as a moved mount after 0.5 s; set it above the lean of any "
+        "gait");
     visitor.number("max_lean_before_step_deg",
                    max_lean_before_step_deg,
                    0.1,

@@ -15,24 +15,24 @@
 namespace surefoot::pipeline {
 
 struct AlignmentConfig {
-    double pitch_deg = 0.0;          ///< pitch below the horizon if not measured
+    double pitch_deg = 0.0;          ///< pitch below the horizon, used if not measured
     double still_gyro_rad_s = 0.15;  ///< largest turn rate that counts as rest:
                                      ///< MEMS bias (EuRoC 0.08 rad/s) plus noise
     double still_force_m_s2 = 0.3;   ///< largest |mean force - 9.81 m/s^2| at rest
     GravityConfig gravity;           ///< uncertainty of the plane and the accelerometer
     /// The mount counts as moved (mount_monitor.hpp) if base_link leans by over `max_lean_deg` from
-    /// its first attitude for `max_lean_still_s` at rest, or `max_lean_walking_s` in all without an
-    /// upright phase; above `max_sway_deg` almost at once. ASSUMPTION, from the simulated REX: it
+    /// its first attitude: for `max_lean_still_s` at rest, or `max_lean_walking_s` in all without
+    /// an upright phase; above `max_sway_deg` after 0.5 s. ASSUMPTION, from the simulated REX: it
     /// sways by 5.4 deg, returns within 0.3 deg, and stands leaning for at most 2 s.
     double max_lean_deg = 1.0;
-    /// No step may begin while base_link leans more: the machine is in mid-step, or was knocked.
+    /// base_link leans more in mid-step, or after a knock of the camera: no step may begin.
     double max_lean_before_step_deg = 0.7;
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;
-    double wait_for_exposure_s = 60.0;  ///< longest wait; warm-up: 10-30 s (Lange 2016)
-    double wait_for_ground_s = 10.0;    ///< longest search of the vertical: start.hpp
-    double wait_for_search_s = 3.0;     ///< longest search if mounting unknown: start.hpp
+    double wait_for_exposure_s = 60.0;  ///< longest wait; a warm-up took 10-30 s (Lange 2016)
+    double wait_for_ground_s = 10.0;    ///< longest search for the vertical (start.hpp)
+    double wait_for_search_s = 3.0;     ///< longest search with unknown mounting (start.hpp)
     void describe(ConfigVisitor& visitor);
 };
 
@@ -47,12 +47,12 @@ struct Alignment {
     /// NaN if gravity is assumed.
     double tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
     double ground_lean_rad = 0.0;  ///< tilt of the ground in odom, if an IMU measures gravity
-    std::string reason;            ///< names used and unused sources and causes
+    std::string reason;            ///< sources that were used, and why others were not
 };
 
 /// Result of the search for the ground; the text of `Alignment::reason` uses it.
 struct GroundView {
-    bool searched = false;  ///< true: searched over `ground.search_down_deg`
+    bool searched = false;  ///< true: tilts to `search_down_deg` were searched
     double search_down_deg = 0.0;
     double image_share = 0.0;  ///< image share of the best plane in any frame
     ground::GroundReason reason = ground::GroundReason::few_points;  ///< reason against that plane
@@ -67,8 +67,8 @@ struct GroundView {
 ///
 /// Vision alone cannot detect a wrong baseline, because it scales all lengths alike. If the height
 /// of base_link over its ground is known (`expected_height_m`; 0 = unknown) and the measured height
-/// differs by far, the source of gravity becomes `assumed`. Then `reason` states the two heights,
-/// and the gate rejects the map.
+/// differs by over 35 %, the source of gravity becomes `assumed`. Then `reason` states the two
+/// heights, and the gate answers ERROR on the map.
 [[nodiscard]] Alignment place_odom(const AlignmentConfig& config,
                                    const ground::GroundAlignment& ground,
                                    const std::optional<Direction>& up_imu,

@@ -7,8 +7,8 @@
 
 namespace surefoot::pipeline {
 
-/// Derives the state of the camera from the status of its frames: a bad state starts after
-/// kBadFrames, and ends only after kFreshFrames. A single bad frame changes nothing. This monitor
+/// Derives the state of the camera from its frames. A bad state starts after kBadFrames bad images
+/// and ends only after kFreshFrames good frames. One bad image starts no bad state. This monitor
 /// runs only when a frame arrives. If no frame arrives, the gate detects the fault by the age of
 /// the last frame.
 class CameraMonitor {
@@ -27,8 +27,8 @@ class CameraMonitor {
 
   private:
     CameraState state_ = CameraState::unknown;
-    int bad_ = 0;    ///< number of consecutive bad frames
-    int fresh_ = 0;  ///< number of consecutive fresh frames
+    int bad_ = 0;    ///< number of consecutive bad images
+    int fresh_ = 0;  ///< number of consecutive good frames
 };
 
 }  // namespace surefoot::pipeline

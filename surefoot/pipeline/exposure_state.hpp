@@ -19,13 +19,13 @@ enum class ExposureState : std::uint8_t {
 inline constexpr int kSaturated_dn = 250;
 /// Black level and read noise of 8-bit cameras lie below this value.
 inline constexpr int kBlack_dn = 10;
-/// ASSUMPTION: three quarters of an image are enough. Half an image was enough for ground planes,
-/// and two thirds for the corners of the online rig self-calibration (docs/lab/ground.md).
+/// ASSUMPTION: a quarter of an image may be saturated. Half an image was enough for ground planes,
+/// two thirds for the corners of the online rig self-calibration (docs/lab/ground.md).
 inline constexpr double kMaxSaturatedShare = 0.25;
 inline constexpr double kMaxBlackShare = 0.75;
 
-/// Samples every fourth pixel of every fourth row of both cameras. The worse camera decides. A
-/// frame without images (modelled depth) is well exposed.
+/// Samples every fourth pixel of every fourth row. Returns the first bad state, left camera first.
+/// A frame without images (modelled depth) is well exposed.
 [[nodiscard]] ExposureState exposure_state_of(const StereoFrame& frame) noexcept;
 
 }  // namespace surefoot::pipeline

@@ -41,11 +41,11 @@ struct GravityConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Returns the up direction that the accelerometer measures while the rig stands still. Empty
-/// without samples, if the rig turns faster than `still_gyro_rad_s`, or if the force differs from
-/// 9.81 m/s^2 by more than `still_force_m_s2`. The uncertainty covers two errors: a constant error,
-/// which grows if the force has a wrong length, and the change of direction between the two halves
-/// of the samples.
+/// Returns the up direction that the accelerometer measures while the rig stands still. Empty with
+/// fewer than 10 samples, if the rig turns faster than `still_gyro_rad_s`, or if the force differs
+/// from 9.81 m/s^2 by more than `still_force_m_s2`. The uncertainty covers a constant error, which
+/// grows if the force has a wrong length. It also covers the change of direction between the two
+/// halves of the samples.
 [[nodiscard]] std::optional<Direction> up_from_imu(const GravityConfig& config,
                                                    double still_gyro_rad_s,
                                                    double still_force_m_s2,

@@ -15,10 +15,10 @@ namespace surefoot::pipeline {
 /// The fault is reported and latched; the monitor never corrects the pose.
 ///
 /// The monitor compares the lean of base_link with two references: odom's z axis and the ground
-/// plane. On a slope base_link leans only against the plane, with odometry drift only against
-/// odom. A knocked camera leans against both by the same turn. A walking machine sways (REX: up to
-/// 5.4 deg in the simulator), but stands upright between its steps. After a knock the lean never
-/// ends.
+/// plane. On a slope, base_link leans only against the plane. If the odometry drifts, it leans only
+/// against odom. A knocked camera leans against both by the same turn. A walking machine sways
+/// (REX: up to 5.4 deg in simulation), but stands upright between steps. After a knock the lean
+/// stays.
 ///
 /// The monitor cannot detect turns about the vertical or shifts. Pass frames in time order.
 class MountMonitor {
@@ -26,15 +26,15 @@ class MountMonitor {
     explicit MountMonitor(const AlignmentConfig& config) : config_(config) {}
 
     /// Judges one frame. `ground_body`: its ground plane. The first healthy frame with a plane sets
-    /// the reference attitude; frames without a plane are not judged.
+    /// the reference attitude; unhealthy frames and frames without a plane are not judged.
     void add(const MotionEstimate& motion, const GroundObservation& ground_body);
 
     [[nodiscard]] bool moved() const noexcept { return moved_; }
-    /// True if base_link leaned in the last judged frame: the machine is in mid-step, or was
-    /// knocked. A knock of over `max_lean_before_step_deg` shows in the next frame, and lasts until
+    /// True if base_link leaned in the last judged frame: in mid-step, or the camera was knocked. A
+    /// knock of over `max_lean_before_step_deg` shows in the next frame, and lasts until
     /// `moved` reports it. A step ends upright, and then the lean ends.
     [[nodiscard]] bool leans() const noexcept { return leans_; }
-    /// Lean of base_link [rad] in the last judged frame, as far as both references agree.
+    /// Lean of base_link [rad] in the last judged frame; 0 if the two references disagree.
     [[nodiscard]] double lean_rad() const noexcept { return lean_rad_; }
 
   private:

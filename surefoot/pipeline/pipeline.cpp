@@ -189,7 +189,7 @@ bool Pipeline::is_mount_unknown() const {
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
     std::vector<stereo::CornerShift> corners;
-    // Uses the first, middle and last frame, because neighbouring frames show the same scene.
+    // Uses a few frames far apart, because neighbouring frames show the same scene.
     const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
@@ -278,7 +278,7 @@ FrameReport Pipeline::check(const StereoFrame& frame, Work wanted) {
     const ExposureState exposure = exposure_state_of(frame);
     camera_monitor_.add(report.frame_status, exposure);
     report.camera = camera_state();
-    // Flat grey matches anything, so a badly exposed frame gets no depth.
+    // Black or saturated areas match everywhere. So a badly exposed frame gets no depth.
     const bool has_depth =
         report.frame_status.is_new_and_whole() && exposure == ExposureState::well_exposed;
     report.work = has_depth ? wanted : Work::odometry;

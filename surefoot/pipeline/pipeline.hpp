@@ -44,7 +44,7 @@ using Clock = std::int64_t (*)();
 /// also names the problem of the camera.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are reported in the same way.
-/// If the depth of a frame updates no map cell, the snapshot keeps the older stamp.
+/// If a frame measures less than 0.01 m^2 of the map, the snapshot keeps the older stamp.
 ///
 /// Order of calls: first `make`, then `align` with the first frames (start.hpp says which). If
 /// `align` finds no ground, it may be called with later frames. Then call `process` for every frame
@@ -67,7 +67,7 @@ class Pipeline {
     const Alignment& align(std::span<const StereoFrame> first_frames,
                            const std::optional<Pose>& T_odom_first_body = {});
 
-    /// Processes a whole frame: motion, and with Work::full depth, map and rating.
+    /// Processes a whole frame: motion, and with Work::full also depth, map, rating and features.
     FrameReport process(const StereoFrame& frame, Work work);
 
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
@@ -102,7 +102,7 @@ class Pipeline {
 
     /// Returns the pose of base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
-    /// Returns the ground that the machine can reach from its stance, see Reachability. Allocates.
+    /// Returns reach_step_m of each cell: largest step on the way to it (Reachability). Allocates.
     [[nodiscard]] grid::Layer reach_step_m() const;
     /// Returns the ground class of each cell of the map, from the features. Allocates.
     [[nodiscard]] stairs::GroundClasses ground_classes() const;
@@ -124,11 +124,11 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// Returns the frame's own motion, or the odometry's; `T_odom_first`: the first base_link.
+    /// Returns the frame's own motion, or the odometry's. `T_odom_first`: first pose of base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
                                        const Pose& T_odom_first);
-    /// Tests the frame and decides how much of the work is done for it.
+    /// Tests the frame and selects the work that is done for it (FrameReport::work).
     [[nodiscard]] FrameReport check(const StereoFrame& frame, Work wanted);
     /// Returns the report of a repeated or torn frame. The map and the ratings stay.
     [[nodiscard]] FrameReport skip(const StereoFrame& frame, FrameReport report);
@@ -143,8 +143,8 @@ class Pipeline {
                                                         const Eigen::Vector3d& up_level);
     /// Finds the ground if the mounting of the camera is unknown.
     [[nodiscard]] ground::GroundSighting search_ground(const DepthImage& depth);
-    /// Passes the plane to the tilt drift correction. Also passes it to the mount monitor if a
-    /// machine carries the camera and the height of base_link is known.
+    /// Passes the plane to the tilt drift correction. Also passes it to the mount monitor if the
+    /// settings give the height of base_link over its ground.
     void watch_mount(const MotionEstimate& motion, const GroundObservation& ground_body);
     [[nodiscard]] CameraState camera_state() const noexcept;
     /// Compares the floor with its own mirror images, if a level floor is in view.
@@ -191,7 +191,7 @@ class Pipeline {
     MountMonitor mount_monitor_;
     TiltDriftCorrection tilt_drift_correction_;
     std::int64_t last_fused_ns_ = 0;
-    std::uint64_t version_ = 0;  ///< number of fused frames
+    std::uint64_t version_ = 0;  ///< number of fused frames that measured enough ground
 };
 
 }  // namespace surefoot::pipeline

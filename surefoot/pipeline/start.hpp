@@ -24,8 +24,8 @@ struct Start {
 };
 
 /// Collects frames until odom can be placed, and aligns the pipeline with them. The reference
-/// thesis (Lange 2016) took its ground plane from the first seconds. They were over-exposed by
-/// the sun, and whole recordings were lost. So the content of the images counts here, not the
+/// thesis (Lange 2016) took its ground plane from the first seconds. The sun over-exposed these
+/// frames, and whole recordings were lost. So the content of the images counts here, not the
 /// time since the camera started:
 /// * Frames too bright or too dark are skipped, for `mount.wait_for_exposure_s` at most.
 /// * If neither ground nor accelerometer gives the vertical, the gate could never answer OK.
@@ -37,8 +37,8 @@ struct Start {
 /// Otherwise, at the end of the source or of the wait, the last frames place odom in any case.
 /// Holds `Pipeline::kAlignmentFrames` frames at a time, plus the kept frames. Not thread-safe.
 ///
-/// Order of calls: `add` each frame in time order until true, or `end` at the end; then
-/// `take`.
+/// Order of calls: `add` each frame in time order until `add` returns true. If the source ends
+/// before, call `end`. Then call `take`.
 class StartUp {
   public:
     /// `pipeline`: also pass it to `add` and `end`. `T_odom_first_body`: see Pipeline::align.

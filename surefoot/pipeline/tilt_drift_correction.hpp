@@ -24,8 +24,8 @@ struct LevelConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Keeps odom's z axis vertical over hours. If the mean ground of many observations is level, its
-/// tilt in odom is drift, and the poses of base_link are turned back. The turn is so slow that
+/// Keeps odom's z axis vertical over hours. If most of the observed ground is nearly level, its
+/// mean tilt in odom is drift. Then the poses of base_link are turned back, so slowly that
 /// remembered ground stays in place (0.3 mm per second at 3 m). Positions never change: a pose
 /// turns about base_link. Odom itself does not move.
 ///
@@ -44,8 +44,8 @@ class TiltDriftCorrection {
     /// if the pose is not OK.
     void see(const GroundObservation& ground_body);
 
-    /// Returns the mean tilt of the ground in odom along x and y, for small angles; empty until the
-    /// ground was observed for `average_s`.
+    /// Returns the mean tilt of the ground in odom along x and y [rad], for small angles. Empty
+    /// until the ground was observed for `average_s`, and if it cannot show drift.
     [[nodiscard]] std::optional<Eigen::Vector2d> lean() const;
 
   private:

@@ -9,7 +9,7 @@
 #include "service/gate_process/audit/audit_record.hpp"
 #include "service/gate_process/sockets/acts.hpp"
 
-/// A log is a chain of frames, each with the previous hash (docs/reference/audit_format.md):
+/// A log is a chain of frames (docs/reference/audit_format.md). Fields, and their sizes [bytes]:
 ///
 ///     magic+version  kind  encoding  0  stored  plain  sequence  previous  check | payload | hash
 ///     4              1     1         2  4       4      8         8         4     | stored  | 8
@@ -52,10 +52,10 @@ struct FileHead {
 [[nodiscard]] std::string format_file_head(const FileHead& head);
 [[nodiscard]] Status parse_file_head(std::string_view bytes, FileHead& head);
 
-/// Verdicts that were lost because the disk did not accept data and the memory was full.
+/// Verdicts and acts that were lost because the disk accepted no data and the memory was full.
 struct AuditGap {
     std::uint64_t verdicts = 0;
-    std::int64_t first_ns = 0;  ///< decision times of first and last lost verdict
+    std::int64_t first_ns = 0;  ///< times of the first and the last lost entry
     std::int64_t last_ns = 0;
 };
 [[nodiscard]] std::string format_gap(const AuditGap& gap);

@@ -15,7 +15,7 @@ namespace {
 /// The start of a ring entry. The record follows.
 struct EntryHead {
     std::int64_t now_ns = 0;
-    AuditGap before;  ///< verdicts dropped since the previous entry
+    AuditGap before;  ///< entries dropped since the previous entry
     FrameKind kind = FrameKind::verdict;
 };
 

@@ -21,7 +21,7 @@ namespace surefoot::gate_process {
 struct AuditConfig {
     AuditFiles files;
     std::size_t memory_bytes = 8U << 20U;  ///< memory for waiting entries: about 250 verdicts
-    std::int64_t behind_after_ns = 1'000'000'000;  ///< an entry that waits longer: `behind`
+    std::int64_t behind_after_ns = 1'000'000'000;  ///< state `behind` if an entry waits longer
     std::int64_t poll_ns = 10'000'000;     ///< the thread looks for entries at this interval
     std::int64_t retry_ns = 200'000'000;   ///< pause after a failed attempt to write
     std::int64_t sync_ns = 1'000'000'000;  ///< a power loss costs at most the entries of this time
@@ -30,8 +30,8 @@ struct AuditConfig {
 };
 
 enum class AuditState : std::uint8_t {
-    ok,       ///< every verdict is written to the system, or will be at once
-    behind,   ///< a verdict waits too long, or the gap of lost verdicts is not written yet
+    ok,       ///< every entry is written, or has waited for at most `behind_after_ns`
+    behind,   ///< an entry waits longer, or the gap of lost entries is not written yet
     failing,  ///< the last attempt to write failed
 };
 /// Returns the name of a state, for example "ok".
@@ -46,8 +46,8 @@ struct AuditReport {
 
 /// Writes every verdict of a gate with its inputs to disk. `push` copies and returns; a separate
 /// thread writes, so a slow disk never delays a verdict. Waiting entries stay in memory. If the
-/// memory is full, verdicts are dropped and counted, and the log gets a gap entry at their
-/// position. Machine and memory size are fixed at `start`. Format: audit_format.md.
+/// memory is full, entries are dropped and counted, and the log gets a gap entry at their position.
+/// The memory size is fixed at `start`. Format: docs/reference/audit_format.md.
 ///
 /// One thread must call start, push, state and stop. Any thread may call `report`.
 class AuditLog {
@@ -63,9 +63,9 @@ class AuditLog {
     void push(const AuditedVerdict& audited) noexcept;
     /// Adds an act in order between the verdicts. If the memory is full, the act is dropped.
     void push(const Act& act) noexcept;
-    /// Returns the state at `now_ns` (clock of the verdicts). An assured gate needs the state `ok`.
+    /// Returns the state at `now_ns` (clock of the verdicts). With --assured, an OK needs `ok`.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
-    /// Writes the waiting entries, retries a failing disk once and ends the thread. Blocks until
+    /// Writes the waiting entries, tries a failing disk once more and ends the thread. Blocks until
     /// the disk returns.
     void stop();
     [[nodiscard]] AuditReport report() const;

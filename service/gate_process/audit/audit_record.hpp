@@ -24,7 +24,7 @@ struct AuditedVerdict {
     const gate::Verdict& verdict;
 };
 
-/// A record that was read from a log. It is sufficient to repeat the decision.
+/// A record that was read from a log. With the machine of its file, replay() repeats the decision.
 struct AuditRecord {
     std::uint64_t machine_hash = 0;
     gate::Query query;

@@ -10,8 +10,8 @@
 
 namespace surefoot::gate_process {
 
-/// Compresses payloads with zstd at its fastest level. Cells of a floor shrink tenfold, and other
-/// work needs the processor.
+/// Compresses payloads with zstd level 1. Cells of a floor shrink tenfold, and the low level leaves
+/// processor time to other work.
 struct AuditWriter::Packer {
     static constexpr int kLevel = 1;
     ZSTD_CCtx* context = ZSTD_createCCtx();

@@ -89,10 +89,13 @@ Result<ChannelFile> ChannelFile::lock(const std::string& path, std::uint64_t mag
         if ((info.st_mode & 0777U) != 0600U && ::fchmod(file.file_, 0600) != 0)
             return channel_error(path, "its rights cannot be set: " + system_words());
         begin.owner = static_cast<std::uint64_t>(::getpid());
-        file.write(&begin, sizeof(begin), 0);  // resize() detects a full disk
+        file.write(&begin, sizeof(begin), 0);  // result ignored: resize() detects a full disk
         return file;
     }
-    return channel_error(path, "other processes keep deleting it");
+    return channel_error(
+        path,
+        "other processes deleted it during each of 10 attempts to lock it; name another file "
+        "(--channel)");
 }
 
 bool ChannelFile::read(void* out, std::size_t bytes, std::size_t offset) const noexcept {

@@ -20,8 +20,8 @@ struct ChecksumKey {
 
 /// Makes a key from random numbers of the operating system.
 [[nodiscard]] Result<ChecksumKey> new_checksum_key();
-/// Reads a key file: 32 hexadecimal digits, optionally with white space around them. An error names
-/// the file and the cause: not regular, readable by other users, not 32 digits.
+/// Reads a key file: 32 hexadecimal digits, optionally followed by white space. An error names the
+/// file and the cause: not regular, not readable, open to other users, not 32 digits.
 [[nodiscard]] Result<ChecksumKey> read_checksum_key(const std::string& path);
 /// Returns the key as 16 bytes, so that one process can pass it to another.
 [[nodiscard]] std::string bytes_of(const ChecksumKey& key);

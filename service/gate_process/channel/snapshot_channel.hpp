@@ -44,7 +44,7 @@ class SnapshotWriter {
     /// Empties the slots and takes a new number.
     void begin_anew() noexcept;
     /// Call it a few times a second, from any thread. Repairs the file if another process deleted,
-    /// replaced, truncated or changed it, or if a snapshot did not fit. Returns the cause, or
+    /// replaced, truncated or changed it, or if a snapshot was not written. Returns the cause, or
     /// nothing if the file is intact. Faults that the gate stored in the file stay. Fails if
     /// another process has taken the name.
     [[nodiscard]] Result<std::optional<std::string>> mend();

@@ -81,7 +81,7 @@ Result<double> read_radius(const Json& args) {
 }
 
 Result<GoalQuestion> read_goal(const Json& message) {
-    constexpr double kUnitTolerance = 0.01;  // of |q|^2, because clients send quaternions as floats
+    constexpr double kUnitTolerance = 0.01;  // of |q|^2: clients send quaternions as floats
     const Json* header = member(message, "header");
     const Json* pose = member(message, "pose");
     const Json* position = pose == nullptr ? nullptr : member(*pose, "position");

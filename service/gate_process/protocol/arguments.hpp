@@ -19,7 +19,7 @@ inline constexpr std::uint64_t kMaxExact = (std::uint64_t{1} << 53U) - 1;
 /// Returns an argument of a call: member `name` of an object, or element `place` of a list
 /// (rosbridge allows both). Returns nullptr if the argument is missing.
 [[nodiscard]] const Json* argument(const Json& args, const char* name, std::size_t place);
-/// Returns the first argument as text; empty if it is missing or not text.
+/// Returns member `name`, or the first element of a list, as text; empty if missing or not text.
 [[nodiscard]] std::string text_argument(const Json& args, const char* name);
 /// Returns a member of an object as text; empty if it is missing or not text.
 [[nodiscard]] std::string text_member(const Json& object, const char* name);
@@ -34,7 +34,7 @@ struct StepRequest {
 /// Reads {direction, sequence?} or [direction, sequence?].
 [[nodiscard]] StepRequest read_step_request(const Json& args);
 
-/// Reads a finite number in m.
+/// Reads the argument `radius_m`, a number in m.
 [[nodiscard]] Result<double> read_radius(const Json& args);
 
 /// Reads a geometry_msgs/PoseStamped: position and unit quaternion (only its yaw is used). Leaves

@@ -59,12 +59,13 @@ class Guard {
     }
     bool short_enough(const std::string& text) {
         return text.size() <= limits_.max_string_bytes ||
-               refuse("string of " + std::to_string(text.size()) + " bytes exceeds " +
+               refuse("string of " + std::to_string(text.size()) + " bytes exceeds the limit of " +
                       std::to_string(limits_.max_string_bytes));
     }
     bool shallow_enough() {
         return keys_.size() <= static_cast<std::size_t>(limits_.max_depth) ||
-               refuse("the JSON is nested deeper than " + std::to_string(limits_.max_depth));
+               refuse("the JSON is nested deeper than the limit of " +
+                      std::to_string(limits_.max_depth));
     }
 
     const JsonLimits& limits_;
@@ -76,8 +77,8 @@ class Guard {
 
 Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
     if (text.size() > limits.max_bytes) {
-        return input_error("message of " + std::to_string(text.size()) + " bytes exceeds " +
-                           std::to_string(limits.max_bytes));
+        return input_error("message of " + std::to_string(text.size()) +
+                           " bytes exceeds the limit of " + std::to_string(limits.max_bytes));
     }
     Guard guard(limits);
     if (!Json::sax_parse(text.begin(), text.end(), &guard)) return input_error(guard.problem());

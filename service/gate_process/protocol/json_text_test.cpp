@@ -17,20 +17,21 @@ TEST(JsonText, DepthIsLimitedExactly) {
     const JsonLimits limits{.max_depth = 3};
     EXPECT_EQ(problem_of("[[[1]]]", limits), "");
     EXPECT_EQ(problem_of(R"({"a":[{"b":1}]})", limits), "");
-    EXPECT_EQ(problem_of("[[[[]]]]", limits), "the JSON is nested deeper than 3");
-    EXPECT_EQ(problem_of(R"({"a":[{"b":{}}]})", limits), "the JSON is nested deeper than 3");
+    EXPECT_EQ(problem_of("[[[[]]]]", limits), "the JSON is nested deeper than the limit of 3");
+    EXPECT_EQ(problem_of(R"({"a":[{"b":{}}]})", limits),
+              "the JSON is nested deeper than the limit of 3");
 }
 
 TEST(JsonText, StringsAndKeysAreLimitedExactly) {
     const JsonLimits limits{.max_string_bytes = 4};
     EXPECT_EQ(problem_of(R"({"abcd":"abcd"})", limits), "");
-    EXPECT_EQ(problem_of(R"({"abcde":1})", limits), "string of 5 bytes exceeds 4");
-    EXPECT_EQ(problem_of(R"(["abcde"])", limits), "string of 5 bytes exceeds 4");
+    EXPECT_EQ(problem_of(R"({"abcde":1})", limits), "string of 5 bytes exceeds the limit of 4");
+    EXPECT_EQ(problem_of(R"(["abcde"])", limits), "string of 5 bytes exceeds the limit of 4");
 }
 
 TEST(JsonText, SizeIsLimitedExactly) {
     EXPECT_EQ(problem_of("[1]", {.max_bytes = 3}), "");
-    EXPECT_EQ(problem_of("[1] ", {.max_bytes = 3}), "message of 4 bytes exceeds 3");
+    EXPECT_EQ(problem_of("[1] ", {.max_bytes = 3}), "message of 4 bytes exceeds the limit of 3");
 }
 
 TEST(JsonText, AKeyMayComeOnceInEachObject) {
@@ -47,7 +48,7 @@ TEST(JsonText, NumbersAreFinite) {
 
 TEST(JsonText, DeepNestingIsNoStackOverflow) {
     const std::string open(60'000, '[');
-    EXPECT_EQ(problem_of(open), "the JSON is nested deeper than 12");
+    EXPECT_EQ(problem_of(open), "the JSON is nested deeper than the limit of 12");
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 
 namespace surefoot::gate_process {
 
-/// Decides when health and diagnostics are published: immediately after a change of state. Without
-/// a change, health is due every 400 ms and diagnostics every second, as ROS tools expect. A client
-/// without health messages for one second knows that the gate has stopped.
+/// Decides when health and diagnostics are published: health at once after a change of state and
+/// else every 400 ms, diagnostics every second, as ROS tools expect. A client without health
+/// messages for one second knows that the gate has stopped.
 class PeriodicTopics {
   public:
     /// Reads the gate's report and returns the due messages. Call it every few milliseconds.

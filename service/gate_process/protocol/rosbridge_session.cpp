@@ -17,7 +17,7 @@ namespace {
 /// N).
 constexpr std::uint8_t kForwardCode = 9;
 
-/// Returns the id of a message in the form that rosbridge clients send; any other form is dropped.
+/// Returns the id of a message if it is text or an integer, else null.
 Json id_of(const Json& message) {
     const auto id = message.find("id");
     if (id == message.end() || !(id->is_string() || id->is_number_integer())) return nullptr;
@@ -31,8 +31,8 @@ const Json& args_of(const Json& message) {
     return args == message.end() || args->is_null() ? empty : *args;
 }
 
-/// Returns an integer from 0 to `most`; empty if it is invalid. A missing value or null counts as
-/// 0.
+/// Returns an integer of at least 0, limited to `most`; empty if it is invalid. A missing value or
+/// null counts as 0.
 std::optional<std::int64_t> limited_member(const Json& message, const char* name, int most) {
     const auto value = message.find(name);
     if (value == message.end() || value->is_null()) return 0;
@@ -305,7 +305,7 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
     return ask(call, question);
 }
 
-/// The gate's answer. An answer to another question or an expired answer becomes an ERROR.
+/// Returns the gate's answer. An answer to another question or an expired OK becomes an ERROR.
 Answer RosbridgeSession::ask(const Call& call, const StepQuestion& question) {
     Answer answer = gate_.ask_step(question, call.now_ns);
     const gate::Verdict& verdict = answer.verdict;

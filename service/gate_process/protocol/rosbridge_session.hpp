@@ -21,8 +21,8 @@ struct StepRequest;
 struct SessionLimits {
     JsonLimits json;
     RateLimit messages{200, 200};  ///< a question beyond this rate gets ERROR / OVERLOAD
-    RateLimit refusals{100, 400};  ///< messages above that rate before disconnection
-    RateLimit faults{2, 20};       ///< unreadable messages before disconnection
+    RateLimit refusals{100, 400};  ///< excess messages; beyond this rate the client is disconnected
+    RateLimit faults{2, 20};       ///< faulty messages; beyond this rate the client is disconnected
     std::size_t max_subscriptions = 32;
 };
 
@@ -39,8 +39,8 @@ struct Reaction {
     bool drop = false;                    ///< disconnect: the client exceeded its limits
 };
 
-/// The server side of one rosbridge client (protocol version 2). Takes one text and returns
-/// texts; has no socket, clock or thread. Every step question is passed to the gate exactly once.
+/// The server side of one rosbridge client (protocol version 2). Turns a text into texts; has no
+/// socket, clock or thread. Every valid step question is passed to the gate exactly once.
 /// Only the gate's own OK to this connection and sequence is returned as OK. Unreadable or too
 /// frequent questions get ERROR. Text that is not JSON or not a message gets a status and has no
 /// effect. A request beyond the client's role is refused with a message, logged, and never

@@ -202,7 +202,7 @@ TEST(RosbridgeSession, TenMegabytesAreRefusedUnread) {
     const std::string blanks(10'000'000, ' ');
     const Reaction reaction = session.on_message(kAheadPlain + blanks, kNowNs);
     ASSERT_EQ(reaction.replies.size(), 1U);
-    EXPECT_NE(reaction.replies[0].find("exceeds 65536"), std::string::npos);
+    EXPECT_NE(reaction.replies[0].find("exceeds the limit of 65536"), std::string::npos);
     EXPECT_TRUE(gate.questions.empty());
 }
 

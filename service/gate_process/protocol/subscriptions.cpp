@@ -56,7 +56,8 @@ Status Subscriptions::add(Topic topic, std::string name, SubscriptionWish wish) 
     if (stream != nullptr)
         std::erase_if(stream->wishes, [&](const auto& old) { return old.id == wish.id; });
     if (count() >= max_count_)
-        return input_error("more than " + std::to_string(max_count_) + " subscriptions");
+        return input_error("this client has the largest number of subscriptions (" +
+                           std::to_string(max_count_) + "); unsubscribe first");
     if (stream == nullptr) {
         streams_.push_back({.topic = topic, .name = {}, .wishes = {}, .waiting = {}});
         stream = &streams_.back();

@@ -19,8 +19,8 @@ struct TopicMessage {
     std::shared_ptr<const std::string> body;
 };
 
-/// The rate at which a client wants a topic, as in rosbridge: throttle_rate is a time in ms,
-/// queue_length is the number of messages kept during that time.
+/// The rate at which a client wants a topic. `interval_ns`: throttle_rate of rosbridge (ms there).
+/// `queue_length`: number of messages that are kept during the interval.
 struct SubscriptionWish {
     std::string id;  ///< id of the wish; may be empty
     std::int64_t interval_ns = 0;

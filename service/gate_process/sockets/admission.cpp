@@ -84,8 +84,8 @@ std::string refusal_text(const Entrance& entrance, const Knock& knock) {
     }
     if (entrance.has_token)
         return "this token is not known here. Take a token from the service's token file";
-    return "a token is needed: connect to ?token=TOKEN, or send the header 'Authorization: Bearer "
-           "TOKEN'. The token is in the service's token file";
+    return "a token is needed: add ?token=TOKEN to the address, or send the header 'Authorization: "
+           "Bearer TOKEN'. The token is in the service's token file";
 }
 
 Admission admit(const std::string& token,

@@ -24,7 +24,8 @@ std::optional<int> number_of(std::string_view text, int base = 10) {
 }
 
 /// Adds the sockets that listen on the port, named like the links in /proc/PID/fd:
-/// "socket:[12345]". Fields of proc_net_tcp: 1 = address:port in hexadecimal, 3 = state, 9 = inode.
+/// "socket:[12345]". Fields of /proc/net/tcp: 1 = address:port in hexadecimal, 3 = state, 9 =
+/// inode.
 void add_listeners(const char* table, std::uint16_t port, std::set<std::string>& sockets) {
     std::ifstream file(table);
     std::string line;

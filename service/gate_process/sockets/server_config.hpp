@@ -20,7 +20,7 @@ inline constexpr const char* kInsecureSentence =
 
 /// Address, permissions and limits of the service.
 struct ServerConfig {
-    /// An IP address. Any address except loopback requires a token from every client, and TLS.
+    /// An IP address. Except on loopback, clients need a token, and TLS or `insecure` must be set.
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = 9090;           ///< the rosbridge port; 0 = any free port
     Access access;                       ///< tokens and roles
@@ -30,7 +30,7 @@ struct ServerConfig {
     std::uint64_t first_connection = 1;  ///< number of the first client; never 0
 
     SlotLimits slots;
-    int accepts_per_tick = 16;  ///< most new connections per tick; bounds their delay
+    int accepts_per_tick = 16;  ///< most new connections per tick; limits the delay that they cause
     int tick_ms = 5;            ///< period [ms] of the owner's hook, topics and deadlines
     /// Processor time between two ticks for all clients without the token of a rider or operator,
     /// including new WebSockets. The client with the least use is served first. Messages beyond the
@@ -43,7 +43,7 @@ struct ServerConfig {
     int write_ms = 2000;                    ///< time limit for sending one text
     std::size_t max_queue_bytes = 1 << 20;  ///< limit of waiting texts if a client does not read
     std::size_t max_read_bytes_per_s = 1 << 20;
-    RateLimit control_frames{5, 10};  ///< larger rate: disconnection of the client
+    RateLimit control_frames{5, 10};  ///< at a larger rate, the client is disconnected
     SessionLimits session;
 
     /// Returns the first problem as a message.

@@ -47,7 +47,7 @@ class Slots {
     using Id = std::uint64_t;
     struct Entry {
         bool granted = false;
-        bool peer_is_full = false;  ///< refused: too many clients from this computer
+        bool peer_is_full = false;  ///< refused: too many clients of low rank from this peer
         std::optional<Id> ended;    ///< connection that the caller must close
     };
 

@@ -40,7 +40,8 @@ constexpr const char* kUseTls =
     "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
     "This port uses TLS: connect to wss:// or https://\n";
 
-/// Returns an error if other users can read the private key.
+/// Returns an error if the private key is missing, is not a regular file, or is open to other
+/// users.
 Status check_key_file(const std::string& file) {
     struct stat about {};
     if (::stat(file.c_str(), &about) != 0)
@@ -278,7 +279,8 @@ void TlsListener::accept() {
             take(std::move(socket));
             return accept();
         }
-        // No file handles are left. An immediate retry would keep a core busy.
+        // The usual cause is that no file handles are left. An immediate retry would keep a core
+        // busy.
         retry_.expires_after(std::chrono::milliseconds(20));
         retry_.async_wait([this](error_code cancelled) {
             if (!cancelled) accept();

@@ -27,8 +27,8 @@ struct TlsDoorConfig {
     std::string bind_address;
     std::uint16_t port = 0;  ///< 0 = any free port
     TlsFiles files;
-    std::size_t max_connections = 320;  ///< limit, with unfinished handshakes
-    std::size_t max_handshakes = 64;    ///< above it, the peer with most loses its oldest
+    std::size_t max_connections = 320;  ///< limit, including connections with unfinished handshakes
+    std::size_t max_handshakes = 64;    ///< limit; then the fullest peer's oldest handshake ends
     int handshake_ms = 5000;
 };
 

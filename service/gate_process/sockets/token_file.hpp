@@ -9,7 +9,7 @@
 namespace surefoot::gate_process {
 
 /// Returns `$XDG_STATE_HOME/surefoot/tokens` or `~/.local/state/surefoot/tokens`. Empty if neither
-/// variable is set.
+/// XDG_STATE_HOME nor HOME is an absolute path.
 [[nodiscard]] std::string default_token_file();
 
 struct TokenFile {

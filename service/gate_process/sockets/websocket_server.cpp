@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only this file includes Boost.Beast: each translation unit with it takes 25 s to compile.
+// In this module, only this file and tests include Boost.Beast: it adds 25 s of compile time to
+// each translation unit.
 #include "service/gate_process/sockets/websocket_server.hpp"
 
 #include <unistd.h>
@@ -320,12 +321,12 @@ void Connection::upgrade(const Entrance& entrance) {
     const Slots::Entry entry = server_.slots.enter(slot_, rank, steady_ns());
     if (entry.ended) server_.end_for_another(*entry.ended);
     if (!entry.granted) {
-        return refuse(
-            http::status::service_unavailable,
-            entry.peer_is_full
-                ? "too many clients come from your computer: close one of them"
-                : "all slots are taken by clients that are being served: close one, or "
-                  "show the token of a rider or of the operator, for whom slots are kept");
+        return refuse(http::status::service_unavailable,
+                      entry.peer_is_full
+                          ? "too many clients come from your computer: close one of them"
+                          : "all slots are taken by clients that are being served: close one, or "
+                            "connect with the token of a rider or of the operator, because slots "
+                            "are reserved for these roles");
     }
     role_ = entrance.role;
     has_token_ = entrance.has_token;
