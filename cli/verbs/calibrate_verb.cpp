@@ -223,8 +223,8 @@ std::string depth_words(const calibration::DepthError& error) {
 /// whole image.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
-    return ": this point is in an image corner in which no view shows the board. If you use that "
-           "part of the image, add views with the board there";
+    return ": the calibration is uncertain at this point. If you use that part of the image, add "
+           "views with the board there";
 }
 
 void print_result(const CalibrationRun& run, const std::string& folder) {

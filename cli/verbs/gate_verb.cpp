@@ -84,7 +84,7 @@ Result<std::uint8_t> parse_command(const std::string& text, const Machine& machi
     if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
     return usage_error(fmt::format(
         "--command '{}' is not a movement code; give a whole number from 0 to 255. Codes 1-24 are "
-        "joystick sectors, others are turns. This machine has the movements {}",
+        "joystick sectors, 25 is turn left, 26 is turn right. This machine has the movements {}",
         text,
         movements_of(machine)));
 }

@@ -79,10 +79,10 @@ int run(const RunOptions& options) {
     // The run and the writing may both have failed. Each error is reported once, and the error of
     // the run determines the exit code.
     if (!written) {
-        log_error(
-            fmt::format("{}; {} contains only a part of the results: free disk space and run again",
-                        written.error().message,
-                        options.out_dir));
+        log_error(fmt::format(
+            "{}; {} contains only a part of the results: correct this error and run again",
+            written.error().message,
+            options.out_dir));
     }
     if (!record.complete()) return report(*record.error);
     return written ? kExitOk : kExitFailed;

@@ -62,7 +62,9 @@ class Corridors {
         for (int i = 0; i <= count; ++i) {
             auto frame = (*source)->next();
             if (!frame) return frame.error();
-            if (!*frame) return input_error("bench places: the path is too short");
+            if (!*frame)
+                return input_error(
+                    "bench places: the path through the simulated corridor has too few frames");
             if (i == 0) continue;
             Look& look = looks.emplace_back();
             rectifier->rectify(**frame, look.images);

@@ -158,12 +158,13 @@ Result<std::vector<PairLine>> read_pairs(const std::string& path) {
                 "{}:{}: expected LEFT RIGHT DISTANCE_M, found '{}'", path, number, line));
         }
         if (!(pair.distance_m >= kMinDistance_m && pair.distance_m <= kMaxDistance_m)) {
-            return input_error(fmt::format("{}:{}: distance {} m must be between {} and {} m",
-                                           path,
-                                           number,
-                                           pair.distance_m,
-                                           kMinDistance_m,
-                                           kMaxDistance_m));
+            return input_error(
+                fmt::format("{}:{}: the distance is {} m, but it must be between {} and {} m",
+                            path,
+                            number,
+                            pair.distance_m,
+                            kMinDistance_m,
+                            kMaxDistance_m));
         }
         pair.left = io::join_path(folder, pair.left);
         pair.right = io::join_path(folder, pair.right);

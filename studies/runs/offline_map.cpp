@@ -133,12 +133,12 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty())
         area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);
-    assumed.push_back(
-        fmt::format("start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link "
-                    "wherever no ground was measured",
-                    kTenthMm_m * area.height_tenth_mm,
-                    heights.empty() ? "the ground plane of odom" : "from the cells around it",
-                    kTenthMm_m * area.radius_tenth_mm));
+    assumed.push_back(fmt::format(
+        "start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link "
+        "wherever no ground was measured",
+        kTenthMm_m * area.height_tenth_mm,
+        heights.empty() ? "the ground plane of odom" : "from the measured cells around base_link",
+        kTenthMm_m * area.radius_tenth_mm));
     return area;
 }
 

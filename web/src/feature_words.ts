@@ -87,7 +87,7 @@ function lineRow(what: string, line: LineFeature, passed_s: number): FeatureRow 
 }
 
 function doorRow(door: Door, passed_s: number): FeatureRow {
-  const above = door.clearance_m === null ? "nothing seen above it" : `${metres(door.clearance_m)} high`;
+  const above = door.clearance_m === null ? "nothing seen above the door" : `clear height ${metres(door.clearance_m)}`;
   return {
     what: "door",
     height: millimetres(door.sill_m),
@@ -95,7 +95,7 @@ function doorRow(door: Door, passed_s: number): FeatureRow {
     width: millimetres(door.width_m, door.width_std_m),
     place: placeWords(door.pose),
     seen: seenWords(door, passed_s),
-    remarks: `the height is that of the sill; ${above}`,
+    remarks: `the column Height shows the sill; ${above}`,
   };
 }
 

@@ -245,7 +245,7 @@ export function decode(data: ArrayBuffer): BinaryMessage {
   if (view.byteLength < sizeOf(kHeaderFields)) return unreadable("the message has no header");
   const header = read(view, 0, kHeaderFields);
   if (header.protocol !== kProtocol)
-    return unreadable(`it has protocol ${header.protocol}, this page reads protocol ${kProtocol}`);
+    return unreadable(`it has protocol ${header.protocol}, but this page reads protocol ${kProtocol}`);
   const at = sizeOf(kHeaderFields);
   switch (header.kind) {
     case kKind.map:
@@ -257,7 +257,7 @@ export function decode(data: ArrayBuffer): BinaryMessage {
     case kKind.layer:
       return decodeLayer(view, at);
     default:
-      return unreadable(`the kind ${header.kind} is unknown`);
+      return unreadable(`the message kind ${header.kind} is unknown`);
   }
 }
 

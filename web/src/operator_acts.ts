@@ -111,7 +111,7 @@ export class OperatorActs {
 
   #tell(act: string, { success, message }: ActResult): void {
     if (!success && needsOperator(message)) {
-      setText(byId("act-result"), `${act}: refused - this page is not the operator`);
+      setText(byId("act-result"), `${act}: refused, because this page does not have the operator token`);
       this.askToken(`${act}: the gate refused it, because this page is not the operator.`);
       return;
     }

@@ -81,7 +81,7 @@ export class ServiceLink {
     const store = this.#store;
     if (message?.kind === "hello") {
       if (message.protocol !== kProtocol) {
-        store.problem = `The service has protocol ${message.protocol}, this page protocol ${kProtocol}. Reload the page.`;
+        store.problem = `The service uses protocol ${message.protocol}, but this page uses protocol ${kProtocol}. Reload the page.`;
         return;
       }
       store.problem = "";

@@ -94,7 +94,7 @@ export class TrackView {
     context.fill();
     setText(
       byId("track-note"),
-      `Grid: ${this.#grid_m(span_m)} m, x to the right. The track begins when this page is opened.`,
+      `Grid spacing ${this.#grid_m(span_m)} m; x points to the right. The track begins when this page is opened.`,
     );
   }
 
