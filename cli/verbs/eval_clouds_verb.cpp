@@ -26,7 +26,7 @@ struct EvalCloudsOptions {
     std::string out_dir;      ///< folder for pictures and a coloured cloud; empty = not written
 };
 
-/// Distances at points. They are the source of the values file.
+/// Distances at points. The values file and the pictures are made from them.
 struct Compared {
     CloudComparison comparison;
     std::vector<Eigen::Vector3f> points_m;

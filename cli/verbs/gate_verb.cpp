@@ -137,7 +137,7 @@ int gate(const GateOptions& options) {
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status) log_error(status.error().message);  // a failed log does not change it
+        if (!status) log_error(status.error().message);  // a failed log does not change the verdict
     }
     return exit_code_of(verdict.decision);
 }

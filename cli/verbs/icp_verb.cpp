@@ -133,7 +133,8 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     }
 }
 
-/// Logs the directions that the surfaces do not determine.
+/// Logs the outcome of the alignment, and the number of directions that the surfaces do not
+/// determine.
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {

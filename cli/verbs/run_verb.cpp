@@ -43,8 +43,8 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    // Remove the results of an earlier run. Otherwise the gate or a user could take the old results
-    // for results of this run.
+    // Remove results of an earlier run that other programs read. Otherwise the gate or a user could
+    // take the old results for results of this run.
     std::vector<std::string> names{
         "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
     for (const char* layer : kLayerNames) names.push_back(fmt::format("{}.asc", layer));

@@ -13,8 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest number of points of a band in memory. A point takes 12 bytes, plus a copy sorted by
-/// cell.
+/// Largest number of points of a band in memory. A point takes 8 bytes, plus 4 bytes in the copy
+/// that is sorted by cell.
 constexpr std::int64_t kMostPoints = 1 << 25;
 
 struct CellPoint {
@@ -22,7 +22,8 @@ struct CellPoint {
     float z_m;
 };
 
-/// Rows [begin, end) that are processed together. The neighbouring rows supply witnesses.
+/// Rows [begin, end) that are processed together. The neighbouring rows supply witnesses: points
+/// that support a height in a cell with few points.
 struct Band {
     int begin = 0;
     int end = 0;

@@ -61,7 +61,8 @@ std::span<const ThesisDataset> thesis_datasets() {
 }
 
 std::span<const ThesisRun> thesis_runs() {
-    // Boxes that reach from before the first riser to behind the last riser, between the sides.
+    // Boxes that reach from before the first riser to behind the last riser. They lie between the
+    // two sides of the stairs.
     static constexpr BoxText kDemo = {"stair_x_m - 1", "-0.5", "stair_x_m + 3 * 0.31 + 0.5", "0.5"};
     static constexpr BoxText kFlight = {
         "stair_x_m - 1", "-0.5", "stair_x_m + 19 * going_m + landing_m + 0.4", "0.5"};

@@ -53,7 +53,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// Returns the median over the cases of a row, and the worst case if there are several cases.
+/// Returns the median over the cases of a row, and the worst value if there are several cases.
 std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
     const FigureKind kind = suite_figures()[figure].kind;
     const std::string median = shown(kind, row.median[figure]);
@@ -196,7 +196,8 @@ std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fe
 /// The tables show all bins.
 constexpr std::int64_t kFewestCells = 100;
 
-/// Returns the largest value over all noise levels, so that their plots share one scale.
+/// Returns the largest value over all noise levels plus 10 %, so that the plots of all noise levels
+/// share one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {
