@@ -6,7 +6,7 @@ import type { ActResult, GateLink } from "./gate_link.ts";
 import { needsOperator } from "./operator_token.ts";
 import type { Store } from "./store.ts";
 
-/// Attestation and re-arming: acts of a person. Each has its own dialog, so that a single touch does nothing.
+/// Attestation and re-arming: acts of a person. Each has its own dialog, so that a single touch cannot start an act.
 export class OperatorActs {
   readonly #store: Store;
   readonly #gate: GateLink;

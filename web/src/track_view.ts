@@ -16,7 +16,7 @@ export function ellipseOf(var_x: number, var_y: number, cov_xy: number) {
   };
 }
 
-/// Track of base_link since the page was opened, in odom: x to the right, y up.
+/// Draws the track of base_link since the page was opened or odom restarted, in odom: x to the right, y up.
 export class TrackView {
   readonly #canvas: HTMLCanvasElement;
   readonly #store: Store;
