@@ -25,7 +25,7 @@ struct GateOptions {
     std::string map_dir;
     std::string pose;     ///< pose of base_link in odom: "x,y,yaw" [m, m, rad]
     std::string command;  ///< a joystick code
-    std::string machine;  ///< empty = rex, listed in the answer as an assumption
+    std::string machine;  ///< empty = rex; the answer then lists this as an assumption
     std::string explain_file;
     /// Radius of the attested area around base_link; negative = as far as the standing feet reach.
     double attestation_radius_m = -1.0;

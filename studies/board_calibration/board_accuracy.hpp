@@ -49,7 +49,7 @@ struct DistanceAccuracy {
     int observations = 0;                     ///< number of image pairs
     std::optional<eval::BoardErrors> errors;  ///< nullopt = the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
-    std::optional<ThesisAccuracy> thesis;     ///< thesis value for the same camera and distance
+    std::optional<ThesisAccuracy> thesis;     ///< value of the thesis for this camera and distance
 };
 
 /// Measures depth accuracy on rendered boards, or on the images that `options.pairs_file` lists.

@@ -87,7 +87,8 @@ class CellReducer {
         const std::span<const float> z_m = heights.of(number(ix, iy));
         CellGround ground;
         if (z_m.empty()) return ground;
-        // Each group needs the support that follows from the number of points in the whole cell.
+        // Every group needs the same number of points, which follows from the number of points in
+        // the whole cell.
         const int wanted = elevation::support_of(rules_.reduction, static_cast<int>(z_m.size()));
         for (std::size_t begin = 0, end = 0; begin < z_m.size(); begin = end) {
             end = end_of_group(z_m, begin);

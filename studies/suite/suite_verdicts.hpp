@@ -38,7 +38,7 @@ enum class TallyKey : std::uint8_t {
 };
 inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger"};
 
-/// How often one name occurs in wrong verdicts.
+/// Numbers of wrong verdicts with one name.
 struct VerdictTally {
     TallyKey by = TallyKey::reason;
     std::string name;

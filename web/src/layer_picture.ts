@@ -65,8 +65,8 @@ export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels
     }
 }
 
-/// Returns a short text: four decimals below 1, two below 100, else none. Values below 0.001, except 0, and from 100
-/// 000 have an exponent. Examples: "0.1235", "12.35", "4321", "1.20e-6". A value that is not finite is "unknown".
+/// Returns a short text: four decimals below 1, two below 100, else none. Values below 0.001, except 0, and from 1e5 have
+/// an exponent. Examples: "0.1235", "12.35", "4321", "1.20e-6". A value that is not finite is "unknown".
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "unknown";
   const size = Math.abs(value);
