@@ -69,8 +69,8 @@ class Verb {
     CLI::App* verb_;
 };
 
-/// States which settings a verb reads. Every verb accepts --config, --set and --preset. A verb
-/// without settings still checks these options, and warns that they have no effect.
+/// settings: these are checked before the verb runs. own_settings: the verb checks its settings.
+/// no_settings: --config, --set and --preset are checked; a warning says that they have no effect.
 enum class Reads { settings, own_settings, no_settings };
 
 /// A group of verbs: the program itself, or a verb that has verbs of its own, such as `eval`.

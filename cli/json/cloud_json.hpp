@@ -12,7 +12,7 @@
 #include "surefoot/eval/clouds/cloud_outliers.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
-// Functions write the JSON of the cloud verbs. Key names are a contract (docs/reference/json.md).
+// Functions that write the JSON of cloud verbs. Key names are a contract (docs/reference/json.md).
 namespace surefoot::app {
 
 [[nodiscard]] std::string voxel_json(const ThinnedCloud& thinned,

@@ -12,7 +12,7 @@
 namespace surefoot::app {
 
 [[nodiscard]] std::string serve_json(const std::vector<AskedStep>& steps);
-/// One event of the REX link. `tone_file` is the file of the tone; empty = no tone.
+/// An event of the REX link. `tone_file`: file of the tone; empty = no tone or no tone folder.
 struct RexLinkRow {
     rex_link::LinkEvent event;
     std::string tone_file;

@@ -105,7 +105,8 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
 /// calibration of the EuRoC data set.
 camera::StereoRig lenses_at(int width, int height) {
     const auto lens = [&](double f, double cx, double cy) {
-        // k1 and k2 have their published values; the other parameters scale with the image size.
+        // k1 and k2 have the published values of the left camera; the other parameters scale with
+        // the image size.
         return camera::Camera{camera::PinholeRadTan{.fx_px = f * width,
                                                     .fy_px = f * width,
                                                     .cx_px = cx * width,

@@ -32,7 +32,7 @@ struct CalibrateOptions {
 };
 
 constexpr double kMillimetres = 1e3;
-/// Largest standard deviation of a viewing direction that needs no explanation to the user.
+/// Largest standard deviation of a viewing direction [px] that needs no explanation to the user.
 constexpr double kMostWorst_px = 1.0;
 
 std::string found_words(const calibration::BoardView& view, const std::string& problem) {
@@ -219,12 +219,12 @@ std::string depth_words(const calibration::DepthError& error) {
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
-/// Explains a large uncertainty in a part of the image; empty if the uncertainty is small in the
-/// whole image.
+/// Returns an explanation of a large uncertainty in a part of the image; empty if the uncertainty
+/// is small in the whole image.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
-    return ": this point is in an image corner in which no view shows the board. If you use that "
-           "part of the image, add views with the board there";
+    return ": the calibration is uncertain at this point. If you use that part of the image, add "
+           "views with the board there";
 }
 
 void print_result(const CalibrationRun& run, const std::string& folder) {

@@ -37,12 +37,13 @@ int config(const ConfigOptions& options) {
 }  // namespace
 
 void add_config(VerbGroup verbs) {
-    auto [verb, o] = verbs.add<ConfigOptions>("config",
-                                              "print every setting with its value, range and "
-                                              "reason; with --check, only check the settings",
-                                              "surefoot config --set elevation.length_m=8",
-                                              config,
-                                              Reads::own_settings);
+    auto [verb, o] =
+        verbs.add<ConfigOptions>("config",
+                                 "print every setting with its value, its range and its "
+                                 "description; with --check, only check the settings",
+                                 "surefoot config --set elevation.length_m=8",
+                                 config,
+                                 Reads::own_settings);
     verb.flag(
         "--check",
         o.check_only,

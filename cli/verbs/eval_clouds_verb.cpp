@@ -26,7 +26,7 @@ struct EvalCloudsOptions {
     std::string out_dir;      ///< folder for pictures and a coloured cloud; empty = not written
 };
 
-/// Distances at points. They are the source of the values file.
+/// Distances at points. The values file and the pictures are made from them.
 struct Compared {
     CloudComparison comparison;
     std::vector<Eigen::Vector3f> points_m;
@@ -114,7 +114,7 @@ std::string sentence_of(const CloudComparison& c) {
     const eval::DistanceFigures& f = c.figures;
     return fmt::format(
         "distances: mean {:.2f} mm, standard deviation {:.2f} mm, 90 % of the magnitudes are at "
-        "most {:.2f} mm, number {}",
+        "most {:.2f} mm, number of distances {}",
         1e3 * f.mean_m,
         1e3 * f.std_m,
         1e3 * f.p90_abs_m,
@@ -167,8 +167,8 @@ int eval_clouds(const EvalCloudsOptions& options) {
     fmt::print("{}\n", sentence_of(comparison));
     if (comparison.cores) {
         fmt::print(
-            "{} of {} core points differ by more than their level of detection (median level "
-            "{:.2f} mm)\n",
+            "at {} of {} core points the distance is larger than the level of detection (median "
+            "level {:.2f} mm)\n",
             comparison.significant,
             *comparison.cores,
             1e3 * comparison.median_lod95_m);

@@ -195,8 +195,8 @@ void add_eval_depth(VerbGroup verbs) {
         .positive();
     verb.option("--mask",
                 o.mask,
-                "mask image: only pixels with a mask value above 200 are compared, which means "
-                "visible in both cameras")
+                "mask image: the verb compares only pixels with a mask value above 200. In masks "
+                "of Middlebury these pixels are visible in both cameras")
         .value("M");
     verb.option("--sigma",
                 o.sigma,

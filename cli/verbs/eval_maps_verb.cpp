@@ -25,7 +25,8 @@ struct EvalMapsOptions {
     std::string out_dir;  ///< folder for pictures; empty = no pictures
 };
 
-/// Loads the settings of the run, so that the true map is rated with the same settings.
+/// Loads the settings of the run, so that the true map is rated with the same settings. With
+/// --config, or if the folder has no config.yaml, loads the settings of this call.
 Result<Settings> settings_of(const EvalMapsOptions& options) {
     CommonOptions common = options.common;
     const std::string used = options.live_dir + "/config.yaml";

@@ -154,7 +154,7 @@ void print_summary(std::span<const SuiteRow> rows) {
                    worst("missed_hazards"),
                    100.0 * worst("allowed"));
     }
-    fmt::print("(each figure belongs to the worst case of its row)\n");
+    fmt::print("(each figure is the worst value of the cases in its row)\n");
 }
 
 /// `surefoot eval suite`: runs the pipeline on each combination of scene, motion model, seed and

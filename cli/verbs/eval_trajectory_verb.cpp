@@ -68,9 +68,8 @@ Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair)
 /// number of poses keeps stamps at 10 Hz from 0 s, the frame rate of KITTI.
 Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     const bool of_estimate = !pair.estimate.has_stamps();
-    if (of_estimate == !pair.truth.has_stamps())
-        return {};  // both trajectories have stamps, or
-                    // both have none
+    // Nothing to do if both trajectories have stamps, or if both have none.
+    if (of_estimate == !pair.truth.has_stamps()) return {};
     io::TrajectoryFile& bare = of_estimate ? pair.estimate : pair.truth;
     const io::TrajectoryFile& other = of_estimate ? pair.truth : pair.estimate;
     if (bare.rows == other.poses.size()) {

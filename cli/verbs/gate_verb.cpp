@@ -25,7 +25,7 @@ struct GateOptions {
     std::string map_dir;
     std::string pose;     ///< pose of base_link in odom: "x,y,yaw" [m, m, rad]
     std::string command;  ///< a joystick code
-    std::string machine;  ///< empty = rex, listed in the answer as an assumption
+    std::string machine;  ///< empty = rex; the answer then lists this as an assumption
     std::string explain_file;
     /// Radius of the attested area around base_link; negative = as far as the standing feet reach.
     double attestation_radius_m = -1.0;
@@ -84,7 +84,7 @@ Result<std::uint8_t> parse_command(const std::string& text, const Machine& machi
     if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
     return usage_error(fmt::format(
         "--command '{}' is not a movement code; give a whole number from 0 to 255. Codes 1-24 are "
-        "joystick sectors, others are turns. This machine has the movements {}",
+        "joystick sectors, 25 is turn left, 26 is turn right. This machine has the movements {}",
         text,
         movements_of(machine)));
 }
@@ -137,7 +137,7 @@ int gate(const GateOptions& options) {
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status) log_error(status.error().message);  // a failed log does not change it
+        if (!status) log_error(status.error().message);  // a failed log does not change the verdict
     }
     return exit_code_of(verdict.decision);
 }

@@ -114,8 +114,9 @@ void tell_outcome(const geometry::CloudAlignment& found) {
             return;
         case AlignmentOutcome::too_few_points:
             log_warning(
-                "too few points: an alignment needs at least 36 reference points that lie on "
-                "surfaces and have a partner. Give denser clouds or a larger --reach");
+                "too few points: an alignment that finds all 6 directions of the motion needs at "
+                "least 36 reference points on surfaces, each with a partner. Give denser clouds or "
+                "a larger --reach");
             return;
         case AlignmentOutcome::no_overlap:
             log_warning(
@@ -132,7 +133,8 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     }
 }
 
-/// Logs the directions that the surfaces do not determine.
+/// Logs the outcome of the alignment, and the number of directions that the surfaces do not
+/// determine.
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {
@@ -247,8 +249,8 @@ void add_icp(VerbGroup verbs) {
         .positive();
     verb.option("--points",
                 o.most_points,
-                "number of points of the moved cloud that the alignment uses, evenly spread over "
-                "the cloud (default 100000)")
+                "largest number of points of the moved cloud that the alignment uses (default "
+                "100000); a larger cloud is thinned out evenly")
         .value("N")
         .in(100, 100000000);
     verb.flag("--surfaces-alone",

@@ -62,7 +62,7 @@ Result<Matrix6> motion_covariance(const std::string& text) {
 }
 
 /// Increases the variances of the older map by the uncertainty of the motion from its pose to the
-/// pose of the younger map.
+/// pose of the younger map. If this uncertainty is zero, logs a warning and changes nothing.
 Status pay_for_the_way(const Matrix6& covariance,
                        const MapMergeOptions& options,
                        grid::MapRegion& first,

@@ -63,12 +63,14 @@ Status keep_box(const std::string& text, io::ShiftedCloud& cloud) {
 
 void print_repeated(const char* what, const eval::Repeated& r) {
     if (r.values_m.empty()) return;
-    fmt::print("{}: mean {:.1f} +- {:.1f} mm, scatter {:.1f} mm, measured {} times\n",
-               what,
-               1e3 * r.mean_m,
-               1e3 * r.std_error_m,
-               1e3 * r.spread_m,
-               r.values_m.size());
+    fmt::print(
+        "{}: mean {:.1f} mm (standard error {:.1f} mm), standard deviation of one value {:.1f} mm, "
+        "measured {} times\n",
+        what,
+        1e3 * r.mean_m,
+        1e3 * r.std_error_m,
+        1e3 * r.spread_m,
+        r.values_m.size());
 }
 
 void print_figures(const eval::HeightHistogram& heights,

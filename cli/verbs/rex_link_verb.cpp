@@ -89,8 +89,8 @@ bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     return has(LinkEventKind::inhibited) && !has(LinkEventKind::connected);
 }
 
-/// `surefoot rex-link`: plays the REX side of the link to the gate. The namespace already has the
-/// name rex_link.
+/// `surefoot rex-link`: plays the REX side of the link to the gate. The name of the function ends
+/// with _verb, because a namespace has the name rex_link.
 int rex_link_verb(const RexLinkOptions& options) {
     if (options.keys == !options.script_file.empty())
         return report(

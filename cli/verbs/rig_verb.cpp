@@ -171,8 +171,9 @@ void add_rig(VerbGroup verbs) {
         .needs(out);
     verb.option("--resolution",
                 o.resolution,
-                "size of the images, in px. In a ZED file it selects the entry of this size; the "
-                "calibration of another file is scaled, if the aspect ratio is the same")
+                "size of the images, in px. In a ZED file the option selects the entry of this "
+                "size. The calibration in a file of another format is scaled to this size; the "
+                "aspect ratio must be the same")
         .value("WxH");
 }
 

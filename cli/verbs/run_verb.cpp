@@ -43,8 +43,8 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    // Remove the results of an earlier run. Otherwise the gate or a user could take the old results
-    // for results of this run.
+    // Remove results of an earlier run that other programs read. Otherwise the gate or a user could
+    // take the old results for results of this run.
     std::vector<std::string> names{
         "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
     for (const char* layer : kLayerNames) names.push_back(fmt::format("{}.asc", layer));
@@ -79,10 +79,10 @@ int run(const RunOptions& options) {
     // The run and the writing may both have failed. Each error is reported once, and the error of
     // the run determines the exit code.
     if (!written) {
-        log_error(
-            fmt::format("{}; {} contains only a part of the results: free disk space and run again",
-                        written.error().message,
-                        options.out_dir));
+        log_error(fmt::format(
+            "{}; {} contains only a part of the results: correct this error and run again",
+            written.error().message,
+            options.out_dir));
     }
     if (!record.complete()) return report(*record.error);
     return written ? kExitOk : kExitFailed;

@@ -143,7 +143,7 @@ void add_stairs(VerbGroup verbs) {
                 o.terrain.map,
                 "map to search: the output folder of 'surefoot run' (best a run with --layers), an "
                 "ESRI ASCII grid, a PNG with --scale and --height, or a point cloud with z up "
-                "(.ply, .pcd, .xyz)")
+                "(PLY, PCD, LAS, VTK or XYZ)")
         .required()
         .value("DEM|CLOUD|FOLDER");
     verb.option(
@@ -154,7 +154,8 @@ void add_stairs(VerbGroup verbs) {
     verb.option("--from",
                 o.terrain.from,
                 "position of the machine, in m; an edge that goes down as seen from this position "
-                "is a drop. Default: base_link of a run, otherwise the origin, otherwise the "
+                "is a drop. Default: base_link of the run. Without a run the default is the "
+                "origin, if its cell is known, or else the known cell nearest to the middle of the "
                 "border with the smallest x")
         .value("X,Y");
     verb.option("--scale",

@@ -8,8 +8,8 @@ namespace surefoot::app {
 /// Adds every verb of the program, in the order of `surefoot --help`.
 void add_all_verbs(VerbGroup program);
 
-// Each function adds one verb and is in the file VERB_verb.cpp. This file contains the options, the
-// help, the examples and the code of the verb.
+// Each function adds one verb. The _verb.cpp file that defines the function also contains the
+// options, the help, the examples and the code of the verb.
 void add_audit(VerbGroup verbs);
 void add_bench(VerbGroup verbs);
 void add_calibrate_mono(VerbGroup verbs);

@@ -69,7 +69,7 @@ cv::Mat mat_of(const GreyImage& image) {
     return {image.height(),
             image.width(),
             CV_8UC1,
-            const_cast<std::uint8_t*>(image.data())};  // only read
+            const_cast<std::uint8_t*>(image.data())};  // OpenCV only reads the image
 }
 
 /// Returns true if each found corner matches a different true corner and at least three quarters of

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which volumes does the body sweep in the simulated gait? Prints the lines of `body.parts` for
 // machines/rex.yaml to stdout.
-// Usage: body_parts [FIRST_SEED [SEEDS]]     defaults: 21, 8
+// Usage: body_parts [FIRST_SEED [SEEDS]]
+//   FIRST_SEED: default 21. SEEDS: number of seeds, default 8.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -44,8 +44,7 @@ const char* name_of(LensKind kind) {
     return calibration::kLensKindNames[static_cast<std::size_t>(kind)];
 }
 
-/// Writes one line of lenses.csv. If the views do not determine the lens, prints the error to
-/// stdout instead.
+/// Writes one line of lenses.csv. If the calibration fails, prints the error to stdout instead.
 void compare_lens(const std::string& board_text,
                   LensKind kind,
                   std::uint64_t seed,

@@ -2,12 +2,13 @@
 // How strongly are the disparity errors of semi-global matching correlated on flat floor, and which
 // share of the floor is matched?
 // Usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]]
-//   defaults 1, 4, 1.0; NOISE: factor on the image noise; KEY=VALUE: a setting of the matcher
+//   FIRST_SEED: default 1. SEEDS: number of seeds, default 4. NOISE: factor on the image noise,
+//   default 1.0. KEY=VALUE: a setting of the matcher.
 //
 // Writes into OUT_DIR, per floor pattern:
 //   correlation.csv  correlation of the errors by image axis and lag [px], and their sigma [px]
-//   cells.csv        by range [m]: pixels per map cell, number of independent ones among them,
-//                    sigma of a pixel and of a cell mean [px]
+//   cells.csv        by range [m]: pixels per map cell, number of independent pixels among
+//                    them, sigma of a pixel and of a cell mean [px]
 //   floors.csv       share matched, share trusted, median stated sigma [px], correlation of the
 //                    errors of two frames from the same pose
 #include <fmt/format.h>
@@ -118,8 +119,8 @@ struct FloorSums {
     std::vector<Lag> along_rows = std::vector<Lag>(kLags);
     std::vector<Lag> along_columns = std::vector<Lag>(kLags);
     std::vector<RangeBin> bins = std::vector<RangeBin>(kRangeBins);
-    double cross = 0.0;   ///< products of the errors of two frames from the same pose
-    double square = 0.0;  ///< means of the squared errors of both frames
+    double cross = 0.0;   ///< sum of the products of the errors of two frames from one pose
+    double square = 0.0;  ///< sum of the mean squared errors of both frames
     int pixels = 0;       ///< number of floor pixels that both cameras see
     int matched = 0;
     std::vector<float> trusted_sigma_px;
@@ -151,8 +152,8 @@ void add_lags(const Image<float>& errors, const Image<float>& again, FloorSums& 
     }
 }
 
-/// Counts the pixels that both cameras see in the same part of the image, and how many of them
-/// are matched and trusted.
+/// Counts the pixels in the lower two thirds of the image that both cameras see, and how many of
+/// them are matched and trusted.
 void add_matches(const ZedBench& bench, FloorSums& sums) {
     const auto& depth = bench.depth();
     const double fb = bench.rectified().depth_to_disparity_px_m();

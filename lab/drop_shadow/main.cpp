@@ -2,14 +2,21 @@
 // How long is the occluded region behind a kerb of 75 mm, and which depth does a matcher report in
 // it?
 // Usage: drop_shadow OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]]
-//   defaults 1, 4, 1.0; NOISE: factor on the image noise; KEY=VALUE: a setting of the matcher
+//   FIRST_SEED: default 1. SEEDS: number of seeds, default 4. NOISE: factor on the image noise,
+//   default 1.0. KEY=VALUE: a setting of the matcher.
 //
-// The camera is 0.95 m above the upper level and looks straight over the edge; one frame per seed.
+// The camera is 0.95 m above the upper level and looks straight over the edge. One frame is
+// rendered per seed and distance from the camera to the edge.
+//
 // Writes into OUT_DIR:
-//   shadow.csv  one line per fifth of the region. Length of the region by similar triangles
-//               (geometry_m), by rays of both cameras through the scene (rays_m), and to the first
-//               rendered pixel that shows ground again (rendered_m). Then pieces (each 25 mm wide
-//               across), filled (pieces that contain a point), height_m (median of the points).
+//   shadow.csv  one line per distance, seed, rule (every match, or the default rules for points)
+//               and fifth of the region:
+//                 geometry_m  length of the region by similar triangles
+//                 rays_m      its length by rays of both cameras through the scene
+//                 rendered_m  its length to the first rendered pixel that shows ground again
+//                 pieces      number of pieces of the fifth, each 25 mm wide across
+//                 filled      number of pieces that contain a point
+//                 height_m    median height of the points
 //   cut.csv     points of the first seed within 12 mm of the camera's axis: distance behind the
 //               edge and height [m]
 #include <fmt/format.h>

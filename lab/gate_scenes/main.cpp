@@ -27,14 +27,19 @@
 //   KIND_SEED_FROM.csv  kind,variant,what,count
 //     what: hazards, missed (dangerous but OK), hazards_unknown (refused only because of unknown
 //     ground), safe, refused, safe_unknown (as hazards_unknown), thesis_missed and thesis_refused
-//     (by the limits of the reference thesis, Lange 2016), all_...: the same for all movements.
+//     (by the limits of the reference thesis, Lange 2016). all_...: the same for all movements, but
+//     not for the thesis.
 //     reason:NAME and proof:NAME (a proof that does not hold) of refused safe movements;
-//     alone:NAME: a reason without other reasons; beside:NAME: reasons of refused safe movements in
-//     scenes with a hazard; danger:NAME: the first danger of each hazard; drawn: scenes with the
-//     repeated draws.
+//     alone:NAME: a reason without other reasons; danger:NAME: the first danger of each hazard.
+//     Safe movements in scenes with a hazard: beside_safe (all), beside_refused, and beside:NAME
+//     (primary reason of a refusal).
+//     The variant "scenes" counts scenes: drawn_hazards and drawn_safe (with the repeated draws),
+//     never_clear_hazards and never_clear_safe (each draw was neither dangerous nor safe). Runs
+//     instead: kept, not_clear_any_more (at the pose where the run ended), no_map.
 //   KIND_SEED_FROM.misses.csv   each hazard that the gate allowed: parameters to repeat the scene,
 //     the movement, the oracle's result
-//   KIND_SEED_FROM.refused.txt  runs only: the gate's answer to each safe movement that it refused
+//   KIND_SEED_FROM.refused.txt  runs only: the gate's answer, if it refused the safe movement of a
+//     scene
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,7 +86,7 @@ struct Variant {
     Machine machine;
     int map = 0;  ///< variants with the same map number share one map
     std::optional<MapNoise> noise = std::nullopt;  ///< nullopt = a map without errors
-    double shift_m = 0.0;  ///< sigma per axis of the true position about the believed one
+    double shift_m = 0.0;  ///< sigma of the error of the believed position, per axis [m]
 };
 
 /// A scene with a movement that is clearly dangerous or clearly safe.
@@ -483,7 +488,8 @@ class Campaign {
     std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
 };
 
-/// Multiplies every limit by `factor`, up to the largest value that a machine file may state.
+/// Loosens the limits by `factor`, up to the values that a machine file may state: divides the
+/// margin of the feet and the band for drops, multiplies the others.
 void loosen(GateLimits& limits, double factor) {
     const auto times = [factor](std::int32_t& limit, std::int32_t most) {
         limit = std::min(most, static_cast<std::int32_t>(std::lround(factor * limit)));

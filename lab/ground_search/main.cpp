@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does the ground search find the floor with a camera of unknown mounting, and is each accepted
 // plane really the floor? Input: analytic depth of random rooms with a matcher's errors
-// (views_testing.hpp).
-// Usage: ground_search OUT.csv [FIRST_SEED [VIEWS]]     defaults: 1, 1000; one seed per view
+// (surefoot/ground/ground_views_testing.hpp).
+// Usage: ground_search OUT.csv [FIRST_SEED [VIEWS]]
+//   FIRST_SEED: default 1. VIEWS: number of views, each with its own seed, default 1000.
 //
 // Writes OUT.csv, one line per view; the columns that need an explanation:
 //   kind                 floor (camera 0.3-2 m above it, 0-60 deg down, rolled by up to 8 deg), or
@@ -14,9 +15,10 @@
 //   reason               result of the search
 //   tilt_deg, height_mm  errors of an accepted plane against the floor; without a floor each
 //                        accepted plane is wrong
-//   wrong                1 = accepted, and more than 3 deg or (5 % and 30 mm) off the floor
-//   nees_tilt            squared tilt error in its stated covariance, two unknowns
-//   nees_height          squared height error in its stated variance, one unknown
+//   wrong                1 = accepted, and off the floor by more than 3 deg, or by more than the
+//                        larger of 5 % of the height and 30 mm
+//   nees_tilt            squared tilt error divided by its stated covariance; 2 is expected
+//   nees_height          squared height error divided by its stated variance; 1 is expected
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -9,7 +9,7 @@
 //   source                 source of odom's alignment: plane, imu or assumed
 //   tilt_deg, height_mm    errors of odom's z axis and of the height of base_link above the ground,
 //                          from the first ten frames
-//   waited_s               time spent waiting for light before these frames
+//   waited_s               time from the first frame of the scene to the first of these frames
 //   frames, accepted       later frames, and those with an accepted plane
 //   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm   errors of the accepted planes
 //                          against the ground under base_link

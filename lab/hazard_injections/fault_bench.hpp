@@ -27,7 +27,7 @@ inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 struct Outcome {
     std::string variant;     ///< description of the drawn fault
     int asked_before = 0;    ///< number of queries before the fault
-    int allowed_before = 0;  ///< number of OKs before the fault; valid only if all were OK
+    int allowed_before = 0;  ///< number of OKs before the fault; the run counts only if all were OK
     int asked_after = 0;     ///< number of queries after the fault began
     int allowed_late = 0;    ///< number of OKs after the deadline or the first inhibit
     std::int64_t last_allowed_ns = -1;         ///< time from the fault to the last OK; -1 = no OK

@@ -512,8 +512,8 @@ class Runs {
     Archive archive_;
 };
 
-/// The camera mount turns at a fixed time of the recording. The start of the run is chosen so that
-/// this time matches.
+/// The camera mount turns at a fixed time of the recording. The fault of the run is set to this
+/// time.
 Result<Outcome> Runs::knocked(std::uint64_t seed, bool faulty) {
     Rng rng(mix_seed(seed, 2));
     constexpr double kAt_s = 1.9;

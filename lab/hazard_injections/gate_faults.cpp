@@ -29,12 +29,12 @@ constexpr std::int64_t kProcessing_ns = 45 * kMs;
 constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A rotated box on the ground.
+/// A position on the ground with a direction.
 struct Place {
     Eigen::Vector2d center_m;
     double yaw_rad = 0.0;
 
-    /// Returns a map point in the axes of the box: x along, y across.
+    /// Returns a map point in the axes of the place: x along its direction, y to the left.
     [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p_m) const {
         const Eigen::Vector2d d = p_m - center_m;
         const double c = std::cos(yaw_rad);
@@ -57,14 +57,14 @@ struct Perceived {
     gate::testing::Terrain terrain;
     Place body;
 
-    /// Returns the place of base_link after the queried movement.
+    /// Returns the pose of base_link after the queried movement.
     [[nodiscard]] Place target() const {
         const Movement& m = machine.movements[bench.command()];
         Place place = body.at(m.forward_tenth_mm * 1e-4, m.left_tenth_mm * 1e-4);
         place.yaw_rad += std::atan2(m.sin_turn, m.cos_turn);
         return place;
     }
-    /// Returns the place of a landing foot that is chosen at random.
+    /// Returns the pose of a landing foot, which is chosen at random.
     [[nodiscard]] Place landing() {
         const GroundBox& foot = rng.below(2) == 0 ? machine.left_foot : machine.right_foot;
         return target().at(foot.center_x_tenth_mm * 1e-4, foot.center_y_tenth_mm * 1e-4);
@@ -554,7 +554,8 @@ std::string broken_file(std::string_view whole, Rng& rng, std::string& variant) 
     return text;
 }
 
-/// If the gate accepts the file, the bench queries it as in every other run.
+/// Starts the gate with a machine file. If the gate refuses the file, the outcome is an inhibit at
+/// once. Otherwise the bench queries the gate as in every other run.
 Result<Outcome> start_with(const Result<io::MachineFile>& file,
                            const gate::ReadinessLimits& limits,
                            const std::string& variant,
@@ -595,7 +596,7 @@ Fault other_configuration(Perceived& p) {
     return {"another hash", [hash](MapSnapshot& map) { map.config_hash = hash; }};
 }
 
-/// Sets each limit to a value that would switch its rule off.
+/// Sets one limit, which the seed selects, to a value that would switch its rule off.
 Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, bool faulty) {
     io::MachineFile file = whole;
     gate::ReadinessLimits limits;

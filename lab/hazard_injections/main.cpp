@@ -45,7 +45,7 @@ struct Tally {
     int counted = 0;
     int controls = 0;
     int controls_ok = 0;
-    int late_runs = 0;  ///< number of runs with such an OK
+    int late_runs = 0;  ///< number of runs with an OK after the deadline or the first inhibit
     int late = 0;       ///< number of OKs after the deadline or the first inhibit
     int slow = 0;       ///< runs whose first inhibit is missing or later than kDemanded_ns
     std::int64_t slowest_ns = 0;

@@ -2,7 +2,8 @@
 // Which false ground does semi-global matching create behind drop edges, and which filter rules
 // keep it out of the map?
 // Usage: invented_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]]
-//   defaults 1, 4, 1.0; NOISE: factor on the image noise; KEY=VALUE: a setting of the matcher
+//   FIRST_SEED: default 1. SEEDS: number of seeds, default 4. NOISE: factor on the image noise,
+//   default 1.0. KEY=VALUE: a setting of the matcher.
 //
 // The camera is 0.95 m above the upper level, 32 deg down, and looks over an edge at a given
 // distance. The region that neither camera sees (length: drop * distance / 0.95) must stay unknown

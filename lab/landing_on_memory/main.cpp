@@ -2,9 +2,10 @@
 // How wrong is the map of remembered ground on which a foot will land, at the time of the step
 // query?
 // Usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE [grid | mounts | conditions]]]]
-//   defaults 1, 1, 1.0, grid; NOISE: factor on the image noise
-//   grid: every camera mount, on carpet, sharp images of a global shutter. mounts: the two
-//   recommended mounts. conditions: the usual mount with poor texture, motion blur, a rolling
+//   FIRST_SEED: default 1. SEEDS: number of seeds, default 1. NOISE: factor on the image noise,
+//   default 1.0.
+//   grid (default): every camera mount, on carpet, sharp images of a global shutter. mounts: the
+//   two recommended mounts. conditions: the usual mount with poor texture, motion blur, a rolling
 //   shutter, and all three together.
 //
 // The machine walks over flat floor. The odometry gets rendered images and the map gets exact

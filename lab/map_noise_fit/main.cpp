@@ -2,7 +2,8 @@
 // How large are the errors of the maps of whole runs, cell by cell? The constants of map_noise.hpp
 // are fitted to this output.
 // Usage: map_noise_fit OUT.csv SCRATCH [FIRST_SEED [SEEDS [NOISE]]]
-//   SCRATCH: folder for scene files. Defaults 21, 20, 1.0. NOISE: factor on the image noise.
+//   SCRATCH: folder for scene files. FIRST_SEED: default 21. SEEDS: number of seeds, default 20.
+//   NOISE: factor on the image noise, default 1.0.
 //
 // Each scene of gate_scenes except the unseen hazards is run with the fitted ZED profile on a
 // trolley along the scene's path. The map at the end is compared with the true geometry. Writes

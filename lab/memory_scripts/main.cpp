@@ -235,7 +235,7 @@ class DriftingSource final : public camera::FrameSource {
             drift(*(*frame)->known_motion);
         return frame;
     }
-    /// Sets the length of the next step.
+    /// Adds the length of the next step to the walked distance [m].
     void way_grows(double step_m) { way_m_ += step_m; }
     void end() { over_ = true; }
 

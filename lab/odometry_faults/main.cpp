@@ -7,7 +7,7 @@
 //   between them, or all. KEY=VALUE: a setting of surefoot.
 //
 // Only images and odometry run, no map. Each fault runs with and without IMU. It begins in frame 40
-// of 90; faults of the rig and permanently swapped cameras exist from the start.
+// of 76; faults of the rig and permanently swapped cameras exist from the start.
 //
 // Writes OUT.csv, one line per frame; the columns that need an explanation:
 //   faulty              the fault is in this frame
@@ -82,8 +82,8 @@ class Painter {
         shown.frame.right = pair_.right;
     }
 
-    /// A person in front of the left `share` of the view: a textured board 1.2 m away that has
-    /// moved by `shift_m` to the right.
+    /// Draws a person in front of the left `share` of the view: a textured board 1.2 m away that
+    /// has moved by `shift_m` to the right.
     void person(double share, double shift_m, Shown& shown) {
         constexpr double kAway_m = 1.2;
         const double edge_px = share * rig_.left.width;

@@ -16,7 +16,7 @@
 //   moving, nees              number of motions, and the mean of error^T covariance^-1 error: 6 is
 //                             expected for a correct covariance
 //   rpe_mm, rpe_deg           rms error of these motions
-//   standing, held_mm         number of motions of a standing machine; largest error of one
+//   standing, held_mm         number of motions of a standing machine; largest error of these
 //   jump_mm                   largest error of the motion from one frame to the next
 //   ok, degraded, lost        number of frames
 #include <fmt/format.h>

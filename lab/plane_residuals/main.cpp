@@ -40,7 +40,8 @@ struct Window {
     double residual_px = 0.0;  ///< 1.4826 median |residual| = one sigma of a normal scatter
     double rms_px = 0.0;       ///< rms over all matched pixels, with outliers
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
-    Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< disparity = plane . (u, v, 1), window
+    /// Disparity [px] = plane . (u, v, 1), with u and v from the first pixel of the window.
+    Eigen::Vector3d plane = Eigen::Vector3d::Zero();
     std::vector<double> departure_px;  ///< disparity minus plane; NaN = no match or outlier
 };
 

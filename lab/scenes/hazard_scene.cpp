@@ -30,7 +30,8 @@ Vector2d turned(const Vector2d& v, double angle_rad) {
             std::sin(angle_rad) * v.x() + std::cos(angle_rad) * v.y()};
 }
 
-/// Returns the largest extent of a box along `n` after a movement. nullptr = at the current pose.
+/// Returns the largest extent of a box along `n` after a movement, or at the current pose if
+/// `movement` is nullptr.
 double reach_m(const GroundBox& box, double grown_m, const Movement* movement, const Vector2d& n) {
     double farthest_m = -1e9;
     for (const int along : {-1, 1}) {

@@ -22,8 +22,8 @@ constexpr float kTall_m = 0.25F;
 
 /// Returns normal numbers of unit variance with correlated neighbours: white noise filtered by (1 2
 /// 1) / 4 in both directions. The correlation of the filtered noise is 0.67 at one cell and 0.17 at
-/// two cells. If `smooth_share` of the variance is filtered noise, it is 0.44 and 0.11. Measured on
-/// maps: 0.44 at one cell, 0.16 at two and 0.06 at three cells.
+/// two cells. If `smooth_share` of the variance is filtered noise, the correlation is 0.44 and
+/// 0.11. Measured on maps: 0.44 at one cell, 0.16 at two and 0.06 at three cells.
 Image<float> smooth_field(int width, int height, Rng& rng) {
     constexpr float kNorm = 1.0F / 0.375F;  // 1 / (sqrt(1 + 4 + 1) / 4)^2
     Image<float> white(width + 2, height + 2);

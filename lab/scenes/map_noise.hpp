@@ -49,7 +49,7 @@ struct MapNoise {
     double outlier_least_m = 0.020;         ///< smallest |error| of an outlier
     double outlier_most_m = 0.042;          ///< largest |error|; small errors are more frequent
     double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier [m]
-    double outlier_most_sigma_m = 17e-3;    ///< largest
+    double outlier_most_sigma_m = 17e-3;    ///< largest stated sigma of an outlier [m]
     double drift_m = 2.2e-3;                ///< 90th percentile of the stated drift [m]
     /// Factor on the stated sigma if the machine did not walk: sigma of cells seen from one pose,
     /// divided by the sigma of cells seen from six poses.
@@ -83,13 +83,13 @@ class SceneCells {
         float top_m = 0.0F;          ///< top of this overhang [m]
         float share_high = 0.0F;     ///< share of samples nearer to high_m than to low_m
         bool ground = false;         ///< true: at least one sample is not a void
-        bool seen = false;           ///< true: both cameras see the middle of the cell
+        bool seen = false;           ///< true: both cameras see one of 5 points in the cell
         bool beside_seen = false;    ///< true: at least one of its 8 neighbours is seen
         float beside_high_m = 0.0F;  ///< highest sample of these neighbours [m]
     };
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
     [[nodiscard]] const Image<Cell>& cells() const noexcept { return cells_; }
-    /// Whether the hazard goes down, which means a negative relief.
+    /// Returns true if the hazard goes down (negative relief).
     [[nodiscard]] bool falling() const noexcept { return falling_; }
 
   private:

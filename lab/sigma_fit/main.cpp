@@ -2,7 +2,8 @@
 // Which coefficients make match_sigma_px agree best with the real errors? They are fitted to
 // Middlebury's cones and cloth3 and to four scenes of the simulated ZED at one and two times its
 // noise. matcher_sigma tests them on other images.
-// Usage: sigma_fit STEREO_DATA_DIR OUT_DIR [FIRST_SEED [SEEDS]]     defaults: 21, 4
+// Usage: sigma_fit STEREO_DATA_DIR OUT_DIR [FIRST_SEED [SEEDS]]
+//   FIRST_SEED: default 21. SEEDS: number of seeds, default 4.
 //
 // Writes OUT_DIR/sigma_fit.csv: image,set,within_1,within_2,within_3: share of the trusted matches
 // within 1, 2 and 3 sigma [%], of those that are right within 1 px. Sets: "as it comes" (the

@@ -13,8 +13,8 @@
 //                          after the first: no feature of that class within 0.1 m across and 20 deg
 //                          before
 //   new_ids                features whose id changed at the same place; followed only
-//   drops_lost             drops that a frame detected, but that are missing in the result, or
-//                          farther away in it by more than their sigma
+//   drops_lost             drops that a frame detected, but that the method does not report, or
+//                          reports farther away by more than the sigma of the detected edge
 //   found_observations     number of frames that found the true flight
 //   steps_changes          changes of its number of steps between consecutive such frames
 //   steps_exact            number of such frames with the true number of steps
@@ -96,7 +96,8 @@ bool warns_of(const stairs::LineFeature& told, const stairs::LineFeature& found)
     return way.dot(found_way) > 0.0;
 }
 
-/// Counts features that appeared, disappeared, or changed their class between two frames.
+/// Counts features that appeared, disappeared, or got another id at the same place between two
+/// frames.
 struct Changes {
     int came_or_went = 0;
     int new_ids = 0;

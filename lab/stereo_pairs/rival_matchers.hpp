@@ -18,7 +18,7 @@ using Match = std::function<Image<float>(const TruePair&)>;
 
 /// Returns the matcher of the pipeline with its default settings.
 [[nodiscard]] Match chain();
-/// Returns this matcher without the disparities whose outlier probability is above kTrusted.
+/// Returns the same matcher without the disparities whose outlier probability is above kTrusted.
 [[nodiscard]] Match trusted_chain();
 /// Largest outlier probability of a trusted match.
 inline constexpr float kTrusted = 0.5F;

@@ -21,7 +21,7 @@ struct TruePair {
     int disparities = 64;   ///< search range [px]: 0 to disparities - 1
     double step_px = 0.0;   ///< quantization of the stored truth [px]; 0 = exact
     double truth_offset_px =
-        0.0;  ///< Truth::centred adds it [px]; the truth of adirondack is truncated to whole px
+        0.0;  ///< offset that Truth::centred adds [px]; not 0 if the truth was rounded down
 };
 
 /// Reads the Middlebury pairs cones, teddy, cloth3, adirondack, and adirondack with a different

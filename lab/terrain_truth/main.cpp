@@ -61,8 +61,8 @@ constexpr double kNear_m = 0.7;
 
 using experiments::SceneCase;
 
-/// Number of truly unsafe cells, number of these cells that the map rates safe, and the largest
-/// connected group of the latter.
+/// Number of truly unsafe cells, number of these cells that the map rates safe, and size of the
+/// largest connected group of such wrongly rated cells.
 struct Missed {
     int truly_unsafe = 0;
     int called_safe = 0;
@@ -127,8 +127,8 @@ eval::CellMask away_from_all_edges(const sim::Scene& scene,
     return away;
 }
 
-/// Returns whether the errors agree with the stated sigma. Uses only cells whose highest surface
-/// both cameras had in view, near or far. The top of a wall is never in view.
+/// Returns the shares of the height errors within one, two and three stated sigmas. Uses only cells
+/// whose highest surface both cameras had in view, near or far. The top of a wall is never in view.
 eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
                                      const sim::Lattice& lattice,
                                      const elevation::ElevationLayers& layers,

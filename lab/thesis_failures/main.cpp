@@ -2,9 +2,10 @@
 // Does the system of the reference thesis (Lange 2016), from which this project descends, fail in
 // the simulator as it failed in reality? If so, the simulator is not too optimistic.
 // Usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE [fixed | drawn]]]]
-//   defaults 1, 1, 1.0, fixed; NOISE: factor on the image noise
-//   fixed: constant delays, on the floor and on the stairs. drawn: occasional delays, compared with
-//   none, only on the floor.
+//   FIRST_SEED: default 1. SEEDS: number of seeds, default 1. NOISE: factor on the image noise,
+//   default 1.0.
+//   fixed (default): constant delays, on the floor and on the stairs. drawn: occasional delays,
+//   compared with none, only on the floor.
 //
 // Settings of the thesis:
 // * The ZED has 15 images per second. One cloud per second goes into the map.
@@ -24,7 +25,7 @@
 //                treads. The columns "coarse" give spread and steps for medians of 4 x 4 cells,
 //                which have less pixel noise.
 //   heights.csv  one line per cell of level floor (floor) or of a tread; tread0 is the floor before
-//                it
+//                the stairs
 //   map_*.csv    heights of the maps of the first seed, row by row along x
 #include <fmt/format.h>
 #include <fmt/os.h>

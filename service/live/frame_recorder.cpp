@@ -280,10 +280,10 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
     if (state_.frames == 0) {  // this class created the folder, and the folder contains no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);
-        text = outcome ? "no frame arrived, so there is no recording" : outcome.error().message;
+        text = outcome ? "no frame arrived, so nothing was recorded" : outcome.error().message;
     }
     if (outcome) {
-        log_info("recorded " + text);
+        log_info("recording: " + text);
     } else {
         log_warning("recording: " + text);
     }

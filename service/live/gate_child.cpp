@@ -158,8 +158,8 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     }
     process_ = -1;
     hang_up();
-    return input_error("the gate process did not start; its own message above gives the reason: " +
-                       program_);
+    return input_error(
+        "the gate process did not start; read the message of the gate above. Program: " + program_);
 }
 
 Result<bool> GateChild::watch(std::int64_t now_ns) {

@@ -26,9 +26,9 @@ class GateChild {
         std::vector<std::string> first_arguments;  ///< more arguments of the first start
         gate_process::ChecksumKey key;             ///< key of the map channel; sent by socket pair
     };
-    /// Starts the program surefoot-gate from the folder of this program (or from its place in a
-    /// build tree). Returns when the gate listens. Returns an error if the gate ends before that,
-    /// or is silent for 20 s.
+    /// Starts the program surefoot-gate, which must be in the folder of this program. Returns when
+    /// the gate listens. Returns an error if the program is missing, if the gate ends before it
+    /// listens, or if the gate is silent for 20 s.
     [[nodiscard]] static Result<GateChild> start(Start how);
     GateChild(GateChild&& other) noexcept;
     GateChild& operator=(GateChild&&) = delete;

@@ -38,9 +38,9 @@ class Arrivals {
 
 /// Runs a pipeline over a source and publishes a map snapshot after every frame.
 ///
-/// The session ends when the source ends, the user interrupts the program, or the gate requests a
-/// restart. Swapped cameras are an error. Pipeline, source and writer must outlive the session.
-/// Not thread-safe.
+/// The session ends when the source ends, `before_frame` returns false, the user interrupts, or the
+/// gate requests a restart. Swapped cameras are an error. Pipeline, source and writer must outlive
+/// the session. Not thread-safe.
 class LiveSession {
   public:
     /// Called before a frame is fetched from the source. The result false ends the session.

@@ -27,8 +27,8 @@ struct SocketMessage {
 /// passes the time `now_ns` of the steady clock.
 ///
 /// The client gets the newest message of each subscribed channel, and the time of the source with
-/// each frame. Ground, points and images share a budget of 2 MB/s. If several of these channels
-/// are due, the channel that waited longest goes first. Not thread-safe.
+/// each frame. Ground, points and images wait while all messages together exceed 2 MB/s. The
+/// channel that waited longest goes first. Not thread-safe.
 class FoxgloveClient {
   public:
     static constexpr std::int64_t kMostBytesPerSecond = 2'000'000;

@@ -27,7 +27,7 @@ class FoxgloveShow {
     /// `show` must outlive this object.
     explicit FoxgloveShow(Show& show) : show_(show) {}
 
-    /// Updates the status. Call it on every tick, after `Show::look`.
+    /// Updates the status. Call it on every tick, after `Show::update`.
     void update(std::int64_t now_ns, const std::optional<PlaybackState>& playback);
     /// Takes a message of the gate. The message gets the newest frame's time, because the gate uses
     /// another clock.

@@ -33,9 +33,9 @@ struct HostAndPort {
 /// the default port, but simple programs may always omit it. If the page is served beyond loopback,
 /// every IP address is accepted, because DNS rebinding needs a name.
 [[nodiscard]] bool is_own_host(const PageAddress& page, std::string_view host);
-/// Returns true if `origin` is this page: its scripts may open a socket. `origin` must equal host
-/// and port of `host`, or an origin of the page. `host` must satisfy is_own_host(). localhost,
-/// 127.0.0.1 and [::1] count as the same host. Another port on this machine is another page.
+/// Returns true if scripts of `origin` may open a socket: `origin` is an origin of the page, or has
+/// the host of `host` (see is_own_host()) and the port of the page. localhost, 127.0.0.1 and [::1]
+/// are the same host. Another port on this machine is another page.
 [[nodiscard]] bool is_own_origin(const PageAddress& page,
                                  std::string_view host,
                                  std::string_view origin);

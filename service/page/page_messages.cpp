@@ -98,7 +98,7 @@ Status read_layers(const Json& names, std::span<const std::string> layers, PageW
         if (!name.is_string()) return input_error("layers: expected a list of layer names");
         const auto found = std::find(layers.begin(), layers.end(), name.get<std::string>());
         if (found == layers.end())
-            return input_error("layers: there is no '" + name.get<std::string>() + "'");
+            return input_error("layers: there is no layer '" + name.get<std::string>() + "'");
         const auto index = static_cast<std::uint16_t>(found - layers.begin());
         if (std::find(wish.layers.begin(), wish.layers.end(), index) == wish.layers.end())
             wish.layers.push_back(index);

@@ -800,8 +800,8 @@ std::size_t PageSockets::viewers() const {
 
 const char* PageServerConfig::problem() const {
     if (!gate_process::is_loopback_address(bind_address) && token.empty())
-        return "a page at an address beyond loopback needs a token; give its file with "
-               "--token-file";
+        return "a page at an address beyond loopback needs a token; give --guests none, and the "
+               "token file with --token-file";
     if (tls.certificate_file.empty() != tls.key_file.empty())
         return "TLS needs both files; give --certificate FILE and --key FILE";
     if (!gate_process::is_loopback_address(bind_address) && tls.empty() &&

@@ -35,7 +35,7 @@ Result<BenchResult> bench_audit_push(const Machine& machine,
     constexpr int kRepeats = 2000;
     gate_process::AuditConfig config;
     config.memory_bytes =
-        128U << 20U;  // room for all entries: a push into a full ring copies nothing
+        128U << 20U;  // room for all entries, because a push into a full ring copies nothing
     gate_process::AuditLog log(machine, std::make_unique<NoDisk>(), config);
     if (auto status = log.start(); !status) return status.error();
     const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};

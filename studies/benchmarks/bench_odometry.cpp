@@ -15,7 +15,8 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kFrames = 70;
-constexpr int kSkipped = 15;  ///< first frames, not timed: IMU initialisation, trolley at rest
+constexpr int kSkipped =
+    15;  ///< number of first frames that are not timed, because the trolley is at rest
 
 /// Returns the ZED rig of the simulator with the wider lenses of the EuRoC data set.
 Result<camera::StereoRig> wide_rig() {

@@ -18,9 +18,10 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kCorridors = 50;
-constexpr int kKeyframes = 10;    ///< keyframes per corridor; together they fill the database
-constexpr int kQueries = 5;       ///< queries per corridor that is queried
-constexpr int kGoneThrough = 12;  ///< corridors that are queried, of each kind
+constexpr int kKeyframes =
+    10;                      ///< keyframes per corridor; all corridors together fill the database
+constexpr int kQueries = 5;  ///< number of queries in each queried corridor
+constexpr int kGoneThrough = 12;  ///< number of queried corridors, once known and once unknown
 constexpr double kApart_m = 100.0;
 static_assert(kCorridors * kKeyframes == place_recognition::kMostKeyframes);
 
@@ -62,7 +63,9 @@ class Corridors {
         for (int i = 0; i <= count; ++i) {
             auto frame = (*source)->next();
             if (!frame) return frame.error();
-            if (!*frame) return input_error("bench places: the path is too short");
+            if (!*frame)
+                return input_error(
+                    "bench places: the path through the simulated corridor has too few frames");
             if (i == 0) continue;
             Look& look = looks.emplace_back();
             rectifier->rectify(**frame, look.images);

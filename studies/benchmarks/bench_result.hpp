@@ -13,10 +13,10 @@
 
 namespace surefoot::app {
 
-/// Durations of repeated calls that do the same work.
+/// Durations of repeated calls.
 struct Timing {
-    double median_ms = 0.0;  ///< wall clock
-    double p99_ms = 0.0;     ///< wall clock
+    double median_ms = 0.0;  ///< median duration, wall clock
+    double p99_ms = 0.0;     ///< 99th percentile of the durations, wall clock
     /// Smallest processor time that the process used in one call. Other load on the machine changes
     /// this figure less than the others, so compare runs by it.
     std::optional<double> least_cpu_ms = {};

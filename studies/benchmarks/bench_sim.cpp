@@ -49,7 +49,8 @@ Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
         cpu_ms.push_back(1e-6 * static_cast<double>(cpu_now_ns() - cpu_ns));
         wall_ms.push_back(1e-6 * static_cast<double>(steady_now_ns() - wall_ns));
     }
-    if (cpu_ms.empty()) return input_error("bench sim: no motion in " + request.source);
+    if (cpu_ms.empty())
+        return input_error("bench sim: the camera never moves in the scene " + request.source);
     const Percentiles wall = percentiles(std::move(wall_ms));
     const double least_ms = *std::min_element(cpu_ms.begin(), cpu_ms.end());
     return Timing{wall.median, wall.p99, least_ms, percentiles(std::move(cpu_ms)).median};

@@ -29,7 +29,7 @@ struct Work {
     }
 };
 
-/// Renders one noisy pair of the demonstration scene and rectifies it.
+/// Renders one pair of the demonstration scene and rectifies it. The settings determine the noise.
 Status see(const CommonOptions& common, const Settings& settings, Executor& executor, Work& work) {
     SourceRequest request{"demo_stairs", work.rig, 0.0, 1, common.seed, settings.sim};
     auto source = open_simulation(request, executor);

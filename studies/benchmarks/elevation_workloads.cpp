@@ -142,7 +142,7 @@ void for_each_cell(const grid::GridGeometry& geometry, const F& f) {
     }
 }
 
-/// Adds a ray that ends in every cell, then queries the lowest ray over every cell.
+/// Adds one ray for each cell, which ends in this cell. Then queries the lowest ray over each cell.
 Workload seeing_through(std::string name, int side) {
     const auto prepare = [side]() -> Result<Workload::Job> {
         const auto lines = std::make_shared<elevation::FreeSpaceRays>();

@@ -191,7 +191,7 @@ Workload finding_footholds(Executor& executor) {
     return {fmt::format("terrain/footholds_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Returns a flat floor without unknown cells.
+/// A flat floor without unknown cells.
 struct Floor {
     grid::Layer height_m{kSide, kSide, 0.0F};
     grid::Layer rating{kSide, kSide, 0.95F};

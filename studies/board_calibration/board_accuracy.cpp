@@ -24,7 +24,8 @@ constexpr double kInnerShare = 0.8;
 constexpr double kMinDistance_m = 0.1;
 constexpr double kMaxDistance_m = 20.0;
 constexpr std::array kUsualDistances_m = {0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0};
-/// Largest difference of equal distances [m]. The reference thesis (Lange 2016) uses round numbers.
+/// Two distances count as equal if they differ by less than this [m]. The reference thesis (Lange
+/// 2016) uses round numbers.
 constexpr double kSameDistance_m = 1e-6;
 
 /// Errors of one image pair of a board.
@@ -35,7 +36,7 @@ struct BoardObservation {
 };
 
 /// Widens the configured disparity range if a board at this distance needs more. The new range is
-/// the need plus a tenth.
+/// 1.1 times the need, rounded up to a multiple of 16 px, but at most 512 px.
 pipeline::PipelineConfig with_range_for(double distance_m,
                                         const camera::RectifiedRig& rig,
                                         pipeline::PipelineConfig config) {
@@ -158,12 +159,13 @@ Result<std::vector<PairLine>> read_pairs(const std::string& path) {
                 "{}:{}: expected LEFT RIGHT DISTANCE_M, found '{}'", path, number, line));
         }
         if (!(pair.distance_m >= kMinDistance_m && pair.distance_m <= kMaxDistance_m)) {
-            return input_error(fmt::format("{}:{}: distance {} m must be between {} and {} m",
-                                           path,
-                                           number,
-                                           pair.distance_m,
-                                           kMinDistance_m,
-                                           kMaxDistance_m));
+            return input_error(
+                fmt::format("{}:{}: the distance is {} m, but it must be between {} and {} m",
+                            path,
+                            number,
+                            pair.distance_m,
+                            kMinDistance_m,
+                            kMaxDistance_m));
         }
         pair.left = io::join_path(folder, pair.left);
         pair.right = io::join_path(folder, pair.right);

@@ -22,9 +22,9 @@ struct DepthAccuracyOptions {
     std::string pairs_file;
     double board_m = 0.6;  ///< side of the square textured board [m]
     std::string out_dir;
-    bool design = false;      ///< true: compute the smallest resolvable height as a design
+    bool design = false;      ///< true: compute the smallest resolvable height, without images
     double baseline_m = 0.0;  ///< --design: baseline [m]; 0 = baseline of the rig
-    double focal_px = 0.0;    ///< --design: focal length [px]; 0 = that of the rig
+    double focal_px = 0.0;    ///< --design: focal length [px]; 0 = focal length of the rig
     std::string size;         ///< --design: image size WIDTHxHEIGHT; empty = size of the rig
     double sigma_px = 0.0;    ///< --design: sigma of the disparity [px]; 0 = limit of our matcher
     double height_m = 1.0;    ///< --design: height of the camera above the floor [m]
@@ -49,7 +49,7 @@ struct DistanceAccuracy {
     int observations = 0;                     ///< number of image pairs
     std::optional<eval::BoardErrors> errors;  ///< nullopt = the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
-    std::optional<ThesisAccuracy> thesis;     ///< thesis value for the same camera and distance
+    std::optional<ThesisAccuracy> thesis;     ///< value of the thesis for this camera and distance
 };
 
 /// Measures depth accuracy on rendered boards, or on the images that `options.pairs_file` lists.

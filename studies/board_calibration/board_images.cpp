@@ -184,9 +184,10 @@ Result<BoardSource> for_board_images(const std::string& source,
     if (!entries) return entries.error();
     if (entries->empty()) {
         return input_error(fmt::format(
-            "{}: no images of a board; expected {} (.png .jpg .pgm .ppm) or a video",
+            "{}: the source has no images of a board; give {} (.png .jpg .pgm .ppm) or a video",
             source,
-            stereo ? "left* with right*, folders left and right, side-by-side images" : "images"));
+            stereo ? "images left* and right*, folders left and right, or side-by-side images"
+                   : "images"));
     }
     for (const Entry& entry : *entries) {
         BoardImages images;

@@ -103,14 +103,14 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
     constexpr double kSteepest_deg = 45.0;
     constexpr double kRadiusPerDegree_px = 0.5 * kSide_px / kOuter_deg;
     const auto& coverage = run.coverage[static_cast<std::size_t>(camera)];
-    eval::Figure figure = eval::make_figure(
-        kSide_px,
-        kSide_px,
-        false,
-        {},
-        {fmt::format("Tilt of the board, {}", camera_name(run, camera)),
-         "[deg]; each dot is a view, drawn towards the nearer side of the board; stripes: "
-         "missing tilts"});
+    eval::Figure figure =
+        eval::make_figure(kSide_px,
+                          kSide_px,
+                          false,
+                          {},
+                          {fmt::format("Tilt of the board, {}", camera_name(run, camera)),
+                           "tilt in deg; each dot is a view, drawn towards the nearer side of the "
+                           "board; stripes: missing tilts"});
     const PointPx center{figure.plot.left + 0.5 * kSide_px, figure.plot.top + 0.5 * kSide_px};
     bool seen[std::size(calibration::kNearSideNames)] = {};
     for (const calibration::ViewShape& view : coverage.views)
@@ -170,15 +170,13 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera
     constexpr double kShown_px = 20.0;  // length of the arrow of the 95th percentile
     const double enlarged = kShown_px / std::max(usual_px, 1e-6);
     const bool right = std::string(this_camera.name) == "right";
-    Plane plane = plane_of(
-        run.size,
-        {fmt::format("Measured minus predicted position, {}", this_camera.name),
-         fmt::format(
-             "{} points; 95 % of the residuals are within {:.2f} px; arrows enlarged {:.0f} "
-             "times; orange: view left out",
-             lengths_px.size(),
-             usual_px,
-             enlarged / plane_of(run.size, {}).scale)});
+    Plane plane = plane_of(run.size,
+                           {fmt::format("Measured minus predicted position, {}", this_camera.name),
+                            fmt::format("{} points; 95 % of the residuals are within {:.2f} px; "
+                                        "arrows enlarged {:.0f} times; orange: point left out",
+                                        lengths_px.size(),
+                                        usual_px,
+                                        enlarged / plane_of(run.size, {}).scale)});
     for (const auto& view : this_camera.views) {
         const auto& seen = right ? run.views[view.index].right : run.views[view.index].left;
         for (std::size_t i = 0; i < view.fit.ids.size(); ++i) {

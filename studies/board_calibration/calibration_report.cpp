@@ -106,8 +106,8 @@ eval::ReportTable lens_table(const CalibratedCamera& this_camera, calibration::L
     }
     table.hint = fmt::format(
         "These parameters predict the image position of a direction with a median error of {:.3f} "
-        "px (one sigma). The largest error is {:.2f} px, in an image corner without board "
-        "positions.{}",
+        "px (one sigma). The largest error in the image is {:.2f} px (one sigma). To reduce it, "
+        "add views with the board near the image corners.{}",
         this_camera.mapping.median_px,
         this_camera.mapping.largest_px,
         kind == calibration::LensKind::rational

@@ -23,9 +23,9 @@ struct LiveBoards {
     int most = kMostVideoViews;  ///< number of images at which the session ends
 };
 
-/// Passes images of a side-by-side camera to `use` until `use` has `most` images or `stop` returns
-/// true. The stamps of consecutive images differ by at least `pause_s`. Repeated and incomplete
-/// frames are skipped.
+/// Passes images of a side-by-side camera to `use` until `use` has got `most` images or `stop`
+/// returns true. The stamps of consecutive images differ by at least `pause_s`. Repeated and
+/// incomplete frames are skipped.
 [[nodiscard]] Status for_live_images(std::unique_ptr<io::VideoDevice> device,
                                      const LiveBoards& session,
                                      const std::function<void(BoardImages)>& use);

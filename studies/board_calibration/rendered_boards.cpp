@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kMostTilt_rad = std::numbers::pi / 4.5;
 constexpr double kMostRoll_rad = std::numbers::pi / 9.0;
-/// Limits of the distance divided by the longer side of the board. At the nearest the board fills
-/// the image of a 60 deg lens, at the farthest a third of it.
+/// Limits of the distance, divided by the longer side of the board. At the smallest distance this
+/// side spans nearly the width of the image of a 60 deg lens. At the largest distance it spans
+/// about half of the width.
 constexpr double kNearest = 0.9;
 constexpr double kFarthest = 1.7;
 constexpr double kBorder_px = 4.0;

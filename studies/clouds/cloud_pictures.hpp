@@ -21,8 +21,8 @@ struct PlacedDistances {
 };
 
 /// Writes three files into `folder`: distances.png, histogram.svg and distances.ply. distances.png
-/// is a view from above of the mean distance in each cell. distances.ply has the points with
-/// distance and the colours of the picture. `shift_m` is added to the points of distances.ply.
+/// is a view from above of the mean distance in each cell. distances.ply has all points, with their
+/// distances and the colours of the picture. `shift_m` is added to the points of distances.ply.
 [[nodiscard]] Status write_cloud_pictures(const std::string& folder,
                                           const PlacedDistances& placed,
                                           const Eigen::Vector3d& shift_m);

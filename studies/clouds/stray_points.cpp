@@ -78,7 +78,7 @@ bool StrayFilter::hand_over(std::size_t at, const Take& take) {
 
 bool StrayFilter::add(const sim::ScanColumn& column, const Take& take) {
     Column added;
-    // The filter needs the oldest column no more, so its memory is reused.
+    // The filter no longer needs the oldest column, so its memory is reused.
     if (std::ssize(columns_) > 2 * kReach) {
         added = std::move(columns_.front());
         columns_.pop_front();

@@ -13,8 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Largest number of points of a band in memory. A point takes 12 bytes, plus a copy sorted by
-/// cell.
+/// Largest number of points of a band in memory. A point takes 8 bytes, plus 4 bytes in the copy
+/// that is sorted by cell.
 constexpr std::int64_t kMostPoints = 1 << 25;
 
 struct CellPoint {
@@ -22,7 +22,8 @@ struct CellPoint {
     float z_m;
 };
 
-/// Rows [begin, end) that are processed together. The neighbouring rows supply witnesses.
+/// Rows [begin, end) that are processed together. The neighbouring rows supply witnesses: points
+/// that support a height in a cell with few points.
 struct Band {
     int begin = 0;
     int end = 0;
@@ -86,7 +87,8 @@ class CellReducer {
         const std::span<const float> z_m = heights.of(number(ix, iy));
         CellGround ground;
         if (z_m.empty()) return ground;
-        // Each group needs the support that follows from the number of points in the whole cell.
+        // Every group needs the same number of points, which follows from the number of points in
+        // the whole cell.
         const int wanted = elevation::support_of(rules_.reduction, static_cast<int>(z_m.size()));
         for (std::size_t begin = 0, end = 0; begin < z_m.size(); begin = end) {
             end = end_of_group(z_m, begin);

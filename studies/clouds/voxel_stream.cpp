@@ -100,7 +100,9 @@ Result<Census> count(Source& source, const std::string& cloud, double size_m) {
     if (!status) return status.error();
     if (census.points == 0) {
         return input_error(
-            fmt::format("{}: no point with finite coordinates among {}", cloud, source.skipped()));
+            fmt::format("{}: none of the {} points has finite coordinates; check the file",
+                        cloud,
+                        source.skipped()));
     }
     if (auto fits = check_voxels(census.box, size_m, cloud); !fits) return fits.error();
     return census;
@@ -146,8 +148,11 @@ class Scratch {
         files_[file].write(reinterpret_cast<const char*>(points_m.data()),
                            static_cast<std::streamsize>(points_m.size_bytes()));
         if (files_[file]) return {};
-        return output_error(fmt::format(
-            "{}: cannot write {} bytes: is the disk full?", name(file), points_m.size_bytes()));
+        return output_error(
+            fmt::format("{}: this temporary file cannot take {} more bytes; check whether the disk "
+                        "is full and run again",
+                        name(file),
+                        points_m.size_bytes()));
     }
     /// Returns all points of a file and deletes the file.
     Result<std::vector<Vector3f>> take(std::size_t file) {
@@ -157,7 +162,10 @@ class Scratch {
         std::vector<Vector3f> points_m(bytes / sizeof(Vector3f));
         from.seekg(0);
         from.read(reinterpret_cast<char*>(points_m.data()), static_cast<std::streamsize>(bytes));
-        if (!from) return input_error(fmt::format("{}: cannot be read back", name(file)));
+        if (!from)
+            return input_error(fmt::format(
+                "{}: this temporary file cannot be read back; check the disk and run again",
+                name(file)));
         from.close();
         std::filesystem::remove(name(file));
         return points_m;
@@ -210,8 +218,8 @@ Status check_voxels(const geometry::PointBox& box, double size_m, const std::str
     if (eval::fits_voxels(box, size_m)) return {};
     const Eigen::Vector3d side_m = (box.high_m - box.low_m).cast<double>();
     return usage_error(
-        fmt::format("{}: {:g} x {:g} x {:g} m is too large for voxels of {:g} m and cannot be "
-                    "numbered; choose larger voxels, or remove stray points",
+        fmt::format("{}: the cloud measures {:g} x {:g} x {:g} m, which is too large for voxels of "
+                    "{:g} m; choose larger voxels, or remove stray points",
                     cloud,
                     side_m.x(),
                     side_m.y(),

@@ -16,7 +16,7 @@ namespace surefoot::app {
 struct ThinnedCloud {
     std::int64_t points = 0;   ///< number of finite input points
     std::int64_t skipped = 0;  ///< number of input points that were not finite
-    std::int64_t voxels = 0;   ///< output points
+    std::int64_t voxels = 0;   ///< number of output points
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
     std::vector<std::string> notes;  ///< sentences about properties that the output lacks
 };
@@ -29,7 +29,7 @@ struct ThinnedCloud {
 /// Writes the mean point of each voxel to `out_file`. Splits a cloud with more than
 /// `most_in_memory` points into slabs along x and processes one slab after the other; the output is
 /// the same. The slabs lie in a temporary folder beside the output (12 bytes a point). Memory: 40
-/// bytes for each point in memory, or of the fullest slab of 64 voxels along x if that is more.
+/// bytes for each of `most_in_memory` points, or for each point of the fullest slab if it has more.
 [[nodiscard]] Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                               double size_m,
                                               const std::string& out_file,

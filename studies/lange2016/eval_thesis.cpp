@@ -67,7 +67,9 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return machine.error();
     if (!*machine)
-        return usage_error("--machine: give a machine file, or the name of a built-in machine");
+        return usage_error(
+            "--machine is empty: give a machine file, or the name of a built-in machine, for "
+            "example rex");
     // Uses every second beam. There is still a point every 5 mm within 4 m of a station, in a
     // quarter of the time. `sim --scan` uses all beams.
     settings->laser.step_deg *= 2.0;

@@ -369,7 +369,7 @@ Result<ThesisFigures> live_run(const ThesisRun& run,
 Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions, Executor& executor) {
     const auto script = sim::make_scene(kThesisCourtyard, conditions.seed);
     if (!script) return script.error();
-    // Half a map length that covers the whole courtyard.
+    // Half of a map length that is large enough for the whole courtyard [m].
     constexpr double kAll_m = 90.0;
     constexpr double kHill_m = 3.0;  // higher ceiling, because the ground rises far from the path
     ScanArea area = area_around(*script, kAll_m);

@@ -19,7 +19,7 @@ struct ThesisConditions {
     Settings settings;  ///< settings of the column "ours"; `laser` is for the scans
     Machine machine;
     std::uint64_t seed = 1;
-    int max_frames = 0;  ///< frames of each recording; 0 = the whole path
+    int max_frames = 0;  ///< largest number of frames; 0 = the whole path
     std::string folder;  ///< folder of the report
 
     [[nodiscard]] std::string scan_folder(const std::string& scene) const {

@@ -21,7 +21,8 @@ namespace {
 constexpr double kOutlier =
     4.5;  // 4.5 median absolute deviations are 3 sigma of a normal distribution
 constexpr double kLeastSigma_m = 1e-4;
-/// Cells farther from the plane belong to an object, not to an uneven floor.
+/// Cells whose live height differs by more than this from the scan belong to an object, not to an
+/// uneven floor.
 constexpr double kOtherThing_m = 0.15;
 /// Diameter of an M3C2 cylinder in cells. Such a cylinder holds about a dozen cells; it needs five.
 constexpr double kCellsAcross = 4.0;

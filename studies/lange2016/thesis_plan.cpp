@@ -61,7 +61,8 @@ std::span<const ThesisDataset> thesis_datasets() {
 }
 
 std::span<const ThesisRun> thesis_runs() {
-    // Boxes that reach from before the first riser to behind the last riser, between the sides.
+    // Boxes that reach from before the first riser to behind the last riser. They lie between the
+    // two sides of the stairs.
     static constexpr BoxText kDemo = {"stair_x_m - 1", "-0.5", "stair_x_m + 3 * 0.31 + 0.5", "0.5"};
     static constexpr BoxText kFlight = {
         "stair_x_m - 1", "-0.5", "stair_x_m + 19 * going_m + landing_m + 0.4", "0.5"};
@@ -163,7 +164,7 @@ std::span<const ThesisRun> thesis_runs() {
          kLarge},
         {"interface_rex",
          "Fig. 9.16",
-         "Up to a table, round, and backwards to it, REX",
+         "Walk to a table, turn round, walk backwards to the table, REX",
          "thesis_h_hall_table",
          "rex",
          4,
@@ -352,7 +353,7 @@ std::span<const ThesisRow> thesis_rows() {
          "large_flight_hand",
          "going_m",
          length_m,
-         "275 +- 25; its laser 285 +- 5",
+         "275 +- 25; laser: 285 +- 5",
          "going_m",
          "",
          "flight_going_m"},

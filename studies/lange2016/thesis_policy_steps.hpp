@@ -9,8 +9,8 @@
 
 namespace surefoot::app {
 
-/// Step query of the reference thesis (Lange 2016; surefoot/eval/maps/thesis_policy) for a movement
-/// of a machine at a pose in the frame of the map.
+/// Returns true if the reference thesis (Lange 2016; surefoot/eval/maps/thesis_policy) allows a
+/// movement of the machine at a pose in the frame of the map.
 [[nodiscard]] bool thesis_allows(const Machine& machine,
                                  const grid::GridGeometry& geometry,
                                  ImageView<const float> rating,

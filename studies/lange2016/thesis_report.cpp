@@ -82,14 +82,15 @@ std::vector<eval::ReportPicture> pictures_of(const ThesisRun& run,
     const std::pair<std::string, std::string> files[] = {
         {ours + "/camera.png", "last camera image"},
         {ours + "/scan_elevation.png", "laser scan, in the same cells"},
-        {ours + "/elevation.png", "ours"},
+        {ours + "/elevation.png", "Surefoot"},
         {thesis + "/elevation.png", "settings of the reference thesis"},
         {ours + "/scan_traversability.png", "laser scan, rated by the same filters"},
-        {ours + "/traversability.png", "ours"},
+        {ours + "/traversability.png", "Surefoot"},
         {thesis + "/traversability.png", "settings of the reference thesis"},
-        {ours + "/m3c2.png", "ours: red = the truth lies higher, blue = lower"},
+        {ours + "/m3c2.png",
+         "Surefoot: red = the truth is higher than the live map, blue = the truth is lower"},
         {thesis + "/m3c2.png", "settings of the reference thesis"},
-        {ours + "/confusion.png", "ours"},
+        {ours + "/confusion.png", "Surefoot"},
         {thesis + "/confusion.png", "settings of the reference thesis"},
     };
     std::vector<eval::ReportPicture> pictures;
@@ -103,7 +104,8 @@ std::vector<eval::ReportPicture> pictures_of(const ThesisRun& run,
 eval::ReportTable rows_table(const std::vector<FilledRow>& rows, const std::string& group) {
     eval::ReportTable table;
     table.title = group;
-    table.header = {"", "reference thesis", "thesis settings", "ours", "laser scan", "exact"};
+    table.header = {
+        "figure", "reference thesis", "thesis settings", "Surefoot", "laser scan", "exact"};
     table.wide = true;
     for (const FilledRow& filled : rows) {
         if (filled.row.group != group) continue;
@@ -121,17 +123,18 @@ eval::ReportTable rows_table(const std::vector<FilledRow>& rows, const std::stri
 eval::ReportTable dataset_table(const std::vector<DatasetFigures>& datasets) {
     eval::ReportTable table;
     table.title = "The 13 sites of the reference thesis (Table 8.2), rebuilt as scenes";
-    table.header = {"",
+    table.header = {"letter",
                     "reference thesis",
-                    "size [m]",
-                    "million points",
+                    "size in the thesis [m]",
+                    "million points in the thesis",
                     "scene",
-                    "size [m]",
+                    "size of the scene [m]",
                     "objects",
-                    "stations",
-                    "million points"};
+                    "scanner stations",
+                    "million points of the scene"};
     table.hint =
-        "The number of points is that of a scan at full resolution, estimated from a coarse scan.";
+        "The number of points of a scene holds for a scan at full resolution. It is estimated from "
+        "a coarse scan.";
     table.wide = true;
     for (const DatasetFigures& d : datasets) {
         table.rows.push_back({d.of.label,
@@ -226,10 +229,10 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
             const auto svg = io::read_file(conditions.run_folder(run, column) + "/heights.svg");
             if (!svg || svg->empty()) continue;
             page.plots.push_back(
-                {fmt::format(
-                     "{}, {}",
-                     run.title,
-                     column == ThesisColumn::ours ? "ours" : "settings of the reference thesis"),
+                {fmt::format("{}, {}",
+                             run.title,
+                             column == ThesisColumn::ours ? "Surefoot"
+                                                          : "settings of the reference thesis"),
                  *svg});
         }
         const auto svg = io::read_file(conditions.scan_folder(run.scene) + "/heights.svg");
@@ -237,7 +240,7 @@ std::string thesis_html(const ThesisResults& results, const ThesisConditions& co
             page.plots.push_back({fmt::format("{}: laser scan", run.title), *svg});
     }
     page.plots_title = "Heights of the stairs";
-    page.details_title = "Reference thesis, thesis settings, ours, truth";
+    page.details_title = "Reference thesis, thesis settings, Surefoot, laser scan, exact";
     for (const std::string& group : groups_of(rows)) page.tables.push_back(rows_table(rows, group));
     page.tables.push_back(dataset_table(results.datasets));
     page.reasons = results.failures;
@@ -318,7 +321,7 @@ void print_thesis(const ThesisResults& results, const ThesisConditions& conditio
                    "",
                    "reference thesis",
                    "thesis settings",
-                   "ours",
+                   "Surefoot",
                    "laser scan",
                    "exact");
         for (const FilledRow& f : rows) {

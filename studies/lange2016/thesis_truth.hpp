@@ -17,15 +17,15 @@ namespace surefoot::app {
 struct ScanArea {
     Eigen::Vector2d low_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
-    double ceiling_m = 0.0;    ///< points above it are left out, as by the filter of the map
+    double ceiling_m = 0.0;    ///< higher points are left out, as in the filter of the map
     double farthest_m = 15.0;  ///< largest distance of a used station from the area
 };
 /// Returns the area that the map of a run may cover: points within half a map length of the path.
 [[nodiscard]] ScanArea area_around(const sim::ScriptedScene& script, double half_map_m);
 
 /// Laser scan of a place, processed as in chapter 8 of the reference thesis (Lange 2016). Steps:
-/// remove stray points of each station; register stations; thin to 1 mm; remove outliers (7 points
-/// including the point itself, 4 sigma); compute heights on a grid.
+/// remove stray points of each station; place the stations by their true poses; thin to 1 mm;
+/// remove outliers (7 points including the point itself, 4 sigma); compute heights on a grid.
 struct ScannedPlace {
     std::vector<Eigen::Vector3f> points_m;  ///< points without outliers, in world coordinates
     grid::GridGeometry geometry;

@@ -122,8 +122,8 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     area.active = true;
     area.center_x_tenth_mm = query.x_tenth_mm;
     area.center_y_tenth_mm = query.y_tenth_mm;
-    // Only cells that lie wholly inside the area count, so the radius is one cell diagonal larger
-    // than the reach of the feet.
+    // Only cells that lie wholly inside the area count. So the radius exceeds the reach of the feet
+    // by 1.5 cells, which is more than a cell diagonal.
     const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
     // in range: at most limit_m, or what the feet of a machine reach
     area.radius_tenth_mm = static_cast<std::int32_t>(
@@ -133,12 +133,12 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty())
         area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);
-    assumed.push_back(
-        fmt::format("start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link "
-                    "wherever no ground was measured",
-                    kTenthMm_m * area.height_tenth_mm,
-                    heights.empty() ? "the ground plane of odom" : "from the cells around it",
-                    kTenthMm_m * area.radius_tenth_mm));
+    assumed.push_back(fmt::format(
+        "start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link "
+        "wherever no ground was measured",
+        kTenthMm_m * area.height_tenth_mm,
+        heights.empty() ? "the ground plane of odom" : "from the measured cells around base_link",
+        kTenthMm_m * area.radius_tenth_mm));
     return area;
 }
 

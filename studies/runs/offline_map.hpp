@@ -22,17 +22,17 @@ struct OfflineMap {
 /// Reads map.snapshot of a run. Without this file, reads elevation.asc and variance.asc.
 [[nodiscard]] Result<OfflineMap> load_offline_map(const std::string& folder);
 
-/// Makes an operator attestation for the ground around base_link, at the height of the known cells
-/// there. A negative radius selects the reach of the standing feet. Adds a sentence to `assumed`.
-/// Returns a usage error if the radius exceeds the limit of the machine file.
+/// Makes an operator attestation for the ground around base_link, at the lower quartile of the
+/// known heights there. A negative radius selects the reach of the standing feet. Adds a sentence
+/// to `assumed`. Returns a usage error if the radius exceeds the limit of the machine file.
 [[nodiscard]] Result<gate::AttestedArea> attest_start(const Machine& machine,
                                                       const gate::Query& query,
                                                       const grid::MapSnapshot& map,
                                                       double radius_m,
                                                       std::vector<std::string>& assumed);
 
-/// Returns the inputs of the gate besides map and query when the gate runs offline. The gate state
-/// is `ready`. The time is the latest stamp of the map, so an old depth frame still counts as old.
+/// Inputs of the gate besides map and query when the gate runs offline. The gate state is `ready`.
+/// The time is the latest stamp of the map, so an old depth frame still counts as old.
 struct OfflineMoment {
     gate::GateHealth health{gate::GateState::ready, {}};
     std::int64_t now_ns = 0;

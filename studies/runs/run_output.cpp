@@ -129,7 +129,7 @@ std::optional<std::string> beyond_the_map(const RunRecord& record,
     if (!nearest_m || *nearest_m < 0.5 * length_m) return std::nullopt;
     return fmt::format(
         "the nearest visible point is {:.1f} m from base_link, but the map ends at {:.1f} m, so no "
-        "pixel falls into it; raise elevation.length_m ({:g}) above {:.0f}",
+        "pixel falls into it; raise elevation.length_m ({:g} m) above {:.0f} m",
         *nearest_m,
         0.5 * length_m,
         length_m,
@@ -243,11 +243,13 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
             lost,
             record.frames.size());
     }
-    if (f.points == 0) return "no frame had any depth; see the counts of each frame";
+    if (f.points == 0)
+        return "no frame had any depth; check depth_pixels and camera of each frame (per_frame in "
+               "report.json)";
     if (const auto reason = beyond_the_map(record, pipeline)) return *reason;
     const std::pair<std::int64_t, std::string> causes[] = {
         {f.outside,
-         fmt::format("are outside the map (elevation.length_m = {:g}, centred on base_link)",
+         fmt::format("are outside the map (elevation.length_m = {:g} m, centred on base_link)",
                      config.length_m)},
         {f.gated_range, "are nearer or farther than elevation.prefilter allows"},
         {f.gated_height, "are above or below the height cut of elevation.prefilter"},

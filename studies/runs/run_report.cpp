@@ -137,7 +137,7 @@ eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
 }
 
 eval::ReportTable configuration_table(const Settings& settings) {
-    eval::ReportTable table{"Configuration that the run used", {"key", "value", "what"}, {}};
+    eval::ReportTable table{"Configuration that the run used", {"key", "value", "meaning"}, {}};
     for (const auto& entry : io::list_config_of(settings))
         table.rows.push_back({entry.key, entry.value, entry.comment});
     return table;

@@ -43,10 +43,11 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
         process_all(label, after_frame);
     } catch (const std::exception& error) {
         // A library may throw, for example when memory is exhausted. The results so far are kept.
-        record_.error = input_error(fmt::format("{}: after {} frames: {}; the results are kept",
-                                                record_.source.path,
-                                                record_.frames.size(),
-                                                error.what()));
+        record_.error = input_error(
+            fmt::format("{}: the run ended after {} frames: {}; the results up to here are kept",
+                        record_.source.path,
+                        record_.frames.size(),
+                        error.what()));
     }
     record_.source.broken = source_.info().broken;
     if (record_.frames.empty() && !record_.error) {

@@ -24,7 +24,7 @@ struct RunRecord {
     std::vector<FrameReport> frames;
     FusionCounts fusion;             ///< sums over all frames
     FrameStatusCounts frame_status;  ///< sums over all frames
-    /// Frames skipped before the first of `frames`, see pipeline/start.hpp.
+    /// Number of frames skipped before the first of `frames`, see pipeline/start.hpp.
     int waited_frames = 0;
     std::optional<Error> error;  ///< reason why the run ended early
     GreyImage last_left;         ///< last rectified left image, for the report

@@ -47,8 +47,8 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
 
 /// Resamples the exact depth of a raw left image without distortion for the rectified camera. This
 /// camera is slightly rotated if the rig differs from the rig of the scene. The depth is along the
-/// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for a lens with
-/// distortion.
+/// optical axis of the rectified camera and comes from the nearest raw pixel. Empty for another
+/// lens model, or if the images differ in size.
 Image<float> seen_by(const camera::RectifiedRig& rig,
                      const camera::StereoRig& raw_rig,
                      const Image<float>& raw_m) {

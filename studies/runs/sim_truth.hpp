@@ -16,7 +16,7 @@ namespace surefoot::app {
 /// Errors of the reported depth. Counts only pixels with a low outlier probability.
 struct DepthFigures {
     std::int64_t pixels = 0;
-    double within_3_sigma = 0.0;  ///< share of pixels with |error| <= 3 sigma_z
+    double within_3_sigma = 0.0;  ///< share of pixels with |disparity error| <= 3 sigma
     double within_1_sigma = 0.0;
     double median_abs_error_px = 0.0;  ///< median |disparity error|
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m depth
@@ -69,7 +69,7 @@ class SimTruth {
     std::int64_t within_1_sigma_ = 0;
     RangeMean near_;
     RangeMean far_;
-    /// 0.01 px bins.
+    /// Number of errors in each bin of 0.01 px. The last bin also counts all larger errors.
     std::vector<std::int64_t> error_histogram_ = std::vector<std::int64_t>(400, 0);
 };
 

@@ -49,9 +49,9 @@ struct ListedFeatures {
 };
 
 /// Reads stairs.json or a hand-written file of true features. Each object needs `pose` (edges:
-/// `from` and `to`). Objects with a kind or a number of steps need `kind` or `steps`. Other numbers
-/// may be missing or null and become NaN. Input errors name the file, the position and the problem.
-/// A file without any list is an input error.
+/// `from` and `to`). Flights and kerbs also need `kind`, flights need `steps`. Other numbers may be
+/// missing or null and become NaN. Input errors name the file, the position and the problem. A file
+/// without any list is an input error.
 [[nodiscard]] Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& file);
 
 /// Returns the result of `surefoot eval stairs`. `lists` names the compared lists; others are null.

@@ -83,16 +83,16 @@ Row line_row(const char* what, const stairs::LineFeature& line) {
 }
 
 Row door_row(const stairs::Door& door) {
-    return {
-        "door",
-        "",
-        "",
-        length_text(door.width_m, door.width_sigma_m),
-        place_text(door.pose),
-        fmt::format("sill {}, {}",
-                    length_text(door.sill_m, door.sill_sigma_m),
-                    std::isfinite(door.clearance_m) ? fmt::format("{:.2f} m high", door.clearance_m)
-                                                    : "no ceiling seen above the door")};
+    return {"door",
+            "",
+            "",
+            length_text(door.width_m, door.width_sigma_m),
+            place_text(door.pose),
+            fmt::format("sill {}, {}",
+                        length_text(door.sill_m, door.sill_sigma_m),
+                        std::isfinite(door.clearance_m)
+                            ? fmt::format("clear height {:.2f} m", door.clearance_m)
+                            : "no ceiling seen above the door")};
 }
 
 std::vector<Row> rows_of(const stairs::TerrainFeatures& features) {
@@ -141,8 +141,12 @@ std::string features_text(const stairs::TerrainFeatures& features) {
 eval::ReportTable features_table(const stairs::TerrainFeatures& features) {
     eval::ReportTable table;
     table.title = "Flights, drops, kerbs, sills and doors, seen from the position of the machine";
-    table.header = {
-        "what", "riser, height or depth", "going", "width", "position, walking direction", ""};
+    table.header = {"feature",
+                    "riser, height or depth",
+                    "going",
+                    "width",
+                    "position, walking direction",
+                    "remarks"};
     table.wide = true;
     for (const Row& row : rows_of(features))
         table.rows.push_back({row.what, row.height, row.going, row.width, row.place, row.remarks});

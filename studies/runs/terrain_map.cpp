@@ -83,20 +83,21 @@ Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry
     const grid::GridGeometry& g = dem->geometry;
     if (g.nx != geometry.nx || g.ny != geometry.ny || g.resolution_m != geometry.resolution_m ||
         g.origin_m != geometry.origin_m) {
-        return input_error(fmt::format(
-            "{}: {} x {} cells of {:g} m from ({:g}, {:g}), but elevation.asc in the same folder "
-            "has {} x {} of {:g} m from ({:g}, {:g}); give the files of one run",
-            file,
-            g.nx,
-            g.ny,
-            g.resolution_m,
-            g.origin_m.x(),
-            g.origin_m.y(),
-            geometry.nx,
-            geometry.ny,
-            geometry.resolution_m,
-            geometry.origin_m.x(),
-            geometry.origin_m.y()));
+        return input_error(
+            fmt::format("{}: the layer has {} x {} cells of {:g} m from ({:g}, {:g}), but the "
+                        "height map in the same folder has {} x {} cells of {:g} m from ({:g}, "
+                        "{:g}); give the files of one run",
+                        file,
+                        g.nx,
+                        g.ny,
+                        g.resolution_m,
+                        g.origin_m.x(),
+                        g.origin_m.y(),
+                        geometry.nx,
+                        geometry.ny,
+                        geometry.resolution_m,
+                        geometry.origin_m.x(),
+                        geometry.origin_m.y()));
     }
     return std::move(dem->values);
 }
@@ -148,10 +149,10 @@ Result<TerrainMap> from_folder(const std::string& folder) {
     const std::string height_file =
         io::is_file(ground_file) ? ground_file : io::join_path(folder, "elevation.asc");
     if (!io::is_file(height_file)) {
-        return input_error(
-            fmt::format("{}: the folder has no elevation.asc; give the output folder of 'surefoot "
-                        "run', or a height map: .asc, .png, .ply, .pcd or .xyz",
-                        folder));
+        return input_error(fmt::format(
+            "{}: the folder has no elevation.asc; give the output folder of 'surefoot run', or a "
+            "height map (.asc or .png), or a point cloud (PLY, PCD, LAS, VTK or XYZ)",
+            folder));
     }
     auto height = io::read_height_grid(height_file);
     if (!height) return height.error();

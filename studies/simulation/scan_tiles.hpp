@@ -19,7 +19,7 @@ struct ScanOrigin {
     std::string scene;
     std::uint64_t seed = 0;
     std::vector<Eigen::Vector3d> stations_m;
-    bool complete = true;  ///< false = the user interrupted the scan
+    bool complete = true;  ///< false = an error or the user ended the scan early
 };
 
 /// Writes a scan as a folder of square tiles. "tile_X_Y.ply" holds the points with x from X to X +

@@ -111,7 +111,7 @@ eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
         "Share of the clearly safe movements at the end of the path whose verdict names this "
         "reason. A verdict can name several reasons.";
     table.wide = true;
-    table.header = {"scene", "noise", "cases", "safe", "allowed"};
+    table.header = {"scene", "noise", "cases", "safe movements", "allowed"};
     for (const std::string& reason : reasons) table.header.push_back(words_of(reason));
     for (const auto& [key, pool] : rows) {
         const auto& [scene, noise] = key;
@@ -149,7 +149,7 @@ eval::ReportTable step_table(std::span<const SuiteResult> results) {
     table.title =
         "Every step that a walking user requested, and the verdict of the gate just before it";
     table.header = {
-        "case", "step", "s", "command", "truth", "dangers", "gate", "reasons of the gate"};
+        "case", "step", "time [s]", "command", "truth", "dangers", "gate", "reasons of the gate"};
     table.hint =
         "The gate is asked with the map and the pose of that moment. An operator attestation "
         "covers the level ground around the start.";

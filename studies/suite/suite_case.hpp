@@ -41,8 +41,8 @@ struct SuiteCase {
 /// Unit in which reports show a figure. Files hold SI units, and shares as fractions of 1.
 enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
 
-/// A figure that every case measures. `SuiteResult::figures` has the same order. `lower_is_better`
-/// decides which case is the worst.
+/// A figure of the suite. `SuiteResult::figures` has one value for each entry of suite_figures(),
+/// in the same order. `lower_is_better` decides which case is the worst.
 struct SuiteFigure {
     const char* name;
     const char* group;  ///< table of the report that contains this figure
@@ -66,15 +66,15 @@ struct SuiteResult {
     [[nodiscard]] double figure(std::string_view name) const;
 };
 
-/// Whether case a is worse than case b: by missed hazards, then unsafe cells rated safe, then
-/// height errors, then name.
+/// Returns true if case a is worse than case b: by missed hazards, then by unsafe cells rated safe,
+/// then by height errors, then by name.
 [[nodiscard]] bool is_worse(const SuiteResult& a, const SuiteResult& b);
 
 /// Conditions that all cases of a suite share.
 struct SuiteConditions {
     Settings settings;
     Machine machine;
-    double reach_m = 0.8;  ///< largest distance from the last pose in a question [m]
+    double reach_m = 0.8;  ///< largest distance of a queried pose from the last pose [m]
 };
 
 /// Simulates the case, runs the whole pipeline and compares the results with the truth, without

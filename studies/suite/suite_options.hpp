@@ -21,7 +21,7 @@ struct EvalSuiteOptions {
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera
     bool quick = false;
     int frames = 0;        ///< largest number of frames of each case; 0 = the whole path
-    double reach_m = 0.8;  ///< largest distance from the last pose in a question [m]
+    double reach_m = 0.8;  ///< largest distance of a queried pose from the last pose [m]
     bool thesis = false;   ///< true: run the experiments of the reference thesis (Lange 2016)
     std::vector<std::string> runs;  ///< names of thesis experiments; empty = all
 };

@@ -76,7 +76,7 @@ Status check_name(const std::string& name) {
     if (listed || is_scene_file(name)) return {};
     const std::string likely = did_you_mean(name, names_of(known));
     return usage_error(
-        fmt::format("--scenes {}: there is no such scene{} 'surefoot sim --list' shows them",
+        fmt::format("--scenes {}: there is no such scene{} 'surefoot sim --list' shows all scenes",
                     name,
                     likely.empty() ? ";" : likely));
 }
@@ -110,7 +110,8 @@ Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
     for (const std::string& name : chosen_names(options)) {
         if (auto status = check_name(name); !status) return status.error();
         if (!names.insert(name).second)
-            return usage_error(fmt::format("--scenes: {} is given twice", name));
+            return usage_error(
+                fmt::format("--scenes: {} is given twice; give each scene once", name));
         if (auto status = add_motion_models(name, options, scenes); !status) return status.error();
     }
     if (scenes.empty())
@@ -126,7 +127,8 @@ Status check_noise(const std::vector<double>& factors) {
         if (std::find(factors.begin(),
                       factors.begin() + static_cast<std::ptrdiff_t>(i),
                       factors[i]) != factors.begin() + static_cast<std::ptrdiff_t>(i))
-            return usage_error(fmt::format("--noise: {:g} is given twice", factors[i]));
+            return usage_error(
+                fmt::format("--noise: {:g} is given twice; give each factor once", factors[i]));
     }
     return {};
 }

@@ -30,7 +30,7 @@ class SuiteProgress {
 };
 
 /// Returns the remaining time, for example "about 2 h 5 min left". The number of frames gives the
-/// estimate. Empty before any frame is done.
+/// estimate. Empty before the first frame is done and after the last.
 [[nodiscard]] std::string time_left(std::int64_t done_frames,
                                     std::int64_t frames,
                                     double elapsed_s);

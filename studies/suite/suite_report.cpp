@@ -53,7 +53,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// Returns the median over the cases of a row, and the worst case if there are several cases.
+/// Returns the median over the cases of a row, and the worst value if there are several cases.
 std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
     const FigureKind kind = suite_figures()[figure].kind;
     const std::string median = shown(kind, row.median[figure]);
@@ -137,7 +137,7 @@ eval::ReportTable motion_model_table(std::span<const SuiteResult> results) {
                                              "steps_allowed"};
     eval::ReportTable table;
     table.title = "Figures by motion model";
-    table.hint = "Median of all cases; the worst case in brackets.";
+    table.hint = "Median of all cases; the worst value in brackets.";
     table.wide = true;
     table.header = {"motion model", "noise", "cases"};
     std::vector<std::size_t> columns;
@@ -196,7 +196,8 @@ std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fe
 /// The tables show all bins.
 constexpr std::int64_t kFewestCells = 100;
 
-/// Returns the largest value over all noise levels, so that their plots share one scale.
+/// Returns the largest value over all noise levels plus 10 %, so that the plots of all noise levels
+/// share one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {
@@ -228,16 +229,23 @@ eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double hi
                kMillimetres * bin.errors.percentile(0.5),
                kMillimetres * bin.errors.percentile(view.tail));
     }
-    return {
-        fmt::format("{}, noise {}", view.title, times(level.noise)),
-        eval::bin_plot_svg(plot),
-        fmt::format("All scenes, {} cases; bins of {} cells or more.", level.cases, kFewestCells)};
+    return {fmt::format("{}, noise {}", view.title, times(level.noise)),
+            eval::bin_plot_svg(plot),
+            fmt::format("All scenes, {} cases. The plot shows only bins with {} cells or more.",
+                        level.cases,
+                        kFewestCells)};
 }
 
 eval::ReportTable bin_table(std::span<const NoiseBins> levels, const BinView& view) {
     eval::ReportTable table;
     table.title = fmt::format("{} [{}]", view.title, unit_of(view.key));
-    table.header = {"noise", "from", "to", "cells", "median [mm]", "90 % [mm]", "99 % [mm]"};
+    table.header = {"noise",
+                    "from",
+                    "to",
+                    "cells",
+                    "median [mm]",
+                    "90th percentile [mm]",
+                    "99th percentile [mm]"};
     for (const NoiseBins& level : levels) {
         for (const SuiteBin& bin : of_key(level, view.key)) {
             const auto percentile = [&](double fraction) {
@@ -266,7 +274,7 @@ std::vector<eval::ReportTable> group_tables(std::span<const SuiteRow> rows) {
             eval::ReportTable table;
             table.title = all[i].group;
             table.header = {"scene", "motion model", "noise", "cases"};
-            table.hint = "Median of the seeds; the worst seed in brackets.";
+            table.hint = "Median of the seeds; the worst value in brackets.";
             table.wide = true;
             for (const SuiteRow& row : rows) {
                 table.rows.push_back(
@@ -339,8 +347,8 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
     eval::ReportContent content;
     content.title = "Surefoot compared with the truth";
     content.summary = {
-        fmt::format("{} simulated runs of the whole chain, in {} rows of scene and noise. The maps "
-                    "are not aligned to the truth before the comparison.",
+        fmt::format("{} simulated runs of the whole chain, in {} rows of scene, motion model and "
+                    "noise. The maps are not aligned to the truth before the comparison.",
                     results.size(),
                     rows.size()),
         "Seeds from 10000 on were never used during development.",

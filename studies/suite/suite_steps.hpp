@@ -21,7 +21,7 @@ struct SuiteStep {
     int number = 0;  ///< number of the step on the path, from 1
     double time_s = 0.0;
     int command = 0;
-    bool safe = false;       ///< true answer
+    bool safe = false;       ///< true = the step is truly safe
     bool clear_cut = false;  ///< the truth holds by more than sim::SafetyMargin
     std::string dangers;     ///< dangers of the step, joined by '|'; empty if safe
     std::string decision;    ///< "OK", "NOT_TRAVERSABLE" or "ERROR"

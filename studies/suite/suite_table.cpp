@@ -184,8 +184,8 @@ struct LineFile {
         }
         if (!text.empty() && !text.starts_with(head)) {
             return usage_error(
-                fmt::format("{}: made with other settings or by another version; give a new --out "
-                            "folder, or remove this one",
+                fmt::format("{}: this file was made with other settings or by another version; "
+                            "give a new --out folder, or remove the old folder",
                             path));
         }
         std::string kept = head;

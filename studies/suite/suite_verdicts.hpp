@@ -38,7 +38,7 @@ enum class TallyKey : std::uint8_t {
 };
 inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger"};
 
-/// How often one name occurs in wrong verdicts.
+/// Numbers of wrong verdicts with one name.
 struct VerdictTally {
     TallyKey by = TallyKey::reason;
     std::string name;
@@ -71,8 +71,8 @@ struct AroundAnswers {
     std::vector<std::string> missed;  ///< one sentence for each clear-cut missed hazard
 };
 
-/// Asks the gate about every movement of the machine at its present pose and at reachable poses
-/// around it. These poses are 0.2 m apart, within `reach_m`, with the present yaw. An operator
+/// Asks the gate about every movement of the machine at its present pose and at poses around it,
+/// where the machine can stand: 0.2 m apart, within `reach_m`, with the present yaw. An operator
 /// attestation covers unmeasured ground under the standing feet, as in attest_start().
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const Pose& T_world_body_true,

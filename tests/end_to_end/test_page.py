@@ -344,7 +344,7 @@ class LivePage(PageTest):
 
     def test_who_sends_nonsense_is_told_and_let_go(self):
         for text, words in ((b"{", "JSON"), (b"[]", "object"), (b'{"op":"fly"}', "no operation 'fly'"),
-                            (b'{"op":"want","layers":["gold"]}', "there is no 'gold'"), (b'{"op":"want","map_hz":"fast"}', "map_hz")):
+                            (b'{"op":"want","layers":["gold"]}', "there is no layer 'gold'"), (b'{"op":"want","map_hz":"fast"}', "map_hz")):
             page = self.page()
             page.send(1, text)
             page.listen(3.0)

@@ -205,7 +205,7 @@ class Stairs(CliTest):
         row = write_grid(self.dir / "row.asc", lambda ix, iy: 0.0, nx=9, ny=1)
         self.assertIn("9 x 1 cells", self.fails(1, row))
         (self.dir / "grey.png").write_bytes(png_of([[7] * 9] * 9))
-        self.assertIn("needs --scale (m per pixel) and --height", self.fails(2, self.dir / "grey.png"))
+        self.assertIn("needs --scale (side of a pixel, in m) and --height", self.fails(2, self.dir / "grey.png"))
         self.assertIn("--scale", self.fails(2, self.dir / "grey.png", "--scale", 0.02))
         self.assertIn("has no elevation.asc", self.fails(1, self.dir))
         (self.dir / "empty.xyz").write_text("# nothing\n")
@@ -213,7 +213,7 @@ class Stairs(CliTest):
         flat = write_grid(self.dir / "flat.asc", lambda ix, iy: 0.0, nx=40, ny=40)
         self.assertIn("outside the map, which extends from (0, 0) to (1, 1) m", self.fails(2, flat, "--from", "3,0"))
         for wrong in ("1", "1,2,3", "a,b", "nan,0"):
-            self.assertIn("two finite numbers x,y (m)", self.fails(2, flat, "--from", wrong))
+            self.assertIn("two finite numbers separated by commas: x,y (m)", self.fails(2, flat, "--from", wrong))
         self.assertIn("stairs.min_riser_m", self.fails(2, flat, "--set", "stairs.min_riser_m=0.5"))
         (self.dir / "file").write_text("x")
         self.assertIn("file", self.fails(1, flat, "--out", self.dir / "file"))
@@ -223,7 +223,7 @@ class Stairs(CliTest):
         folder.mkdir()
         write_grid(folder / "elevation.asc", lambda ix, iy: 0.0, nx=40, ny=40)
         write_grid(folder / "variance.asc", lambda ix, iy: 1e-6, nx=40, ny=41)
-        self.assertRegex(self.fails(1, folder), r"variance\.asc: 40 x 41 cells .* elevation\.asc in the same folder has 40 x 40")
+        self.assertRegex(self.fails(1, folder), r"variance\.asc: the layer has 40 x 41 cells .* height map in the same folder has 40 x 40")
 
     def test_what_a_folder_lacks_is_assumed(self):
         folder = self.dir / "run"

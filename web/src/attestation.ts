@@ -23,7 +23,8 @@ const kTenthMm_m = 1e-4;
 
 const tenthMm = (value_m: number) => Math.round(value_m / kTenthMm_m);
 
-/// The least radius [0.1 mm] that holds both soles: `least_attested_radius_sq` of surefoot/gate/attestation.cpp.
+/// Returns the smallest radius [0.1 mm] that contains both soles. Same rule as `least_attested_radius_sq` in
+/// surefoot/gate/attestation.cpp.
 function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
   const reach = (center_m: number, size_m: number) =>
     Math.abs(tenthMm(center_m)) + Math.floor((tenthMm(size_m) + 1) / 2);
@@ -80,7 +81,8 @@ export function attestedWords(area: AttestedArea | undefined): string {
   return `in force: radius ${radius_m.toFixed(2)} m at x ${x_m.toFixed(2)} m, y ${y_m.toFixed(2)} m`;
 }
 
-/// Whether a cell lies wholly inside the area: `is_attested` of surefoot/gate/ground.cpp. x and y: its corner.
+/// Returns true if a cell lies wholly inside the area. Same rule as `Ground::is_attested` in surefoot/gate/ground.cpp.
+/// x_m and y_m are the lower corner of the cell, side_m is its side.
 export function isCellAttested(area: AttestedArea, x_m: number, y_m: number, side_m: number): boolean {
   const far = (low_m: number) => Math.max(Math.abs(low_m), Math.abs(low_m + side_m));
   const far_x_m = far(x_m - area.x_m);

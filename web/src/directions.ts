@@ -22,8 +22,8 @@ export interface Direction {
   turn: -1 | 0 | 1; ///< 1 = to the left
 }
 
-/// Outer ring of the joystick. 9 is ahead; the codes continue clockwise in steps of 22.5 degrees. 25 and 26 turn. The
-/// order is the one in which people read the directions: ahead first.
+/// Every second code of the outer ring of the joystick, and the two turns. Code 9 is ahead; the codes of the ring
+/// continue clockwise in steps of 22.5 degrees. The order is the one in which people read the directions: ahead first.
 export const kDirections: readonly Direction[] = [
   { code: 9, words: "ahead", angle_deg: 0, turn: 0 },
   { code: 23, words: "ahead left", angle_deg: -45, turn: 0 },
@@ -75,13 +75,14 @@ export function signOf(
   return sign("cannot", verdict.text || "the gate cannot judge");
 }
 
-/// Returns the outlook if it belongs to the present state of the gate (docs/reference/rosbridge.md).
+/// Returns the outlook if it belongs to `state`, the present state of the gate (docs/reference/rosbridge.md), or if
+/// that state is not known.
 export function ofState(outlook: Outlook | undefined, state: string | undefined): Outlook | undefined {
   return outlook && (state === undefined || outlook.state === state) ? outlook : undefined;
 }
 
 /// Returns the direction of the large sentence. It is the chosen direction. Without a choice it is ahead if ahead is
-/// not allowed, else the first direction that is not allowed, else ahead.
+/// not allowed. Else it is the first direction with the sign "no", else the first with "cannot judge", else ahead.
 export function spokenDirection(chosen: number | undefined, signs: ReadonlyMap<number, Sign>): Direction {
   const byCode = (code: number) => kDirections.find((direction) => direction.code === code);
   const wanted = chosen === undefined ? undefined : byCode(chosen);

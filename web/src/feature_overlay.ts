@@ -2,7 +2,8 @@
 import { featureLabels, spreadLabels } from "./feature_words.ts";
 import type { Stairs } from "./messages.ts";
 
-/// A position of odom in a picture: x to the right, y up.
+/// Position and scale of a picture from above, in odom. The origin is its lower left corner; x points to the right, y
+/// up.
 export interface PictureFrame {
   origin_x_m: number;
   origin_y_m: number;
@@ -39,7 +40,7 @@ function drawEdges(context: CanvasRenderingContext2D, stairs: Stairs, at: At, un
     if (length === 0) continue;
     path.moveTo(ax, ay);
     path.lineTo(bx, by);
-    // The lower ground is on the right hand; pictures count y downwards.
+    // The lower ground is on the right of the way from `from` to `to`. Pictures count y downwards.
     const [tx, ty] = [(-(by - ay) / length) * 6 * unit_px, ((bx - ax) / length) * 6 * unit_px];
     const ticks = Math.max(1, Math.round(length / (14 * unit_px)));
     for (let i = 0; i < ticks; ++i) {

@@ -23,7 +23,7 @@ export class FeatureTable {
     this.#rows.replaceChildren(...rows.flatMap((row) => this.#rowsOf(row)));
   }
 
-  /// Remarks have their own row.
+  /// Returns the row of a feature, and a second row if it has remarks.
   #rowsOf({ what, remarks, ...cells }: FeatureRow): HTMLTableRowElement[] {
     const tds = Object.values(cells).map((text) => make("td", { text }));
     const row = make("tr", {}, make("th", { scope: "row", text: what }), ...tds);

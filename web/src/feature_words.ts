@@ -4,7 +4,7 @@ import type { Place } from "./store.ts";
 
 /// Texts about stairs, drops, kerbs, sills and doors for tables, labels and sentences. Uses no browser.
 
-/// Returns a text such as "180 ± 2 mm". A sigma below 1 mm gets one more digit.
+/// Returns a text such as "180 ± 2 mm". With a sigma below 1 mm, both numbers get one decimal.
 export function millimetres(value_m: number | null, sigma_m?: number | null): string {
   if (value_m === null) return "-";
   const fine = sigma_m != null && sigma_m < 0.001;
@@ -46,7 +46,7 @@ function placeWords([x_m, y_m, , yaw_rad]: Feature["pose"]): string {
   return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m; ${((yaw_rad * 180) / Math.PI).toFixed(0)}°`;
 }
 
-/// Returns when a feature was last seen. `passed_s` is the time since the message [s].
+/// Returns a text such as "3 s ago, 5 observations". `passed_s` is the time since the message [s].
 function seenWords({ observations, last_seen_s }: Feature, passed_s: number): string {
   if (observations === undefined || last_seen_s === undefined) return "-";
   const ago_s = Math.max(0, last_seen_s + passed_s);
@@ -87,7 +87,7 @@ function lineRow(what: string, line: LineFeature, passed_s: number): FeatureRow 
 }
 
 function doorRow(door: Door, passed_s: number): FeatureRow {
-  const above = door.clearance_m === null ? "nothing seen above it" : `${metres(door.clearance_m)} high`;
+  const above = door.clearance_m === null ? "nothing seen above the door" : `clear height ${metres(door.clearance_m)}`;
   return {
     what: "door",
     height: millimetres(door.sill_m),
@@ -95,7 +95,7 @@ function doorRow(door: Door, passed_s: number): FeatureRow {
     width: millimetres(door.width_m, door.width_std_m),
     place: placeWords(door.pose),
     seen: seenWords(door, passed_s),
-    remarks: `the height is that of the sill; ${above}`,
+    remarks: `the column Height shows the sill; ${above}`,
   };
 }
 
@@ -155,7 +155,7 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
 /// Returns the distance from the first edge of a flight to its last edge.
 const goingLength_m = ({ steps, going_m }: Flight) => Math.max(0, steps - 1) * (going_m ?? 0);
 
-/// Whether a position lies on a flight or within 0.3 m of it. Edges there get no separate label.
+/// Returns true if a position lies on a flight or within 0.3 m of it. Edges there get no separate label.
 export function isOnFlight(flight: Flight, x_m: number, y_m: number): boolean {
   const [at_x_m, at_y_m, , yaw_rad] = flight.pose;
   if (at_x_m === null || at_y_m === null || yaw_rad === null) return false;
@@ -177,8 +177,8 @@ export function isOnSomeFlight(flights: Flight[], x_m: number | null, y_m: numbe
 const kFarthest_m = 3;
 const kWidest_rad = Math.PI / 4;
 
-/// Returns the distance from a position to the nearest point of a line; undefined if that point is not ahead. The line
-/// is perpendicular to the yaw of its pose.
+/// Returns the distance from a position to the nearest point of a line; undefined if that point is not ahead (within 45
+/// degrees of the heading and 3 m). The line is perpendicular to the yaw of its pose.
 function distanceAhead_m(pose: Feature["pose"], length_m: number | null, place: Place): number | undefined {
   const [x_m, y_m, , yaw_rad] = pose;
   if (x_m === null || y_m === null || yaw_rad === null) return undefined;
@@ -244,7 +244,7 @@ export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]
   return kept;
 }
 
-/// Moves a label down if it would cover an earlier label, and moves every label into the picture.
+/// Moves every label into the picture, and then down if it would cover an earlier label.
 export function spreadLabels<T extends LabelBox>(boxes: T[], width: number, height: number): T[] {
   const placed: T[] = [];
   for (const box of boxes) {

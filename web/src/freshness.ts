@@ -21,10 +21,10 @@ export interface Freshness {
   ground: boolean; ///< the map and the pose may be shown in colours
   verdicts: boolean; ///< the signs may be shown in colours
   banner: string; ///< text of the banner; empty = no banner
-  detail: string; ///< changes all the time, is not read aloud
+  detail: string; ///< ages and limit; changes all the time, is not read aloud
 }
 
-/// The promised limit is 1 s. One period of the page's clock (100 ms) is subtracted.
+/// Largest age of fresh data. The promised limit is 1 s. One period of the page's clock (100 ms) is subtracted.
 export const kStale_ms = 900;
 
 function younger(at_ms: number | undefined, now_ms: number): boolean {

@@ -35,7 +35,7 @@ export class GateLink {
   readonly #socket: ReconnectingSocket;
   #pending = new Map<string, (result: ActResult) => void>();
   #next_id = 1;
-  #failures = 0; ///< number of failed attempts to connect, one after the other
+  #failures = 0; ///< number of consecutive failed attempts to connect
   readonly #token: OperatorToken;
   readonly #url_token: string | null;
   readonly #heard: (verdict: GateVerdict) => void;
@@ -74,7 +74,8 @@ export class GateLink {
     });
   }
 
-  /// Connects when the service has sent the port of the gate, or connects again to another port.
+  /// Connects at once, unless the connection is already open. To be called when the service has sent the port of the
+  /// gate.
   open(): void {
     if (this.#socket.state !== "open") this.#socket.open();
   }

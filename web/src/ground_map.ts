@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { kGroundMask, kUnknownHeight, type Edge, type MapMessage } from "./messages.ts";
 
-/// The newest ground. Cell (ix, iy) is element iy * nx + ix and covers origin + i * resolution in odom.
+/// The newest map of the ground. Cell (ix, iy) is element iy * nx + ix. Its lower corner in odom is origin + (ix, iy) *
+/// resolution.
 export class GroundMap {
   version = 0n;
   frame_time_ns = 0n;
@@ -11,7 +12,7 @@ export class GroundMap {
   base_z_m = 0;
   origin_x_tenth_mm = 0n;
   origin_y_tenth_mm = 0n;
-  height_mm = new Int16Array(0); ///< height over base_z; kUnknownHeight = never measured
+  height_mm = new Int16Array(0); ///< height above base_z_m; kUnknownHeight = never measured
   sigma_mm = new Uint8Array(0);
   state = new Uint8Array(0);
   edges: Edge[] = [];

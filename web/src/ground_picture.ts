@@ -7,8 +7,8 @@ import type { GroundMap } from "./ground_map.ts";
 export const kCell_px = 4;
 
 /// Colours after Okabe and Ito. Each kind of ground also has a pattern, so that colour is never the only difference.
-/// Free ground is plain, unsafe ground has diagonal bars, unsure ground has dots, and unknown ground is a dark or pale
-/// weave without any colour.
+/// Free ground is plain, unsafe ground has diagonal bars, unsure ground has dots, and unknown ground has a dark or pale
+/// grey weave.
 export interface GroundColors {
   free: Rgb;
   unsafe: Rgb;
@@ -38,7 +38,7 @@ export const kLightColors: GroundColors = {
   attested: [0, 114, 178],
 };
 
-/// Removes the colours of old data and keeps the patterns.
+/// Returns a grey for each colour, for old data. The patterns stay.
 export function greyed(colors: GroundColors): GroundColors {
   const grey = ([r, g, b]: Rgb): Rgb => {
     const level = Math.round(0.35 * (0.3 * r + 0.59 * g + 0.11 * b) + 84);
@@ -65,8 +65,8 @@ function packed([r, g, b]: Rgb, light: number): number {
   return (255 << 24) | (part(b) << 16) | (part(g) << 8) | part(r);
 }
 
-/// Returns the light from the upper left, computed from the heights of the neighbours: 1 on level ground. Shows steps
-/// and slopes.
+/// Returns the brightness of a cell under light from the upper left, which shows steps and slopes: 0.75 to 1.25, and 1
+/// on level ground or beside unknown ground.
 function light(map: GroundMap, ix: number, iy: number): number {
   const at = (x: number, y: number) => {
     const cell = Math.max(0, Math.min(map.ny - 1, y)) * map.nx + Math.max(0, Math.min(map.nx - 1, x));
@@ -91,7 +91,8 @@ function pairOf(ground: number, colors: GroundColors): readonly [Rgb, Rgb] {
   }
 }
 
-/// Whether the pattern covers a pixel. x and y count pixels on the ground.
+/// Returns true if the pattern of a kind of ground covers a pixel. x and y are the position of the pixel on the ground
+/// [px].
 function patterned(ground: number, x: number, y: number): boolean {
   switch (ground) {
     case kGround.free:

@@ -16,7 +16,8 @@ import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
 const kRadii_m = [1.5, 2.25, 3.25, 4.5];
-/// The machine is below the middle, so that the picture shows more ground ahead than behind.
+/// Position of the machine in the picture, as a share of its height from the top. It is below the middle, so that the
+/// picture shows more ground ahead than behind.
 const kMachineAt = 0.62;
 const kSpoken: Record<SignKind, string> = {
   allowed: "#009e73",
@@ -26,11 +27,11 @@ const kSpoken: Record<SignKind, string> = {
   absent: "#8b919b",
 };
 
-/// Only flights get feature labels, because each edge is labelled with its depth.
+/// Only flights get feature labels, because the nearest edges have labels with their depth.
 const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
-/// Cells are painted pixel by pixel several times a second. With copies to a graphics card and back this would take
-/// longer, with a software renderer even seconds.
+/// Keeps a picture in main memory, because its cells are painted pixel by pixel several times a second. Copies to a
+/// graphics card and back would take longer, with a software renderer even seconds.
 const kByProcessor: CanvasRenderingContext2DSettings = { willReadFrequently: true };
 
 interface Label extends LabelBox {
@@ -101,7 +102,7 @@ export class GroundView {
     return { width, height };
   }
 
-  /// Makes drawing units metres of odom.
+  /// Sets the transformation of the canvas so that drawing units are metres in odom.
   #toOdom(place: Place, at: { x: number; y: number; scale: number }): void {
     const sin = Math.sin(place.yaw_rad) * at.scale;
     const cos = Math.cos(place.yaw_rad) * at.scale;
@@ -115,7 +116,7 @@ export class GroundView {
     );
   }
 
-  /// Makes drawing units metres of base_link.
+  /// Sets the transformation of the canvas so that drawing units are metres in base_link.
   #toBody(at: { x: number; y: number; scale: number }): void {
     this.#context.setTransform(0, -at.scale, -at.scale, 0, at.x, at.y);
   }

@@ -37,7 +37,7 @@ export interface Range {
   high: number;
 }
 
-/// Returns the smallest and largest finite value; undefined if there is none.
+/// Returns the smallest and largest finite value; undefined if no value is finite.
 export function rangeOf(values: Float32Array): Range | undefined {
   let low = Infinity;
   let high = -Infinity;
@@ -65,7 +65,8 @@ export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels
     }
 }
 
-/// Returns a number with four significant digits: "0.1235", "12.3", "1.20e-6".
+/// Returns a short text: four decimals below 1, two below 100, else none. Values below 0.001, except 0, and from 1e5 have
+/// an exponent. Examples: "0.1235", "12.35", "4321", "1.20e-6". A value that is not finite is "unknown".
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "unknown";
   const size = Math.abs(value);

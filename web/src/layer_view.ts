@@ -26,7 +26,7 @@ export class LayerView {
     this.#drawLegend();
   }
 
-  /// Returns the name of the layer that is shown; empty if there is none.
+  /// Returns the name of the selected layer; empty if the service has no layers.
   get wanted(): string {
     return this.#select.value;
   }

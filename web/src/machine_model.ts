@@ -49,7 +49,8 @@ export class MachineModel {
     this.object.add(this.#robot);
   }
 
-  /// Sets the joint angles of a pose, in the order of `machine.joints`. Without angles, sets those of standing.
+  /// Sets the joint angles of a pose, in the order of `machine.joints`. If their number differs from the number of
+  /// joints, sets the angles of standing.
   move(machine: Machine, joints_rad: number[]): void {
     const known = joints_rad.length === machine.joints.length;
     machine.joints.forEach(({ name, stand_rad }, i) =>

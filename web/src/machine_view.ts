@@ -21,8 +21,8 @@ const kFootHeight_m = 0.08;
 /// the cells.
 const kPrintHeight_m = 0.008;
 
-/// The machine in the 3D scene: its model, or its body parts as boxes if there is no model. Also draws its footprints
-/// for standing on the ground.
+/// The machine in the 3D scene: its model, or its body parts as boxes if there is no model. Also draws the footprints
+/// of its standing feet on the ground.
 export class MachineView {
   readonly object = new Group(); ///< position in odom, relative to the zero of the scene
   readonly #element: HTMLElement;
@@ -88,13 +88,14 @@ export class MachineView {
   }
 }
 
-/// Returns a point beside base_link, in odom.
+/// Returns the position in odom of a point that is given in base_link.
 function carried(place: Place, x_m: number, y_m: number): { x_m: number; y_m: number } {
   const [c, s] = [Math.cos(place.yaw_rad), Math.sin(place.yaw_rad)];
   return { x_m: place.x_m + c * x_m - s * y_m, y_m: place.y_m + s * x_m + c * y_m };
 }
 
-/// Returns the highest known ground under the corners and the middle of a foot.
+/// Returns the height of the highest known ground under the corners and the middle of a foot, in odom [m]; undefined if
+/// all this ground is unknown.
 function highestUnder(foot: Box, place: Place, map: GroundMap): number | undefined {
   let highest_m: number | undefined;
   for (const [along, across] of [

@@ -36,7 +36,7 @@ const service = new ServiceLink(store, `${scheme}//${location.host}/page${query}
 
 let drawing = false;
 let drawn_at_ms = -kDraw_ms;
-/// Draws soon, and only once for any number of changes.
+/// Requests one drawing. Does nothing if a drawing is already requested.
 function changed(): void {
   if (drawing) return;
   drawing = true;
@@ -55,7 +55,7 @@ const walk = new WalkView(store, gate, tones, changed);
 const joystick = new Joystick(store, (message) => service.say(message), changed);
 const timeline = new Timeline(store, (message) => service.say(message), changed);
 const record = new RecordButton(store, (message) => service.say(message));
-/// Loaded when the user first opens it, because the page starts with the walk view.
+/// The view for the engineer. It is loaded when the user first opens it, because the page starts with the walk view.
 let engineer: EngineerView | undefined;
 
 function want(): void {

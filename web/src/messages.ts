@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file. Uses
-/// no socket, no clock and no picture.
+/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file. This
+/// module uses no socket, no clock and no picture.
 
 export const kProtocol = 1;
 
@@ -84,7 +84,7 @@ export const kLayerFields = [
 
 export const kKind = { map: 1, pose: 2, image: 3, layer: 4 } as const;
 
-/// The values of bits 0-1 in a cell's state. The flags below are the bits above them.
+/// The values of bits 0-1 in a cell's state. kAttested, kDropEvidence and kLowOverhead are flags in the higher bits.
 export const kGround = { unknown: 0, free: 1, unsafe: 2, unsure: 3 } as const;
 export const kGroundMask = 3;
 export const kAttested = 4;
@@ -92,11 +92,11 @@ export const kDropEvidence = 8;
 export const kLowOverhead = 16;
 export const kUnknownHeight = -32768;
 
-/// Largest number of cells that the page accepts. Maps of the service have fewer: 40 x 40 m of 25 mm has 2.6 million.
+/// Largest number of cells that the page accepts. A map of 40 x 40 m with cells of 25 mm has 2.6 million.
 const kMostCells = 4_000_000;
 
 export type Edge = RecordOf<typeof kEdgeFields>;
-/// A run of cells. They follow each other in `cells`, 4 bytes each, from byte `at`.
+/// Consecutive cells of the map, from index `first`. Each has 4 bytes in `cells`, from byte `at`.
 export interface Run {
   first: number;
   count: number;
@@ -245,7 +245,7 @@ export function decode(data: ArrayBuffer): BinaryMessage {
   if (view.byteLength < sizeOf(kHeaderFields)) return unreadable("the message has no header");
   const header = read(view, 0, kHeaderFields);
   if (header.protocol !== kProtocol)
-    return unreadable(`it has protocol ${header.protocol}, this page reads protocol ${kProtocol}`);
+    return unreadable(`it has protocol ${header.protocol}, but this page reads protocol ${kProtocol}`);
   const at = sizeOf(kHeaderFields);
   switch (header.kind) {
     case kKind.map:
@@ -257,7 +257,7 @@ export function decode(data: ArrayBuffer): BinaryMessage {
     case kKind.layer:
       return decodeLayer(view, at);
     default:
-      return unreadable(`the kind ${header.kind} is unknown`);
+      return unreadable(`the message kind ${header.kind} is unknown`);
   }
 }
 
@@ -287,11 +287,11 @@ export interface Machine {
   movements: Movement[];
   body: BodyPart[];
   joints: Joint[]; ///< movable joints of the model
-  model: string | null; ///< path of its URDF
+  model: string | null; ///< path of its URDF at the service; null = no model
 }
 export interface Joint {
   name: string;
-  stand_rad: number; ///< angle that is shown if a pose has no angles
+  stand_rad: number; ///< angle of standing; shown if a pose does not have an angle for each joint
 }
 export interface Hello {
   kind: "hello";
@@ -325,7 +325,7 @@ export interface Status {
   viewers: number;
   playback: Playback | null;
 }
-/// How a recording is played. frames = 0: the number of frames is not known.
+/// State of the playback of a recording. frames = 0: the number of frames is not known.
 export interface Playback {
   frame: number;
   frames: number;
@@ -389,7 +389,7 @@ export interface Door extends Feature {
   sill_m: number | null;
   clearance_m: number | null;
 }
-/// A line feature. The lower ground is on the right hand from the first end to the second.
+/// A line feature. The lower ground is on the right of the way from `from` to `to`.
 export interface StairsEdge {
   from: Point;
   to: Point;
@@ -455,7 +455,7 @@ const kStairsKeys = ["time_ns", "flights", "drops", "kerbs", "sills", "doors", "
 const kSettingKeys = ["key", "accepted", "value", "text"];
 const kRecordingKeys = ["state", "folder", "frames", "left_out", "bytes", "duration_s", "text"];
 
-/// Decodes a text message. Returns undefined if its kind is unknown or keys are missing.
+/// Decodes a text message. Returns undefined if the text is no JSON object, its kind is unknown, or keys are missing.
 export function decodeJson(text: string): JsonMessage | undefined {
   let message: unknown;
   try {

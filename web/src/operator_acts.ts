@@ -6,7 +6,7 @@ import type { ActResult, GateLink } from "./gate_link.ts";
 import { needsOperator } from "./operator_token.ts";
 import type { Store } from "./store.ts";
 
-/// Attestation and re-arming: acts of a person. Each has its own dialog, so that a single touch does nothing.
+/// Attestation and re-arming: acts of a person. Each has its own dialog, so that a single touch cannot start an act.
 export class OperatorActs {
   readonly #store: Store;
   readonly #gate: GateLink;
@@ -111,7 +111,7 @@ export class OperatorActs {
 
   #tell(act: string, { success, message }: ActResult): void {
     if (!success && needsOperator(message)) {
-      setText(byId("act-result"), `${act}: refused - this page is not the operator`);
+      setText(byId("act-result"), `${act}: refused, because this page does not have the operator token`);
       this.askToken(`${act}: the gate refused it, because this page is not the operator.`);
       return;
     }

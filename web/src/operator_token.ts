@@ -39,7 +39,7 @@ export class OperatorToken {
   }
 }
 
-/// Whether the gate refused an act because this client is not the operator (docs/reference/rosbridge.md).
+/// Returns true if the gate refused an act because this client is not the operator (docs/reference/rosbridge.md).
 export function needsOperator(message: string): boolean {
   return /\brole\b.*\boperator\b/i.test(message);
 }

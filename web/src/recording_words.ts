@@ -24,7 +24,7 @@ export function recordingWords(recording: Recording | undefined): RecordingWords
     case "off":
       return { ...nothing, state: `Recording is off: ${text}.` };
     case "ready":
-      return { ...nothing, possible: true, state: text ? `Recorded: ${text}.` : "No recording is running." };
+      return { ...nothing, possible: true, state: text ? `Last recording: ${text}.` : "No recording is running." };
     case "failed":
       return { ...nothing, possible: true, state: `The recording failed: ${text}.` };
     case "recording":

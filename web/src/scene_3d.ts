@@ -26,7 +26,8 @@ import { MachineView } from "./machine_view.ts";
 import { kGround } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
-/// Cells along the side of the mesh: 6 m of 25 mm cells. Of a larger map only the part around the machine is shown.
+/// Largest number of cells along the side of the mesh: 6 m with cells of 25 mm. Of a larger map, only the part around
+/// the machine is shown.
 const kMostCells = 240;
 /// Shortest time between two pictures. A software renderer draws only a few pictures per second.
 const kPeriod_ms = 60;
@@ -34,8 +35,8 @@ const kBorderPoints = 96;
 /// Height of the border over the attested ground, so that the ground does not hide the border.
 const kBorderHeight_m = 0.01;
 
-/// The ground as a lit mesh with the machine on it. Coordinates are in odom relative to `#zero`. Unknown ground is a
-/// hole. style.css makes the picture grey when its data are old.
+/// The ground as a lit mesh with the machine on it. x and y are in odom relative to `#zero`, z is in odom. Unknown
+/// ground is a hole. style.css makes the picture grey when its data are old.
 export class Scene3d {
   readonly #store: Store;
   readonly #element: HTMLElement;
@@ -160,7 +161,8 @@ export class Scene3d {
     this.#view.elevation_rad = Math.max(0.08, Math.min(1.5, this.#view.elevation_rad + elevation_rad));
   }
 
-  /// Looks at the machine from behind and from its right side, also when the machine turns.
+  /// Points the camera at the machine. The direction of view turns with the machine. At first it is from behind and
+  /// from the right.
   #look(target: Vector3, yaw_rad: number): void {
     const { azimuth_rad, elevation_rad, distance_m } = this.#view;
     const across_m = distance_m * Math.cos(elevation_rad);

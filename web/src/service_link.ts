@@ -16,7 +16,8 @@ export interface Want {
 /// A connection without a message for this time is closed and opened again.
 const kHopeless_ms = 5000;
 
-/// The connection of the page to the service: hello, status, map, pose, pictures.
+/// The connection of the page to the service. It receives all messages of messages.ts, and sends the requests of the
+/// page.
 export class ServiceLink {
   readonly #store: Store;
   readonly #socket: ReconnectingSocket;
@@ -81,7 +82,7 @@ export class ServiceLink {
     const store = this.#store;
     if (message?.kind === "hello") {
       if (message.protocol !== kProtocol) {
-        store.problem = `The service has protocol ${message.protocol}, this page protocol ${kProtocol}. Reload the page.`;
+        store.problem = `The service uses protocol ${message.protocol}, but this page uses protocol ${kProtocol}. Reload the page.`;
         return;
       }
       store.problem = "";

@@ -12,7 +12,8 @@ interface Knob {
   answer: SettingAnswer | undefined; ///< the answer that is shown
 }
 
-/// All settings of the run. The user can change the settings of the service here; the other settings are only listed.
+/// Shows all settings of the run. The user can change those that the service marks as `changeable`; the others are only
+/// listed.
 export class SettingsView {
   readonly #store: Store;
   readonly #send: (message: object) => boolean;

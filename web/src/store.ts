@@ -73,7 +73,7 @@ export class Store {
   verdicts: GateVerdict[] = [];
   track: Place[] = [];
   stage_times: StageTimes[] = [];
-  problem = ""; ///< the last message that the page could not read, and the reason
+  problem = ""; ///< sentence about a service that the page cannot use; empty = no problem
   chosen: number | undefined; ///< code of the direction that the user chose
   attestation_radius_m: number | undefined; ///< radius in the open attestation dialog
   arrivals: Arrivals = { service: "opening", gate: "opening", has_machine: false };
@@ -111,7 +111,7 @@ export class Store {
     if (this.stage_times.length > kMostStageTimes) this.stage_times.shift();
   }
 
-  /// Whether an operator's attestation is in force. False without fresh data of the gate.
+  /// Returns true if an operator's attestation is in force and the data of the gate are fresh.
   get attesting(): boolean {
     return this.freshness.verdicts && this.health?.attesting === true;
   }

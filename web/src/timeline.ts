@@ -47,7 +47,7 @@ export class Timeline {
     this.#showSpeed(speed);
   }
 
-  /// The command line may set a speed that is not in the list.
+  /// Shows the speed. The command line may set a speed that is not in the list; it is then added.
   #showSpeed(speed: number): void {
     if (document.activeElement === this.#speed) return;
     const value = String(speed);

@@ -16,7 +16,7 @@ export function ellipseOf(var_x: number, var_y: number, cov_xy: number) {
   };
 }
 
-/// Track of base_link since the page was opened, in odom: x to the right, y up.
+/// Draws the track of base_link since the page was opened or odom restarted, in odom: x to the right, y up.
 export class TrackView {
   readonly #canvas: HTMLCanvasElement;
   readonly #store: Store;
@@ -94,7 +94,7 @@ export class TrackView {
     context.fill();
     setText(
       byId("track-note"),
-      `Grid: ${this.#grid_m(span_m)} m, x to the right. The track begins when this page is opened.`,
+      `Grid spacing ${this.#grid_m(span_m)} m; x points to the right. The track begins when this page is opened.`,
     );
   }
 

@@ -39,7 +39,7 @@ export class WalkView {
     new ResizeObserver(changed).observe(byId("ground"));
   }
 
-  /// Opens the field for the operator's token. `why` is the sentence of the gate.
+  /// Opens the dialog for the operator's token. `why` is the sentence above the field.
   askToken(why: string): void {
     this.#acts.askToken(why);
   }

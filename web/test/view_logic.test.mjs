@@ -282,7 +282,7 @@ test("each thing on the ground is a row with its measures", () => {
   assert.match(rows[1].remarks, /lower ground was not seen/);
   assert.equal(rows[2].height, "80.0 ± 0.4 mm");
   assert.deepEqual([rows[3].height, rows[3].width], ["15 mm", "920 ± 12 mm"]);
-  assert.match(rows[3].remarks, /sill; nothing seen above it/);
+  assert.match(rows[3].remarks, /sill; nothing seen above the door/);
   assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 observations");
   const [flight] = stairs().flights;
   const once = {
@@ -422,7 +422,7 @@ test("the recording in words, whatever its state", () => {
     [true, "Start recording", "The recording failed: no space left."],
   );
   assert.equal(said({ state: "ready", text: "" }).state, "No recording is running.");
-  assert.equal(said({ state: "ready", text: "10 frames" }).state, "Recorded: 10 frames.");
+  assert.equal(said({ state: "ready", text: "10 frames" }).state, "Last recording: 10 frames.");
   assert.equal(recordingWords(undefined).possible, false);
 });
 
