@@ -26,9 +26,7 @@ struct RunRecord {
     FrameStatusCounts frame_status;  ///< sums over all frames
     /// Number of frames skipped before the first of `frames`, see pipeline/start.hpp.
     int waited_frames = 0;
-    std::optional<Error> error;  ///< reason why the run ended early
-    GreyImage last_left;         ///< last rectified left image, for the report
-    DepthImage last_depth;
+    std::optional<Error> error;         ///< reason why the run ended early
     std::optional<TruthFigures> truth;  ///< set only for simulated sources
     std::optional<PlaceRecord> place;   ///< set only with `run --place`
     double wall_s = 0.0;

@@ -161,8 +161,8 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
 
     result.parameters = bundle.lenses[0];
     result.camera = {model_of(kind, result.parameters), size.width, size.height};
-    result.covariance =
-        covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
+    result.stated_sigma_px = stated_sigma_px(bundle, fit->sigma_px);
+    result.covariance = covariance(bundle, result.stated_sigma_px).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
     if (const std::string found = weakness_of(result, options, variety); !found.empty()) {
         return failed(

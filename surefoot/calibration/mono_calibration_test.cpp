@@ -75,6 +75,7 @@ TEST_P(EveryLens, FindsTheTruthWithinItsOwnUncertainty) {
         ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
         EXPECT_EQ(result->views.size(), 12U) << "seed " << seed;
         EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01) << "seed " << seed;
+        EXPECT_GE(result->stated_sigma_px, result->sigma_px) << "seed " << seed;
         uncertainty.add(result->parameters - c.truth, result->covariance);
     }
     uncertainty.expect_true();

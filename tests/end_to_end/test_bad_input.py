@@ -362,7 +362,7 @@ class BadImages(CliTest):
         self.write("r.png", moved(rows, 20))
         self.write("small.png", [bytes(160)] * 100)
         pairs = self.dir / "pairs.txt"
-        for line, words in (("l.png small.png 1", "differ in size"), ("small.png small.png 1", "160x100 px but rig"),
+        for line, words in (("l.png small.png 1", "differ in size"), ("small.png small.png 1", "160x100 px, but rig"),
                             ("r.png l.png 1", "swapped")):
             pairs.write_text(line + "\n")
             process = surefoot("depth-accuracy", "--pairs", pairs, "--rig", self.dir / "rig.yaml",
@@ -417,7 +417,7 @@ class BadBoards(CliTest):
         (folder / "b.png").write_bytes(grey_png(1, 1))
         process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("b.png: image of 1 x 1 px, but the first image has 672 x 376", process.stderr)
+        self.assertIn("b.png: the image has 1 x 1 px, but the first image has 672 x 376", process.stderr)
         (folder / "a.png").write_bytes(grey_png(672, 376))
         (folder / "b.png").write_bytes(png_of([random.Random(1).randbytes(672) for _ in range(376)]))
         process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")

@@ -549,7 +549,7 @@ class Measures(CliTest):
         (self.dir / "zero.tum").write_text("".join(tum[:5]) + f"{seconds(stamps[5])} 1 2 3 0 0 0 0\n")
         (self.dir / "short.txt").write_text(kitti[:kitti.rindex("\n", 0, -1) + 1])
         for words, why in ((["zero.tum", "truth.tum"], "zero.tum:6: quaternion has length 0"),
-                           (["short.txt", "truth.tum"], "39 poses without time stamps")):
+                           (["short.txt", "truth.tum"], "39 poses have no time stamps")):
             process = surefoot("eval", "trajectory", *(self.dir / file for file in words))
             self.assertEqual(process.returncode, 1)
             self.assertIn(why, process.stderr)

@@ -107,7 +107,7 @@ class Depth(CliTest):
         self.assertLess(noise["trusted_percent"], 10.0)
         for left, right, words in (
                 ([[7]], [[7]], "too narrow for stereo.disparities"),
-                (black, [[0] * 160 for _ in range(100)], "differ in size: left 160x120, right 160x100"),
+                (black, [[0] * 160 for _ in range(100)], "the left image has 160x120 px, the right image 160x100 px"),
                 (black, [[0] * 161 for _ in range(120)], "differ in size")):
             process = surefoot("depth", *self.pair(left, right), "--out", self.dir / "out")
             self.assertEqual(process.returncode, 1, process.stderr)
@@ -161,7 +161,7 @@ class Accuracy(CliTest):
                       ["camera.rectified_focal_px=400", "--set", "sim.sensor=analytic"]):
             process = surefoot(*run, "--set", *wrong)
             self.assertEqual(process.returncode, 2, wrong)
-            self.assertIn("camera.rectified_width_px" if len(wrong) == 1 else "rectified already", process.stderr)
+            self.assertIn("camera.rectified_width_px" if len(wrong) == 1 else "computes rectified depth", process.stderr)
 
     def test_real_images_with_their_distances(self):
         # A wall at 41.04 / 20 m: the whole image moves by 20 px.

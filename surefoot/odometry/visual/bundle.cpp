@@ -13,11 +13,6 @@ using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
 constexpr double kMinDepth_m = 0.02;
 
-struct Cost {
-    double value = 0.0;
-    bool valid = true;  ///< no point is behind a camera that observed it
-};
-
 double robust(double norm_sigmas, double limit_sigmas) {
     return norm_sigmas <= limit_sigmas ? norm_sigmas * norm_sigmas
                                        : limit_sigmas * (2.0 * norm_sigmas - limit_sigmas);
