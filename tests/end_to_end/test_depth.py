@@ -113,7 +113,7 @@ class Depth(CliTest):
             self.assertEqual(process.returncode, 1, process.stderr)
             self.assertIn(words, process.stderr)
         process = surefoot("depth", *self.pair(black, black), "--rig", "zed_vga", "--out", self.dir / "out")
-        self.assertIn("160x120 px but rig 'zed_vga' was calibrated at 672x376", process.stderr)
+        self.assertIn("160x120 px, but rig 'zed_vga' was calibrated for 672x376", process.stderr)
         process = surefoot("depth", "nowhere.png", "nowhere.png", "--out", self.dir / "out", cwd=self.dir)
         self.assertEqual(process.returncode, 1)
         process = surefoot("depth", *self.pair(black, black), "--rig", "nothing", "--out", self.dir / "out")
