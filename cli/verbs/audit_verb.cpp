@@ -23,8 +23,8 @@ void say_what_is_missing(const gate_process::AuditSummary& summary) {
     for (const std::string& sentence : summary.unfinished) log_warning(sentence);
     if (summary.gaps > 0)
         log_warning(
-            fmt::format("{} verdicts are missing in {} gaps of the log, because the disk accepted "
-                        "no data; check the free space of the disk",
+            fmt::format("{} verdicts and acts are missing in {} gaps of the log, because the disk "
+                        "accepted no data; check the free space of the disk",
                         summary.lost,
                         summary.gaps));
     if (summary.damage) log_error(summary.damage->text());

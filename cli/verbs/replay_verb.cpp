@@ -61,7 +61,7 @@ void print_frame(const FrameReport& seen, std::int64_t first_frame_ns) {
         to_string(seen.motion.health),
         seen.motion.inliers,
         seen.known_cells,
-        !seen.frame_status.is_new_and_whole() ? "  no new image"
+        !seen.frame_status.is_new_and_whole() ? "  repeated or torn image"
         : seen.work == Work::odometry         ? "  late"
                                               : "");
 }

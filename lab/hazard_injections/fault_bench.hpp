@@ -55,7 +55,7 @@ class GateBench {
         /// false: choose only among movements of at most 0.2 m, which stay on attested ground.
         bool any_movement = true;
         bool forward_only = false;              ///< true: use only movements of over 0.19 m ahead
-        std::int64_t fault_ns_since_start = 0;  ///< 0 = draw the time when the gate is ready
+        std::int64_t fault_ns_since_start = 0;  ///< 0 = at random after the gate became ready
     };
     /// The gate's answer as the client receives it.
     struct Heard {

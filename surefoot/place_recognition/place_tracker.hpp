@@ -23,7 +23,7 @@ struct TrackerConfig {
     int recent_keyframes = 10;
     /// Number of successive keyframes that must agree on T_map_odom before it is accepted.
     int confirmations = 2;
-    int max_misses = 1;  ///< allowed number of keyframes without a result in between
+    int max_misses = 1;  ///< largest number of successive keyframes without a recognition
     double agree_m = 0.15;
     double agree_deg = 2.5;
     /// Error that is added to a recognition's covariance: landmarks of one view share their errors.

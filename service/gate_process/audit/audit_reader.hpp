@@ -30,7 +30,7 @@ struct AuditSummary {
     std::uint64_t runs = 0;
     std::uint64_t verdicts = 0;
     std::uint64_t gaps = 0;
-    std::uint64_t lost = 0;  ///< number of verdicts in gaps
+    std::uint64_t lost = 0;  ///< number of verdicts and acts in gaps
     std::uint64_t acts = 0;
     /// Messages about files that end within a frame, for example after a power loss. Such an end is
     /// not damage. Nothing is lost if the run continues in another file.

@@ -41,8 +41,8 @@ class CloudStream {
     }
     /// Returns the number of points, if the file states the number.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
-    /// Returns notes about contents of the file that the blocks read so far do not hold, one
-    /// sentence each. The blocks themselves have no notes.
+    /// Returns notes about contents of the file that the blocks do not keep, one sentence each. The
+    /// notes cover the part that is read so far. PointCloud::notes of a block is empty.
     [[nodiscard]] std::vector<std::string> notes() const;
 
   private:

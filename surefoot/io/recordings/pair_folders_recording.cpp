@@ -179,7 +179,7 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
         return calib_txt_rig(kitti, pair.layout, size);  // returns the error of calib.txt
     return input_error(
         fmt::format("{}: the folder has {} left and {} right images but no calibration. Put a "
-                    "rig.yaml beside the two image folders, or give a rig with --rig",
+                    "rig.yaml into this folder, or give a rig with --rig",
                     folder,
                     pair.left.size(),
                     pair.right.size()));

@@ -35,8 +35,8 @@ namespace surefoot::sim {
 /// to the edge, then one more step onto the first tread, which is `riser_m` lower.
 [[nodiscard]] MotionScript descend_backwards_script(int steps_ahead, double riser_m);
 
-/// Turns by 90 deg to the left and walks back by `distance_m`, onto ground that the camera saw only
-/// during the turn.
+/// Turns by 90 deg to the left and walks back by `distance_m`. The ground there lies to the right
+/// of the start pose, and the camera does not see it during the turn.
 [[nodiscard]] MotionScript pivot_and_reverse_script(MotionModel motion_model, double distance_m);
 
 }  // namespace surefoot::sim

@@ -25,8 +25,8 @@ namespace surefoot::sim {
 ///               `fixed_share` of this variance is attached to the surface: a mean over frames does
 ///               not remove it.
 ///   locking     locking_px sin(2 pi d): matchers pull towards whole disparities
-/// Beside disparity jumps the nearer surface grows by a seam. A ramp bridges a share of the pixels
-/// that a window cannot decide (see Shadow). All other unmatched pixels are unknown.
+/// Beside a jump, a seam of pixels gets the disparity of the nearer surface (Shadow::fattened). A
+/// share of the ramp and occluded pixels gets interpolated disparities; the rest is unknown.
 ///
 /// Nominal sigma: best planar windows of real pairs scatter by 0.28-0.43 px; 0.25 px is the nominal
 /// figure of the project's accuracy tables. ASSUMPTION: every other default, until measured on
