@@ -54,7 +54,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
     return peaks;
 }
 
-/// Fits a plane to the points near a height, without outliers. Returns no value without a fit.
+/// Fits a plane to the points near a height, without outliers. Returns no value if no plane fits.
 std::optional<Level> level_near(std::span<const Vector3f> points_m,
                                 double height_m,
                                 const LevelConfig& config) {
@@ -162,7 +162,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
 }
 
 /// Returns the position of a cluster along a line [m]: the mean of the fullest 20 mm. Returns no
-/// value if evenly spread points, for example of a side wall, could by chance be as dense there.
+/// value for fewer than 20 points, or if evenly spread points, for example of a side wall, could by
+/// chance be as dense there.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;

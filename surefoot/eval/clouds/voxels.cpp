@@ -22,7 +22,8 @@ constexpr std::size_t kTaken = 1U << 16U;
 constexpr int kBucketBits = 9;
 constexpr std::size_t kBuckets = 1U << kBucketBits;
 
-/// Numbers the voxels of a box; numbers increase with x, then y, then z.
+/// Numbers the voxels of a box. The highest bits of a number come from x, the next from y, the
+/// lowest from z.
 class VoxelKeys {
   public:
     VoxelKeys(const geometry::PointBox& box, double size_m)

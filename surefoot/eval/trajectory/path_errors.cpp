@@ -12,7 +12,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Largest deviation of a stretch from its length, as a share: evo's rel_delta_tol.
+/// Largest deviation of a stretch from the requested length, as a share: evo's rel_delta_tol.
 constexpr double kLengthTolerance = 0.1;
 
 /// Returns the true path length [m] from the first matched pose to each matched pose.

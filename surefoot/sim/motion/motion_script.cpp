@@ -33,7 +33,7 @@ constexpr double kSteepest[] = {0.5, 0.0, 1.0};
 constexpr double kLowestHand_m = 0.5;
 constexpr double kHighestHand_m = 2.2;
 
-/// Moves all stops but the first by up to 1 cm along x and y and 0.3 deg.
+/// Moves all stops but the first by up to 1 cm along x and y, and turns them by up to 0.3 deg.
 void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     constexpr std::uint64_t kPathStream = 0x70617468;
     constexpr double kTurn_rad = 0.3 * std::numbers::pi / 180.0;

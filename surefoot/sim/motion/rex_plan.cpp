@@ -148,8 +148,8 @@ void Planner::walk(const Waypoint& goal, const Gait& gait) {
 }
 
 void Planner::go_to(const Waypoint& goal) {
-    // The shortest forward step is half a step. A point nearer than half of the shortest step
-    // counts as reached.
+    // The shortest forward step is half a step. With Move::automatic, a point nearer than half of
+    // the shortest step counts as reached.
     const double near_m = goal.move == Move::automatic ? 0.25 * sizes_.forward_m : kWorthwhile_m;
     if (distance_m(now_, goal) > near_m) {
         Gait gait = choose(goal);

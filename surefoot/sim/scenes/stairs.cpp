@@ -166,7 +166,8 @@ void FlightSpec::add(Site& site) const {
         tread.begin_m = (step - 1) * going_m;
         tread.end_m = tread.begin_m + (last && landing_m > 0.0 ? landing_m : going_m);
         tread.top_m = (up ? 1.0 : -1.0) * step * rise_m;
-        // Two neighbours differ by at most the variation; the ends of the flight are exact.
+        // The rise between two neighbours deviates from `rise_m` by at most the variation. Both
+        // ends of the flight are exact.
         if (!last && rise_variation_m > 0.0) {
             tread.top_m += 0.5 * site.rng.uniform(-rise_variation_m, rise_variation_m);
         }
