@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr int kTrace = 64;
 // The first and the last weight shift take longer than in the trace, so the first and the last
-// sample of the trace are held.
+// sample of the trace are repeated `kLead` times.
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
 /// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
@@ -71,7 +71,8 @@ const Phases& phases_of(const RexMovement& movement) {
     return movement.forward_m < 0.0 ? kBackward : kAhead;
 }
 
-/// Path of base_link through the trace, seen from the left sole at the start; the right foot leads.
+/// Path of base_link through the trace, relative to the left sole at the start; the right foot
+/// leads.
 struct TraceWay {
     double length_m = 0.0;                  ///< length of the whole step
     std::array<double, kTrace> progress{};  ///< progress of base_link, 0 to 1

@@ -29,7 +29,8 @@ double wrapped(double angle_rad) {
     return std::remainder(angle_rad, 2.0 * kHalfTurn_rad);
 }
 
-/// Direction of travel in base_link: 0 = ahead, pi = back, +-pi/2 = left and right.
+/// A way to walk. `bearing_rad` is the direction of travel in base_link: 0 = ahead, pi = back,
+/// +-pi/2 = left and right.
 struct Gait {
     Move move;
     double bearing_rad;

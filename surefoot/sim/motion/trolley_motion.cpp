@@ -187,8 +187,8 @@ MotionState TrolleyMotion::at(double time_s) const {
                      here.slope.value * way.rate,
                      here.slope.rate * way.rate * way.rate + here.slope.value * way.acceleration};
     const Jet yaw = Jet{segment.from.yaw_rad, 0.0, 0.0} + turn_rad * part;
-    // In body axes the slope rises toward the direction of travel. Turning by a quarter turn
-    // changes the cosine to a sine.
+    // The slope along a body axis is the slope of the path times the cosine of the angle between
+    // this axis and the direction of travel.
     const double direction_rad = std::atan2(way_m.y(), way_m.x());
     const Jet ahead = slope * cosine(yaw, -direction_rad);
     const Jet left = slope * cosine(yaw, 0.5 * std::numbers::pi - direction_rad);

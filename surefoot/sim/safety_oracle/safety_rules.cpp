@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A value that reaches a limit exactly does not exceed it, despite rounding [m, rad].
+/// Tolerance for rounding errors [m, rad]: a value that equals its limit does not exceed it.
 constexpr double kRounding = 1e-7;
 
 /// Keeps the worst finding of each danger.

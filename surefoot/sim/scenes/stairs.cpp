@@ -55,7 +55,7 @@ void add_tread(
     const bool up = flight.direction == StairDirection::up;
     Tread support = tread;
     (up ? support.begin_m : support.end_m) += up ? flight.nosing_m : -flight.nosing_m;
-    // The board reaches back to the next riser, which stands under the next nose.
+    // The board extends under the nose of the next higher tread, up to the riser there.
     (up ? tread.end_m : tread.begin_m) += up ? flight.nosing_m : -flight.nosing_m;
     const double under_m = tread.top_m - flight.tread_thickness_m;
     add_block(site, flight, place, tread, under_m);
