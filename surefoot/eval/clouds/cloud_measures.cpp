@@ -300,7 +300,7 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
     histogram.counts.assign(static_cast<std::size_t>(bins), 0);  // in range: at most kMostBins
     for (const Vector3f& p_m : points_m) {
         const double bin = std::floor(static_cast<double>(p_m.z()) / config.bin_m) - first;
-        ++histogram.counts[static_cast<std::size_t>(bin)];  // in range: of a point of the box
+        ++histogram.counts[static_cast<std::size_t>(bin)];  // in range: 0 to the last bin
     }
     for (const std::size_t peak : peaks_of(histogram, points_m.size(), config)) {
         const double height_m = histogram.low_m + (static_cast<double>(peak) + 0.5) * config.bin_m;

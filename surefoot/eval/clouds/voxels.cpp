@@ -132,7 +132,7 @@ std::int64_t voxel_number(float p_m, double size_m) noexcept {
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {
-    // Voxel numbers of 1e18 or more are refused, far below the largest std::int64_t.
+    // Voxel numbers of 1e18 or more are refused. This limit is well below the largest std::int64_t.
     const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
     return static_cast<double>(most_m) / size_m < 1e18 &&
            VoxelKeys(box, size_m).bits() <= kMostBits;

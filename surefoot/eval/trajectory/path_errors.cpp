@@ -28,6 +28,7 @@ std::vector<double> path_so_far_m(const Trajectory& truth, const std::vector<Pos
 }
 
 /// Finds the pair after `start` whose true path length from `start` is nearest to `length_m`.
+/// Returns no value if this length deviates too much (`kLengthTolerance`).
 std::optional<std::size_t> stretch_end(const std::vector<double>& path_m,
                                        std::size_t start,
                                        double length_m) {
