@@ -72,7 +72,8 @@ Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, doubl
     return poses;
 }
 
-/// Returns the rig of the depth camera, at the position of the left camera of `rig`.
+/// Returns the rig of the depth camera, which has the pose of the left camera of `rig`. Returns
+/// `rig` itself if it has no right camera.
 camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) {
     if (!rig.right) return rig;
     camera::StereoRig single = rig;

@@ -54,7 +54,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
     return peaks;
 }
 
-/// Fits a plane to the points near a height, without outliers. Returns no value without a fit.
+/// Fits a plane to the points near a height, without outliers. Returns no value if no plane fits.
 std::optional<Level> level_near(std::span<const Vector3f> points_m,
                                 double height_m,
                                 const LevelConfig& config) {
@@ -162,7 +162,8 @@ std::vector<Level> flight_of(std::span<const Level> levels) {
 }
 
 /// Returns the position of a cluster along a line [m]: the mean of the fullest 20 mm. Returns no
-/// value if evenly spread points, for example of a side wall, could by chance be as dense there.
+/// value for fewer than 20 points, or if evenly spread points, for example of a side wall, could by
+/// chance be as dense there.
 std::optional<double> crowd_m(std::vector<double> along_m) {
     constexpr double kWidth_m = 0.02;
     constexpr std::size_t kFewest = 20;
@@ -299,7 +300,7 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
     histogram.counts.assign(static_cast<std::size_t>(bins), 0);  // in range: at most kMostBins
     for (const Vector3f& p_m : points_m) {
         const double bin = std::floor(static_cast<double>(p_m.z()) / config.bin_m) - first;
-        ++histogram.counts[static_cast<std::size_t>(bin)];  // in range: of a point of the box
+        ++histogram.counts[static_cast<std::size_t>(bin)];  // in range: 0 to the last bin
     }
     for (const std::size_t peak : peaks_of(histogram, points_m.size(), config)) {
         const double height_m = histogram.low_m + (static_cast<double>(peak) + 0.5) * config.bin_m;

@@ -22,7 +22,8 @@ constexpr std::size_t kTaken = 1U << 16U;
 constexpr int kBucketBits = 9;
 constexpr std::size_t kBuckets = 1U << kBucketBits;
 
-/// Numbers the voxels of a box; numbers increase with x, then y, then z.
+/// Numbers the voxels of a box. The highest bits of a number come from x, the next from y, the
+/// lowest from z.
 class VoxelKeys {
   public:
     VoxelKeys(const geometry::PointBox& box, double size_m)
@@ -131,7 +132,7 @@ std::int64_t voxel_number(float p_m, double size_m) noexcept {
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {
-    // Voxel numbers of 1e18 or more are refused, far below the largest std::int64_t.
+    // Voxel numbers of 1e18 or more are refused. This limit is well below the largest std::int64_t.
     const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
     return static_cast<double>(most_m) / size_m < 1e18 &&
            VoxelKeys(box, size_m).bits() <= kMostBits;

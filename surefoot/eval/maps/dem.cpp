@@ -60,7 +60,8 @@ void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& execu
               kPiece,
               executor,
               [&](std::size_t begin, std::size_t end, std::size_t piece) {
-                  // An element of `pieces` would share a cache line with another thread's element.
+                  // A local object: an element of `pieces` would share a cache line with another
+                  // thread's element.
                   CloudBounds bounds;
                   for (std::size_t i = begin; i < end; ++i) bounds.add(points_m[i]);
                   pieces[piece] = bounds;

@@ -13,8 +13,8 @@ namespace {
 /// Borders of the distance bins. Bins are 0.5 m wide where the next steps land, and wider farther
 /// away.
 constexpr double kDistanceEdges_m[] = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0};
-/// Number of bins: large enough to separate the sides of the image from its middle, small enough to
-/// fill each bin.
+/// Number of bins over the columns of the image: large enough to separate the sides of the image
+/// from its middle, small enough to fill each bin.
 constexpr int kColumnBins = 8;
 
 std::span<const float> values_of(const grid::Layer& layer) {

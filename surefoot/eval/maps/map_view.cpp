@@ -57,7 +57,7 @@ constexpr double kTickSpacing_px = 16.0;
 constexpr double kFallTick_px = 10.0;
 constexpr int kHalo_px = 4;  ///< sum of the widths of the two white edges of a line
 
-/// Returns the begin and end of each tick on the right of a line.
+/// Returns the two ends of each tick on the right of a line.
 std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Stroke& stroke) {
     std::vector<std::pair<PointPx, PointPx>> ticks;
     for (std::size_t i = 0; stroke.ticks && i + 1 < stroke.points_m.size(); ++i) {

@@ -34,8 +34,8 @@ constexpr std::array<Rgb8, 17> kMagma = {{
 // clang-format on
 constexpr double kPaleness = 0.5;  ///< share of white in the pale map
 constexpr std::array<Rgb8, 2> kGrey = {{{0, 0, 0}, {255, 255, 255}}};
-// Our own map, around vermillion and blue of Okabe and Ito. There is a jump between its two halves,
-// so no cell near the limit gets a colour that belongs to neither side.
+// ColorMap::safety of Surefoot, around vermillion and blue of Okabe and Ito. There is a jump
+// between its two halves, so no cell near the limit gets a colour that belongs to neither side.
 constexpr std::array<Rgb8, 4> kUnsafeHalf = {
     {{128, 38, 0}, {200, 80, 0}, {238, 142, 60}, {253, 208, 162}}};
 constexpr std::array<Rgb8, 4> kSafeHalf = {

@@ -69,7 +69,7 @@ void draw_bar_ticks(Figure& figure, const ColorBar& bar, const RectPx& rect) {
               text_style(TextAnchor::left, palette::kSoftInk));
 }
 
-/// Draws pointed ends: values beyond the bar exist and have the colour of its end.
+/// Draws a pointed end where values lie beyond the bar. These values have the colour of this end.
 void draw_pointed_ends(Figure& figure, const ColorBar& bar, const RectPx& rect) {
     const auto point = [&](double base_v, double tip_v, double value) {
         const std::array<PointPx, 3> triangle = {PointPx{rect.left - 0.5, base_v},

@@ -315,7 +315,7 @@ std::string health_svg(const std::vector<HealthSample>& samples) {
 
 std::string bin_plot_svg(const BinPlot& plot) {
     double largest = 0.0;
-    std::size_t first = plot.edges.size();  // first bin with a value; `end`: after the last
+    std::size_t first = plot.edges.size();  // first bin with a value; `end` is one past the last
     std::size_t end = 0;
     for (const BinPlot::Line& line : plot.lines) {
         SUREFOOT_ASSERT(line.values.size() + 1 == plot.edges.size());

@@ -131,7 +131,7 @@ void add_flights(const std::vector<Flight>& flights, Overlays& overlays) {
     }
 }
 
-/// Adds a line across the opening between the two jambs of each door.
+/// Adds a line across the opening of each door, and a short line at each jamb.
 void add_doors(const std::vector<stairs::Door>& doors, Overlays& overlays) {
     constexpr double kJamb_m = 0.08;
     constexpr int kJamb_px = 6;
@@ -156,7 +156,7 @@ void add_doors(const std::vector<stairs::Door>& doors, Overlays& overlays) {
     }
 }
 
-/// Adds edges that belong to no other feature.
+/// Adds edges that belong to no flight, drop, kerb or sill.
 void add_other_edges(const stairs::TerrainFeatures& features, Overlays& overlays) {
     const auto is_line = [](const Edge& edge, const std::vector<LineFeature>& lines) {
         return std::any_of(lines.begin(), lines.end(), [&](const LineFeature& line) {

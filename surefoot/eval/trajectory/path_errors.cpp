@@ -12,7 +12,7 @@
 namespace surefoot::eval {
 namespace {
 
-/// Largest deviation of a stretch from its length, as a share: evo's rel_delta_tol.
+/// Largest deviation of a stretch from the requested length, as a share: evo's rel_delta_tol.
 constexpr double kLengthTolerance = 0.1;
 
 /// Returns the true path length [m] from the first matched pose to each matched pose.
@@ -28,6 +28,7 @@ std::vector<double> path_so_far_m(const Trajectory& truth, const std::vector<Pos
 }
 
 /// Finds the pair after `start` whose true path length from `start` is nearest to `length_m`.
+/// Returns no value if this length deviates too much (`kLengthTolerance`).
 std::optional<std::size_t> stretch_end(const std::vector<double>& path_m,
                                        std::size_t start,
                                        double length_m) {

@@ -36,7 +36,7 @@ struct Candidate {
     [[nodiscard]] auto key() const { return std::tuple(difference_ns, estimate_rank, truth_rank); }
 };
 
-/// Returns all pairs within the tolerance. Goes once through both time orders.
+/// Returns all pairs within the tolerance, ordered by the time of the estimated pose.
 std::vector<Candidate> candidates_within(const Trajectory& estimate,
                                          const std::vector<std::size_t>& estimate_order,
                                          const Trajectory& truth,

@@ -19,7 +19,8 @@ constexpr const char* kReadFormats =
     "ORB-SLAM2/3 stereo settings, ZED SN*.conf, KITTI calib.txt and calib_cam_to_cam.txt, "
     "Middlebury calib.txt, and EuRoC folders";
 
-/// kind_of_text reads only this many lines at the start of a text, because files can be long.
+/// kind_of_text checks only this many lines at the start of a text one by one, because files can be
+/// long.
 constexpr int kHeadLines = 200;
 
 bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {

@@ -277,7 +277,7 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
 }
 
 void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
-    // A common IMU rate. Odometry does not use this rate, but the time stamps of the samples.
+    // A common IMU rate. Odometry does not use this rate: it uses the time stamps of the samples.
     constexpr double kAssumedImuRate_hz = 200.0;
     out.rig.T_body_left = T_body_optical();
     const bool known = rate_hz > 0.0;

@@ -139,7 +139,8 @@ void add_scalar(const Header& header,
     cloud.scalars.push_back({name, std::move(values)});
 }
 
-/// Adds the fields of a point with their types; flags are left out.
+/// Adds the fields of the points as scalars with their types. Other functions read coordinates and
+/// colours; flags, wave packets and extra bytes are left out.
 void add_scalars(const Header& header, std::string_view records, PointCloud& cloud) {
     const RecordFormat& format = kFormats[header.format];
     const bool wide = header.format >= kFirstWideFormat;

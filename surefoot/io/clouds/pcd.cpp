@@ -376,7 +376,8 @@ std::vector<std::string> notes_of(const Header& header) {
     return notes;
 }
 
-/// Returns the unpacked records of a compressed body. Checks the sizes before it allocates memory.
+/// Returns the unpacked values of a compressed body, field after field. Checks the sizes before it
+/// allocates memory.
 Result<std::string> unpacked_body(const Header& header, const std::string& file) {
     const std::uint64_t needed = *header.points * header.stride();
     if (header.body.size() < 8)

@@ -52,8 +52,8 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 
 namespace {
 
-/// Checks the first bytes and refuses a file that is not a cloud, before the program reads
-/// gigabytes. Every cloud format begins with text, also LAS: its first four bytes are "LASF".
+/// Refuses a file with a zero byte among its first four bytes, before the program reads gigabytes.
+/// Every cloud format begins with text, also LAS: its first four bytes are "LASF".
 Status check_beginning(const std::string& path) {
     auto file = files::InputFile::open(path, limits::kCloudBytes);
     if (!file) return file.error();

@@ -102,7 +102,8 @@ Status TextCloudParser::take_line(std::string_view content, PointCloud& cloud) {
 }
 
 /// Handles a line that may name the columns. After the first point the line must name the same
-/// columns, because files can be concatenated. A comment without x, y and z is only a comment.
+/// columns, because files can be concatenated. A comment without x, y and z, or with another number
+/// of columns after the first point, is only a comment.
 Status TextCloudParser::take_head(std::string_view content, bool comment) {
     const std::vector<Column> columns = columns_of(content, separator_of(content));
     const auto axes = axes_of(columns);

@@ -104,7 +104,8 @@ constexpr bool is_frame_header(int marker) noexcept {  // SOF0 to SOF15, except 
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
 }
 
-/// Checks the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.
+/// Checks the JPEG segments (marker, big-endian length) up to the end marker FFD9. Skips the image
+/// data after a scan header.
 Result<ImageHeader> check_jpeg(std::string_view bytes, const std::string& file) {
     std::size_t at = 2;
     Result<ImageHeader> header = damaged(file, "the JPEG has no header with its size");

@@ -196,7 +196,7 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
     }
     if (config_.exposure_ms > 0.0) {
         const int value =
-            // in range: describe() keeps it below 1000 ms
+            // in range: describe() limits it to 1000 ms
             static_cast<int>(std::lround(config_.exposure_ms * kExposureUnits_per_ms));
         Status status = set_manual(device,
                                    V4L2_CID_EXPOSURE_AUTO,
@@ -222,7 +222,7 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
 
 std::int64_t LiveCamera::known_exposure_ns(V4l2Device& device) const {
     if (config_.exposure_ms > 0.0)
-        // in range: describe() keeps it below 1000 ms
+        // in range: describe() limits it to 1000 ms
         return static_cast<std::int64_t>(std::llround(1e6 * config_.exposure_ms));
     const auto automatic = device.control(V4L2_CID_EXPOSURE_AUTO);
     if (!automatic || automatic->value != V4L2_EXPOSURE_MANUAL) return 0;

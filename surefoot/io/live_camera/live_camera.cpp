@@ -104,7 +104,7 @@ void LiveCamera::disconnect(std::string why) {
 }
 
 Status LiveCamera::reconnect() {
-    // in range: describe() keeps it below 3600 s
+    // in range: describe() limits it to 3600 s
     const int limit_ms = static_cast<int>(std::lround(1e3 * config_.reconnect_s));
     while (silent_ms_ < limit_ms && !(stop_ && stop_())) {
         system_->pause(kRetry_ms);
@@ -227,7 +227,7 @@ Result<GreyImage> LiveCamera::decode(const VideoBuffer& buffer) const {
 }
 
 std::int64_t LiveCamera::middle_of_exposure_ns(const VideoBuffer& buffer) const {
-    // in range: describe() keeps it below 1000 ms
+    // in range: describe() limits it to 1000 ms
     const auto readout_ns = static_cast<std::int64_t>(std::llround(1e6 * config_.readout_ms));
     const std::int64_t half_ns = (exposure_ns_ + readout_ns) / 2;
     return buffer.at_exposure_start ? buffer.time_ns + half_ns : buffer.time_ns - half_ns;

@@ -23,7 +23,7 @@ constexpr double kFinest_m = 1e-4;  ///< smallest side of a cell; `surefoot dem`
 constexpr double kCoarsest_m = 1000.0;
 constexpr double kFarthest_m = 1e9;  ///< largest coordinate; a double resolves 1 um there
 constexpr std::int64_t kMaxSide = 1 << 20;
-/// Values of at least this magnitude mean "no data". The usual mark is the lowest float,
+/// Values of at least this magnitude mean "no data". One common mark is the lowest float,
 /// -3.4028235e38. No layer has measured values of this size.
 constexpr double kMaxValue = 1e30;
 

@@ -11,7 +11,8 @@
 namespace surefoot::io {
 namespace {
 
-/// An IMU row has seven numbers of at most 24 digits; a longer line is not an IMU row.
+/// Largest length of a line [bytes]. An IMU row has seven numbers of at most 24 digits, so a longer
+/// line is not an IMU row.
 constexpr std::size_t kMaxLine = 4096;
 
 class SourceWithImu final : public camera::FrameSource {

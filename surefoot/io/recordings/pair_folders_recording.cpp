@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Indexes left and right images in two folders: KITTI odometry and KITTI raw after Geiger et al.
-// 2012, and common folder names of other recordings. Reads calibration and stamps from files beside
-// the images.
+// 2012, and common folder names of other recordings. Also indexes images named left* and right* in
+// one folder. Reads calibration and stamps from files beside the images.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ Result<PairOfFolders> find_pair(const std::string& folder) {
 }
 
 /// Finds calib_cam_to_cam.txt of KITTI raw. The file belongs to all drives of a day and lies beside
-/// their folders.
+/// their folders, or as a copy in the folder.
 std::optional<std::string> raw_calibration(const std::string& folder) {
     for (const char* name : {"calib_cam_to_cam.txt", "../calib_cam_to_cam.txt"}) {
         if (std::string path = join_path(folder, name); is_file(path)) return path;
@@ -216,8 +216,8 @@ void add_frame(const PairOfFolders& pair,
     recording.frames.push_back(std::move(entry));
 }
 
-/// Pairs images by names, else by the stamps in the names, else by order. A stamp is 0 if the names
-/// hold no stamps.
+/// Pairs images by names, else by the stamps in the names, else by order if there are as many left
+/// as right images. A stamp is 0 if the names hold no stamps.
 Status pair_images(const OpenOptions& options, const PairOfFolders& pair, Recording& recording) {
     const auto left_stamps = stamps_of_names(pair.left);
     const auto time_of = [&](std::size_t i) { return left_stamps ? left_stamps->times_ns[i] : 0; };

@@ -17,7 +17,7 @@ struct Match {
     std::size_t right;
 };
 
-/// Returns every pair within the tolerance, the closest pair first.
+/// Returns the pairs within the tolerance, at most 16 for each left image, the closest pair first.
 std::vector<Match> candidates(const std::vector<std::int64_t>& left_ns,
                               const std::vector<std::int64_t>& right_ns,
                               std::int64_t tolerance_ns) {

@@ -88,8 +88,9 @@ Result<Association> associate(const std::string& folder,
     return out;
 }
 
-/// Guesses the depth unit from the first image. The nearest depth decides between millimetres and
-/// the codes of the benchmark, because no depth camera measures nearer than 0.25 m.
+/// Sets the depth unit from `options`, or guesses it from the first image. The nearest hundredth of
+/// its depths decides between millimetres and the codes of the benchmark, because depth cameras do
+/// not measure nearer than 0.25 m.
 Status choose_depth_factor(const OpenOptions& options, Recording& recording) {
     if (options.depth_codes_per_m) {
         const double codes = *options.depth_codes_per_m;

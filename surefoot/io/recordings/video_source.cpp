@@ -51,8 +51,8 @@ class VideoSource final : public camera::FrameSource {
     }
 
   private:
-    /// Adds a note about the rate. The rate comes from --rate, else the container, else the rig,
-    /// else 15 Hz.
+    /// Sets the rate of the rig: from --rate, else the container, else the rig, else 15 Hz. Adds a
+    /// note if the rates of rig and container differ by more than 5 %.
     void note_rate() {
         const double of_rig_hz = rig_.rate_hz;
         const double of_video_hz = frames_.rate_hz();

@@ -178,7 +178,7 @@ bool is_group(const std::string& name, const std::vector<std::string>& keys) {
 }
 
 /// Returns today's name of a key or group. Returns `name` itself if it is a known name, or if its
-/// newer name is not a setting of this object.
+/// newer name is not in `keys`.
 std::string name_today(const std::string& name,
                        const std::string& where,
                        const std::vector<std::string>& keys,

@@ -113,7 +113,7 @@ const RatedLimit* find_limit(std::string_view key) {
     return found == kRatedLimits.end() ? nullptr : &*found;
 }
 
-/// Returns true if the text is a date YYYY-MM-DD.
+/// Returns true if the text has the form YYYY-MM-DD, with a month of 1 to 12 and a day of 1 to 31.
 bool is_date(std::string_view text) {
     const auto parts = split(text, "-");
     if (text.size() != 10 || parts.size() != 3 || parts[0].size() != 4 || parts[1].size() != 2)

@@ -37,8 +37,8 @@ LinkBox trunk_box(double length_m, double width_m, double low_m, double high_m) 
             {0.5 * length_m, 0.5 * width_m, high_m - rex::kStand_m}};
 }
 
-/// Extends the boxes by points of the parts. Each point is expressed in the base_link pose that
-/// brings it nearest to the box, so that it extends the box least.
+/// Extends the boxes by points of the parts. Each point is expressed in base_link at the pose of
+/// the movement that brings the point nearest to the box, so that it extends the box least.
 class Boxes {
   public:
     explicit Boxes(const RexMovement& still) : movement_(still) {

@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kFade_s = 0.1;  ///< sample interval of the envelopes, which change within 0.4 s
+constexpr double kFade_s = 0.1;  ///< sample interval of the envelopes
 
 TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& config) {
     TrolleyConfig trolley;

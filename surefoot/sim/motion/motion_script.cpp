@@ -22,18 +22,18 @@ struct Limits {
     double slowest_m_s;
     double fastest_m_s;
 };
-/// Speed limits. The REX takes 4 to 20 s per step; trolley and hand-held camera go up to a brisk
-/// walk.
+/// Speed limits of the motion models trolley, rex and hand. The REX takes 4 to 20 s per step;
+/// trolley and hand-held camera go up to a brisk walk.
 constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
 constexpr double kFarthest_m = 1000.0;
 constexpr double kLongestPause_s = 3600.0;
-/// Steepest slope between two waypoints. A trolley takes a ramp; a person with a hand-held camera
-/// climbs stairs.
+/// Steepest slope between two waypoints for trolley, rex (not used) and hand. A trolley takes a
+/// ramp; a person with a hand-held camera climbs stairs.
 constexpr double kSteepest[] = {0.5, 0.0, 1.0};
 constexpr double kLowestHand_m = 0.5;
 constexpr double kHighestHand_m = 2.2;
 
-/// Moves all stops but the first by up to 1 cm along x and y and 0.3 deg.
+/// Moves all stops but the first by up to 1 cm along x and y, and turns them by up to 0.3 deg.
 void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     constexpr std::uint64_t kPathStream = 0x70617468;
     constexpr double kTurn_rad = 0.3 * std::numbers::pi / 180.0;

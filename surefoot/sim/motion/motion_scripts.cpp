@@ -54,7 +54,7 @@ MotionScript sidestep_through_door_script(MotionModel motion_model,
                                           double door_x_m,
                                           double door_y_m,
                                           double beyond_m) {
-    // The machine needs room to turn: half of its depth (0.33 m) and its sway.
+    // The machine needs room to turn before the wall: half of its depth (0.33 m) and its sway.
     constexpr double kBefore_m = 0.6;
     const double before_x_m = door_x_m - kBefore_m;
     return through(motion_model,

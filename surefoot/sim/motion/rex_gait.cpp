@@ -10,7 +10,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kRing_s = 1.2;  ///< duration of a ringing
+constexpr double kRing_s = 1.2;  ///< duration of the ringing after a foot strike
 constexpr double kHanging_rad =
     3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: a swinging foot's toes hang down by this angle
 constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: duration of a foot strike
@@ -37,7 +37,8 @@ Jet ring_window(double t_s) {
     return (1.0 / kPeak) * (power(u, kRing_s, 3) * falling_power(u, kRing_s, 9));
 }
 
-/// A dip whose upward acceleration is 1 in the middle: -u^3 (1-u)^3 scaled by 8/3 T^2.
+/// A dip whose upward acceleration is 1 in the middle: -u^3 (1-u)^3 times (8/3) T^2, with T =
+/// `kPulse_s`.
 Jet strike_dip(double t_s) {
     const double u = t_s / kPulse_s;
     return (-8.0 / 3.0 * kPulse_s * kPulse_s) *
@@ -55,8 +56,8 @@ Pose about_toes(double lift_rad) {
 
 }  // namespace
 
-/// Returns the share of its full tilt that a foot has. The heel rises before the swing and falls
-/// during it, or rises during the swing and falls after it.
+/// Returns the tilt of a foot as a share of its full tilt `lift_rad`. The heel rises before the
+/// swing and falls during it, or rises during the swing and falls after it.
 double RexMotion::lifted(const Swing& swing, double time_s, double share) {
     if (swing.heel_up_s < swing.start_s) {
         if (time_s >= swing.start_s) return 1.0 - share;
@@ -121,7 +122,8 @@ FootState RexMotion::foot(Side side, double time_s) const {
         (time_s - swing.start_s) / std::max(swing.end_s - swing.start_s, 1e-9), 0.0, 1.0);
     const double share = eased(u);
     Eigen::Vector3d at_m = swing.from_m + share * (swing.to_m - swing.from_m);
-    // The foot rises before it moves over the edge, and comes down only behind the edge.
+    // On a step up the foot rises in the first half of the swing, on a step down it sinks in the
+    // second half, so that it clears the edge.
     const double rise_m = swing.to_m.z() - swing.from_m.z();
     at_m.z() = swing.from_m.z() + rise_m * eased(rise_m > 0.0 ? 2.0 * u : 2.0 * u - 1.0);
     const double yaw_rad = swing.from_yaw_rad + share * (swing.to_yaw_rad - swing.from_yaw_rad);

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr int kTrace = 64;
 // The first and the last weight shift take longer than in the trace, so the first and the last
-// sample of the trace are held.
+// sample of the trace are repeated `kLead` times.
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
 /// Tilt of the trailing foot before its swing: 10 deg about the toes. In the trace the ankle of
@@ -71,7 +71,8 @@ const Phases& phases_of(const RexMovement& movement) {
     return movement.forward_m < 0.0 ? kBackward : kAhead;
 }
 
-/// Path of base_link through the trace, seen from the left sole at the start; the right foot leads.
+/// Path of base_link through the trace, relative to the left sole at the start; the right foot
+/// leads.
 struct TraceWay {
     double length_m = 0.0;                  ///< length of the whole step
     std::array<double, kTrace> progress{};  ///< progress of base_link, 0 to 1
@@ -129,7 +130,7 @@ TraceWay make_trace_way() {
         way.sink_m[i] = (1.0 - on_right) * left[i].z_m + on_right * right[i].z_m - left[0].z_m;
         way.pitch_rad[i] = (1.0 - on_right) * left[i].pitch_rad + on_right * right[i].pitch_rad;
     }
-    // The record stops a fraction of a millimetre and of a degree before the end of the step.
+    // The trace ends a fraction of a millimetre and of a degree before the end of the step.
     way.progress[kTrace - 1] = 1.0;
     way.sink_m[kTrace - 1] = 0.0;
     way.pitch_rad[kTrace - 1] = 0.0;
@@ -209,8 +210,9 @@ class RexMotionBuilder {
     double now_s_ = 0.0;
 };
 
-/// Position of a sole on the ground. The ground under the middle of the sole carries the sole, so
-/// toes or heels may reach over an edge.
+/// Position of a sole on the ground. The sole has the height of the ground under its middle, so
+/// toes or heels may reach over an edge. With `ground_under_body` it has the height of the ground
+/// under base_link.
 Vector3d RexMotionBuilder::sole_m(Side side, const RexStand& stand) const {
     constexpr double kMiddle_x_m = 0.057;  // key feet of machines/rex.yaml
     constexpr double kMiddle_y_m = 0.180;
@@ -353,9 +355,9 @@ double RexMotionBuilder::reach_limit_m(const RexMotion::Body& body, double time_
     return limit_m;
 }
 
-/// Lowers base_link as little as possible until both legs reach their feet. Where the spline is too
-/// high, the samples that influence it are lowered in proportion to their weights, in several
-/// rounds (Kaczmarz' method). The first and last samples stay unchanged.
+/// Lowers base_link until both legs reach their feet. Where the spline is too high, the samples
+/// that influence it are lowered in proportion to their weights, in at most `kRounds` rounds
+/// (Kaczmarz' method). The first and last samples stay unchanged.
 void RexMotionBuilder::sink_to_reach(RexMotion::Body& body, std::vector<double> heights_m) const {
     constexpr int kPerSample = 4;
     constexpr int kRounds = 100;
@@ -447,8 +449,8 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     Rng rng(seed);
     Sway sway{};
     sway.size = std::abs(movement.forward_m) / trace_way().length_m;
-    // ASSUMPTION: sway shrinks with the forward length of the step, down to half for a step
-    // sideways or a turn.
+    // ASSUMPTION: roll and yaw of the sway shrink with the forward length of the step, down to half
+    // for a step sideways or a turn.
     const double calm = 0.5 + 0.5 * std::min(1.0, std::abs(movement.forward_m) / 0.40);
     // A flat foot stands with its leg leaning by 9 deg at most (range of the ankle), which moves
     // the hip by 0.13 m. The limit of 0.12 m keeps a margin of 10 mm. Half of a sideways step

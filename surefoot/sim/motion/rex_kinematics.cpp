@@ -62,7 +62,7 @@ Pose pelvis_to_sole(Side side, const LegAngles& angles) {
 
 std::optional<LegAngles> leg_angles(Side side, const Pose& T_body_sole) {
     const Vector3d ankle_body_m = T_body_sole * Vector3d(0.0, 0.0, rex::kAnkleHeight_m);
-    // Position of the hip in the frame of the foot.
+    // Position of the hip relative to the ankle, in the axes of the foot.
     const Vector3d hip = T_body_sole.rotation.conjugate() * (hip_body_m(side) - ankle_body_m);
     const double a = rex::kUpperLeg_m;
     const double b = rex::kLowerLeg_m;

@@ -29,7 +29,8 @@ double wrapped(double angle_rad) {
     return std::remainder(angle_rad, 2.0 * kHalfTurn_rad);
 }
 
-/// Direction of travel in base_link: 0 = ahead, pi = back, +-pi/2 = left and right.
+/// A way to walk. `bearing_rad` is the direction of travel in base_link: 0 = ahead, pi = back,
+/// +-pi/2 = left and right.
 struct Gait {
     Move move;
     double bearing_rad;
@@ -148,8 +149,8 @@ void Planner::walk(const Waypoint& goal, const Gait& gait) {
 }
 
 void Planner::go_to(const Waypoint& goal) {
-    // The shortest forward step is half a step. A point nearer than half of the shortest step
-    // counts as reached.
+    // The shortest forward step is half a step. With Move::automatic, a point nearer than half of
+    // the shortest step counts as reached.
     const double near_m = goal.move == Move::automatic ? 0.25 * sizes_.forward_m : kWorthwhile_m;
     if (distance_m(now_, goal) > near_m) {
         Gait gait = choose(goal);

@@ -43,8 +43,8 @@ SmoothCurve::SmoothCurve(double start_s, double interval_s, std::vector<double> 
 
 Jet SmoothCurve::at(double time_s) const {
     const auto count = static_cast<double>(samples_.size());
-    // Sample i is at x = i. The curve rests from one interval before the first sample and after the
-    // last.
+    // Sample i is at x = i. The curve is constant until one interval before the first sample, and
+    // from one interval after the last sample.
     const double x = std::clamp((time_s - start_s_) / interval_s_, 0.0, count + 1.0) - 1.0;
     const double knot = std::floor(x);
     const double u = x - knot;

@@ -11,7 +11,7 @@
 namespace surefoot::sim {
 namespace {
 
-/// Distance s with its derivatives by time.
+/// Distance along the path with its derivatives by time.
 struct Progress {
     double way_m = 0.0;
     double speed_m_s = 0.0;
@@ -39,7 +39,8 @@ struct Ramp {
     Jet slope;
 };
 
-/// The slope grows as 6u^5 - 15u^4 + 10u^3 over `blend`, stays constant, and vanishes the same way.
+/// The slope grows as 6u^5 - 15u^4 + 10u^3 over `blend_m` and then stays constant. `ramp` mirrors
+/// this function for the second half of the path.
 Ramp starting_ramp(double steepest, double blend_m, double way_m) {
     const double u = std::min(way_m / blend_m, 1.0);
     const double rest_m = way_m - u * blend_m;
@@ -186,8 +187,8 @@ MotionState TrolleyMotion::at(double time_s) const {
                      here.slope.value * way.rate,
                      here.slope.rate * way.rate * way.rate + here.slope.value * way.acceleration};
     const Jet yaw = Jet{segment.from.yaw_rad, 0.0, 0.0} + turn_rad * part;
-    // In body axes the slope rises toward the direction of travel. Turning by a quarter turn
-    // changes the cosine to a sine.
+    // The slope along a body axis is the slope of the path times the cosine of the angle between
+    // this axis and the direction of travel.
     const double direction_rad = std::atan2(way_m.y(), way_m.x());
     const Jet ahead = slope * cosine(yaw, -direction_rad);
     const Jet left = slope * cosine(yaw, 0.5 * std::numbers::pi - direction_rad);

@@ -69,8 +69,8 @@ bool Beam::misses(std::span<const Vector3d> corners_m) const {
 }
 
 double Beam::sine_of_hits(double above_m) const {
-    // The direction to a point at least `above_m` away differs by at most the asin() between
-    // viewpoints in the ball.
+    // Seen from two viewpoints in the ball around the tip, the direction to a point at least
+    // `above_m` away differs by at most the asin() below.
     if (!(above_m > 2.0 * tip_radius_m_)) return 2.0;
     const double angle_rad = half_angle_rad_ + std::asin(tip_radius_m_ / (above_m - tip_radius_m_));
     return angle_rad < 0.5 * std::numbers::pi ? std::sin(angle_rad) : 2.0;

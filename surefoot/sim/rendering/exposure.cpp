@@ -114,7 +114,8 @@ void ExposureControl::settle(const Image<float>& signal_dn) {
 
 void ExposureControl::update(const Image<float>& signal_dn, double step_s) {
     if (!config_.automatic) return;
-    // A mean below a tenth of a grey value is black; the control then opens to its limit.
+    // A mean below 0.1 counts as 0.1, because a black image has no usable mean. The control then
+    // opens towards its limit.
     const double mean_dn = std::max(metered_mean_dn(signal_dn, product_), 0.1);
     const double share = config_.lag_s > 0.0 ? 1.0 - std::exp(-step_s / config_.lag_s) : 1.0;
     product_ *= std::pow(config_.target_dn / mean_dn, share);

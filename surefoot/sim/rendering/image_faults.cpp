@@ -19,8 +19,8 @@ void draw(const ImageFaultConfig& config, int height, Rng& rng, Schedule& schedu
     const int frames = static_cast<int>(schedule.size());
     int thaw_frame = 0;
     for (int frame = 1; frame < frames; ++frame) {
-        // Always draw two numbers per frame, so that a change of one setting does not shift other
-        // faults.
+        // Always draw two numbers per frame, so that a fault of one frame does not change the
+        // random numbers of later frames.
         double chance = rng.uniform();
         const int tear_row = 1 + static_cast<int>(rng.uniform() * std::max(height - 1, 1));
         const auto happens = [&](double probability) {

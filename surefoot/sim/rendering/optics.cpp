@@ -100,7 +100,7 @@ std::vector<float> smear_kernel(double sigma_px) {
     if (!(sigma_px > 0.0)) return {1.0F};
     const int radius = saturated_integer<int>(std::ceil(4.0 * sigma_px) + 1.0);
     // Sampling narrows a small spot. So bisect for the width whose samples have the requested
-    // moment.
+    // second moment.
     double low_px = 0.05;
     double high_px = 2.0 * sigma_px + 1.0;
     for (int i = 0; i < 60; ++i) {

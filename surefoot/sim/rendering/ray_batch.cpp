@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Products are summed in the order that Eigen uses for three doubles. A dot product, and each of
 // the first two rows of matrix times vector, is (x + y) + z. The third row is x + (y + z). No
-// multiply-add is fused, and divisions are exact, so all instruction sets round alike.
+// multiply-add is fused, and divisions are correctly rounded, so all instruction sets give the same
+// results.
 #include "surefoot/sim/rendering/ray_batch.hpp"
 
 #include <cstdint>

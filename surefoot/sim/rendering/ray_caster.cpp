@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An object that touches a plane from behind does not count as hidden, because rounding decides
-/// which surface is visible.
+/// An object that touches a plane from behind does not count as hidden, because rounding errors
+/// decide which surface is visible.
 constexpr double kBehind_m = 1e-6;
 
-/// Upper bound of the angle between two rotations: |A - B| (Frobenius) = 2 sqrt(2) sin(angle / 2).
+/// Angle between two rotations, from |A - B| (Frobenius) = 2 sqrt(2) sin(angle / 2).
 double angle_between_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     const double half_sine = std::min((a - b).norm() / (2.0 * std::sqrt(2.0)), 1.0);
     return 2.0 * std::asin(half_sine);

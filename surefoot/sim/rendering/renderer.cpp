@@ -362,8 +362,9 @@ Image<float> Renderer::noise_image(int width,
     if (config_.imaging.noise_size_px <= 0.0) return normals;
     const std::vector<float> kernel = smear_kernel(config_.imaging.noise_size_px);
     smear(kernel, executor, normals);
-    // The variance of a weighted sum of independent numbers is the sum of the squared weights, once
-    // for each direction.
+    // The numbers are independent and have variance 1. Smoothing along one direction multiplies the
+    // variance by the sum of the squared weights. Two directions thus multiply the sigma by this
+    // sum.
     float squares = 0.0F;
     for (const float weight : kernel) squares += weight * weight;
     executor.parallel_for(height, [&](int v) {

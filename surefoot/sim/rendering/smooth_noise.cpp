@@ -15,7 +15,8 @@ namespace {
 constexpr double kLengthInSteps = 1.1857971;
 enum Stream : std::uint64_t { shift, values };
 
-/// Random numbers of a lattice. Each number depends on its position only, not on the lattice size.
+/// Random numbers of a lattice. Each number depends on the seed and on its position, not on the
+/// lattice size.
 std::vector<float> lattice(const PixelNoise& noise, std::uint64_t seed, int width, int height) {
     std::vector<float> nodes;
     nodes.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

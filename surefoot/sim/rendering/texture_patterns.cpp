@@ -177,7 +177,7 @@ void draw_terrazzo(Image<float>& field, Rng& rng) {
     add_noise(field, 256, 256, 0.1F, rng);
 }
 
-/// Draws a dark binder with bright grit a texel or two wide, and worn lanes.
+/// Draws fine noise, dark and bright grains up to 7 texels long, and worn areas.
 void draw_asphalt(Image<float>& field, Rng& rng) {
     for (const int cell : {2, 2, 4}) add_noise(field, cell, cell, 0.5F, rng);
     scatter(field, 9000, 1.0F, 3.5F, true, rng);
@@ -212,8 +212,7 @@ void draw_gravel(Image<float>& field, Rng& rng) {
     add_noise(field, 2, 2, 0.15F, rng);
 }
 
-/// Draws blades in all directions, longer than they are wide, and thin and thick places of the
-/// lawn.
+/// Draws blades in all directions, longer than they are wide, and thin and thick areas of the lawn.
 void draw_grass(Image<float>& field, Rng& rng) {
     add_noise(field, 8, 8, 0.3F, rng);
     for (int i = 0; i < 14000; ++i) {

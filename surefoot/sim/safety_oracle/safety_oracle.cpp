@@ -69,7 +69,9 @@ rules::Stance stance_here(const Scene& scene,
     return stance;
 }
 
-/// Returns true if every pose and limit within the margin gives the same answer.
+/// Returns true if the answer is the same at seven poses: in the middle and at the ends of the
+/// margin along x, y and yaw. The limits are changed by the margin too: stricter for a safe
+/// movement, looser for an unsafe one.
 bool holds_around(const GroundField& field,
                   const std::vector<char>& reached,
                   const Figures& figures,

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A value that reaches a limit exactly does not exceed it, despite rounding [m, rad].
+/// Tolerance for rounding errors [m, rad]: a value that equals its limit does not exceed it.
 constexpr double kRounding = 1e-7;
 
 /// Keeps the worst finding of each danger.
@@ -89,7 +89,7 @@ double mean_above(const FootGround& foot, const Vector2d& slope) {
     return sum_m / static_cast<double>(foot.points.size());
 }
 
-/// Checks one pose and one movement with the rules in the order of `Danger`.
+/// Checks one pose and one movement. The findings are in the order of `Danger`.
 class Inspector {
   public:
     Inspector(const GroundField& field,
@@ -157,7 +157,7 @@ class Inspector {
 
     void check_height(const SolePoint& p, double above_m) {
         const Collector::Place at{p.p_field_m, p.z_m};
-        // On stairs a step down is not a drop.
+        // A step down that the movement class allows is not a drop.
         const double drop_m = std::max(figures_.drop_m, figures_.down_m);
         if (above_m > figures_.up_m + kRounding) {
             found_.add(Danger::step_up, above_m, above_m, figures_.up_m, at);

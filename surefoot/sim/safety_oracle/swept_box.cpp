@@ -16,8 +16,8 @@ constexpr double kPiece_rad = 0.5 * std::numbers::pi / 180.0;
 /// A point on the border belongs to the box, despite rounding errors of the motion.
 constexpr double kRim_m = 1e-9;
 
-/// Narrows the part [enter, leave] of the path during which `offset - s * travel` lies in [low,
-/// high].
+/// Narrows [enter, leave] to the part of the path where `offset - s * travel` lies in [low, high].
+/// The result is empty (leave < enter) if there is no such part.
 void clip_slab(
     double offset, double travel, double low, double high, double& enter, double& leave) {
     if (travel == 0.0) {

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// A surface is buried if another solid begins at the surface or below and ends above the surface.
+/// Tolerance of heights. A surface is buried if another solid begins at the surface or below and
+/// ends above the surface.
 constexpr double kTouch_m = 1e-9;
 /// Queries of tiles are slightly wider than the tiles, so that a solid that ends on a tile border
 /// is not lost.

@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A surface is buried if another solid begins at the surface or below and ends above the surface.
+/// Tolerance of heights. A surface is buried if another solid begins at the surface or below and
+/// ends above the surface.
 constexpr double kTouch_m = 1e-9;
 
 }  // namespace

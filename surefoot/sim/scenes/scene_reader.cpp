@@ -204,7 +204,7 @@ void SceneReader::define(const SceneNode& origin, const std::string& name, doubl
 void SceneReader::define_value(const SceneNode& name, const SceneNode& value) {
     if (value.kind == SceneNode::Kind::text && looks_like_a_word(value.text, numbers_)) {
         const std::string meant = word(value);
-        define(name, name.key, 0.0);  // fails if the name is already used
+        define(name, name.key, 0.0);  // fails if the name is invalid or already used
         forget(name.key);
         words_[name.key] = meant;
         return;

@@ -55,7 +55,7 @@ void add_tread(
     const bool up = flight.direction == StairDirection::up;
     Tread support = tread;
     (up ? support.begin_m : support.end_m) += up ? flight.nosing_m : -flight.nosing_m;
-    // The board reaches back to the next riser, which stands under the next nose.
+    // The board extends under the nose of the next higher tread, up to the riser there.
     (up ? tread.end_m : tread.begin_m) += up ? flight.nosing_m : -flight.nosing_m;
     const double under_m = tread.top_m - flight.tread_thickness_m;
     add_block(site, flight, place, tread, under_m);
@@ -166,7 +166,8 @@ void FlightSpec::add(Site& site) const {
         tread.begin_m = (step - 1) * going_m;
         tread.end_m = tread.begin_m + (last && landing_m > 0.0 ? landing_m : going_m);
         tread.top_m = (up ? 1.0 : -1.0) * step * rise_m;
-        // Two neighbours differ by at most the variation; the ends of the flight are exact.
+        // The rise between two neighbours deviates from `rise_m` by at most the variation. Both
+        // ends of the flight are exact.
         if (!last && rise_variation_m > 0.0) {
             tread.top_m += 0.5 * site.rng.uniform(-rise_variation_m, rise_variation_m);
         }

@@ -373,7 +373,8 @@ AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, floa
     const float found_px =
         match.invented ? view.shadows.bridge_px.row(v)[u] : view.disparity_px.row(v)[u];
     const auto search_px = static_cast<float>(config_.max_disparity_px / config_.stride);
-    // This test uses the upper end of `luck`, so that it is independent of the bridges.
+    // This test uses the upper end of `luck`, and the bridges use its lower end. So bridged pixels
+    // are missing only if the two chances together exceed 1.
     const bool missing = 1.0F - luck < view.missing_chance.row(v)[u];
     const bool nothing = shadow == Shadow::outside || (hidden && !bridged) || missing;
     match.disparity_px = nothing || !(found_px <= search_px) ? kNanF : found_px;

@@ -172,7 +172,8 @@ double DepthCamera::normal(std::uint64_t stream, std::uint32_t pixel) const {
     return static_cast<double>(noise_.normal(PixelNoise::key(seed_, stream), pixel));
 }
 
-/// Difference of depth between two neighbouring disparities, from f b / d, at depth_m.
+/// Difference of depth between two neighbouring steps of the disparity at depth_m, from depth = f b
+/// / d.
 double DepthCamera::depth_step_m(double depth_m) const {
     const double factor_px_m = focal_px_ * std::abs(config_.projector_x_m);
     if (factor_px_m == 0.0) return 0.0;

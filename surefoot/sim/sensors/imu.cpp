@@ -33,9 +33,9 @@ Vector3d converted(Vector3d value, double range, double step) {
     return value;
 }
 
-/// EuRoC's calibration (imu0/sensor.yaml); range and counts of the ADIS16448 data sheet: 1000 deg/s
-/// at 0.04 deg/s, 18 g at 0.833 mg. ASSUMPTION: the bias that remains at the start after the
-/// sensor's own calibration.
+/// Densities and random walks from EuRoC's calibration (imu0/sensor.yaml). Ranges and counts from
+/// the ADIS16448 data sheet: 1000 deg/s at 0.04 deg/s, 18 g at 0.833 mg. ASSUMPTION: the bias that
+/// remains at the start after the sensor's own calibration.
 ImuNoiseConfig adis16448() {
     return {.gyro_density_rad_s_sqrt_hz = 1.6968e-4,
             .accel_density_m_s2_sqrt_hz = 2.0e-3,

@@ -29,7 +29,7 @@ constexpr double kWhite = 0.9;
 
 /// Number of steps in a span; tolerates angles that decimal fractions do not represent exactly.
 int steps_in(double span_deg, double step_deg) {
-    // in range: LaserScannerConfig::describe() keeps spans below 720 and steps above 0.001 deg
+    // in range: LaserScannerConfig::describe() keeps spans up to 720 deg and steps from 0.001 deg
     return static_cast<int>(std::floor(span_deg / step_deg + 1e-6));
 }
 
@@ -157,8 +157,8 @@ void LaserScanner::aim(const Pose& T_world_scanner, int column, Beams& beams) co
     }
 }
 
-/// Casts four rays from the station through the disc that the beam lights. The disc lies at the
-/// range of the middle ray.
+/// Sets the directions of four rays from the station through the disc that the beam lights. The
+/// disc lies at the range of the middle ray.
 void LaserScanner::widen(Beams& beams) const {
     beams.ring.clear();
     for (std::size_t row = 0; row < beams.directions.size(); ++row) {

@@ -40,7 +40,7 @@ constexpr std::array<Mode, 4> kModes{{{"zed_vga", 672, 376, 342.0, 100.0},
 constexpr double kZedBaseline_m = 0.12;
 constexpr const char* kRolling = "_rolling";
 
-/// Returns the rig on the armrest with an IMU beside its cameras.
+/// Returns the rig on the armrest with an IMU midway between its cameras.
 camera::StereoRig mounted(const char* name, const camera::Camera& camera, double baseline_m) {
     camera::StereoRig rig;
     rig.name = name;

@@ -23,7 +23,8 @@ struct Behind {
     float front_px = 0.0F;
 };
 
-/// Walks along a line of pixels, away from its jumps. Without a surface the disparity is NaN.
+/// Walks along a line of pixels and counts the steps since the last jump to a farther surface. A
+/// pixel without a surface has a NaN disparity.
 class LineWalk {
   public:
     LineWalk(float jump_px, int reach) : jump_px_(jump_px), reach_(reach) {}
@@ -72,7 +73,7 @@ bool all_show(const std::int32_t* surface, int wanted) {
     return differs == 0;
 }
 
-/// Walks along one row, away from its jumps in both directions.
+/// Walks along one row, first to the right and then to the left.
 void walk_row(const float* disparity_px,
               const std::int32_t* surface,
               int width,
