@@ -17,7 +17,7 @@ using odometry::PoseSolution;
 using odometry::StereoPixel;
 
 constexpr std::uint64_t kSeed = 1;  ///< fixed, so that the same views always give the same pose
-constexpr int kBorder_px = 32;      ///< there are no features nearer to the border
+constexpr int kBorder_px = 32;  ///< `describe` finds no features nearer than 31 px to the border
 
 StereoPixel pixel_of(const Feature& feature) {
     return feature.pixel_px.cast<double>();

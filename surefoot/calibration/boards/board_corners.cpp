@@ -97,7 +97,7 @@ void fit_corners(const Board& board, ImageView<const std::uint8_t> image, BoardV
         found[static_cast<std::size_t>(view.ids[i])] = view.pixels[i];
     BoardView fitted_view;
     for (int round = 0; round < kRounds; ++round) {
-        const Found before = found;  // rough positions of hidden points still give directions
+        const Found before = found;  // a point without a fit keeps its rough position
         fitted_view = {};
         for (const int id : view.ids) {
             const auto guess = guess_of(board, before, id);

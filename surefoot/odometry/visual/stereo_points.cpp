@@ -164,7 +164,8 @@ std::optional<camera::Side> camera_of_corner(const camera::Rectifier& rectifier,
         if (!px) return -1.0;
         const auto score = scores_along(
             other, patch, epipolar_curve(rectifier, camera, *px, config.max_disparity_px));
-        // Small disparities lie in the same direction for both cameras.
+        // At small disparities, the curves of both cameras lie close together and do not tell the
+        // cameras apart.
         const auto near = score.begin() + std::min<std::ptrdiff_t>(kSamePeak_px, std::ssize(score));
         return near == score.end() ? -1.0 : *std::max_element(near, score.end());
     };

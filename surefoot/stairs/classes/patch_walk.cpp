@@ -171,7 +171,7 @@ std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
 void PatchWalk::link_flight(const grid::GridGeometry& grid,
                             const Flight& flight,
                             const PatchMap& patches) {
-    if (flight.steps < 2) return;  // a single step proves no more than the two planes
+    if (flight.steps < 2) return;  // a single step adds no evidence to its two planes
     const bool up = flight.kind == FlightKind::up;
     std::int32_t last = kNone;
     const auto update = [&](std::int32_t id) {

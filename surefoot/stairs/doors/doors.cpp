@@ -246,7 +246,7 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
 bool DoorFinder::turn_to_walls(Opening& opening) const {
     constexpr int kRounds = 6;
     constexpr double kSure_m = 0.03;      // nearer cells have equal weights; about one cell
-    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more accurately
+    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more accurately than this
     const Vector2d first = opening.across;
     double offset_m = 0.0;
     for (int round = 0; round < kRounds; ++round) {

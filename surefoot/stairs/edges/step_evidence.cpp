@@ -147,7 +147,8 @@ void StepEvidenceFinder::measure_slices(double length_m) {
     }
 }
 
-/// Computes the residual of each cell from the profile, which is linear between the slices.
+/// Computes the weights of the slices from the residuals of the cells. A residual is the height
+/// above the profile, which is linear between the slices.
 void StepEvidenceFinder::weigh_slices() {
     residual_m_.assign(static_cast<std::size_t>(box_width_) * static_cast<std::size_t>(box_height_),
                        std::numeric_limits<float>::quiet_NaN());
