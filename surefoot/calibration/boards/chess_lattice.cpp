@@ -179,6 +179,7 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
             const Link& aside = link(corner, edge + 1);
             if (ahead.to == kNobody || aside.to == kNobody) continue;
             // Takes the sideways step at the corner ahead, and the step ahead at the corner aside.
+            // Both must lead to the same corner.
             const Link& first = link(ahead.to, ahead.back + 3);
             const Link& second = link(aside.to, aside.back + 1);
             if (first.to == kNobody || first.to != second.to) continue;

@@ -22,7 +22,7 @@ namespace {
 /// 0.4 % too large, with one ring 0.27 %.
 constexpr std::size_t kNeighbours = 9;
 /// Reach of the dark area beyond the rim: about three sigma of a blur of 0.8 px. Farther pixels
-/// only add noise, and far noise has the largest weight.
+/// only add noise, and noise far from the centre moves the centre of gravity most.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 

@@ -77,7 +77,7 @@ double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     return rms;
 }
 
-/// Returns the name of a lens kind in a sentence.
+/// Returns the name of a lens kind for use in a sentence.
 std::string name_of(LensKind kind) {
     switch (kind) {
         case LensKind::fisheye: return "a fisheye";

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-/// 5 deg: largest slope sigma of a patch that may carry.
+/// Largest slope sigma (5 deg) of a patch that may carry the machine.
 constexpr double kCarries_sigma_rad = 0.09;
 constexpr double kContact_m = 0.2;   ///< smallest width of a contact for a foot
 constexpr double kStance_m = 0.3;    ///< equal to kStance_m in feature_finder.cpp

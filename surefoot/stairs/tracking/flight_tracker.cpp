@@ -157,7 +157,7 @@ void FlightTracker::update(std::span<const Flight> seen,
             continue;
         }
         FlightTrack& track = add();
-        // `take` fills the new track. Until then no observation has found it.
+        // `take` fills the new track and counts its first observation, so the count begins at 0.
         track.flight.tracked = {.id = ids.next(), .observations = 0};
         track.flight.going_m = track.flight.riser_m = track.flight.width_m = std::nan("");
         take(seen[i], time_ns, track);
