@@ -25,7 +25,8 @@ constexpr double kCoastTime_s = 0.15;   ///< decay time of the predicted velocit
 constexpr double kKeyframeShare = 0.7;  ///< new keyframe if a smaller share of points remains
 constexpr double kKeyframeParallax = 0.035;  ///< new keyframe if parallax / image width is larger
 constexpr int kKeyframePeriod = 12;          ///< new keyframe after this many frames of motion
-constexpr double kLeastNewErrors = 1e-3;  ///< smallest share of errors that two poses do not share
+/// Smallest share of the errors that two poses do not have in common.
+constexpr double kLeastNewErrors = 1e-3;
 /// Time after a torn image in which the next images are suspect. The check of rows detects only the
 /// first of several torn images in a row. The old rows of the later images belong to frames that
 /// never arrived.

@@ -283,7 +283,7 @@ BoardSighting find_charuco(const Board& board, const cv::Mat& image) {
     BoardSighting sighting;
     sighting.view.ids = ids;
     sighting.view.pixels = points_of(corners);
-    // The window ends before the marker beside the corner.
+    // This share of a square ends before the marker beside the corner.
     const double margin = 0.5 * (board.spacing_m - board.marker_m) / board.spacing_m;
     if (!refine_corners(board, image, margin, sighting.view))
         return not_found(

@@ -21,7 +21,8 @@ constexpr double kCorrelationNoise =
     0.05;  ///< smaller differences of the whole-pixel correlation are noise
 constexpr double kCoarseCorrelation = 0.6;  ///< smallest correlation before the refinement
 constexpr double kRefineShift_px = 2.0;
-constexpr double kDepthEdge = 0.03;  ///< smallest relative depth step of an edge in 3x3 pixels
+/// A relative depth step of this size within 3 x 3 pixels is an edge.
+constexpr double kDepthEdge = 0.03;
 
 struct Window {
     std::array<float, kCount> value{};

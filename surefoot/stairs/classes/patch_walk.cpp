@@ -126,7 +126,8 @@ void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
     }
 }
 
-/// Links patches whose planes meet within a step, over a foot's width.
+/// Links two patches if the height between their planes is at most one step, over at least a foot's
+/// width.
 void PatchWalk::link_neighbours(double block_m) {
     links_.clear();
     const double near_m = config_.smear_m + block_m;  // an edge may be oblique to the grid

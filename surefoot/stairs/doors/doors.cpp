@@ -97,7 +97,7 @@ struct DoorFinder::Sill {
 /// The ground on one side of the jambs, as a straight line along the way.
 struct DoorFinder::GroundLine {
     bool known = false;
-    double at_m = 0.0;  ///< position of the jamb end of the line, along the way
+    double at_m = 0.0;  ///< position of the end of the line at the jambs, along the way
     double height_m = 0.0;
     double slope = 0.0;
     double point_var_m2 = 0.0;  ///< variance of the mean height over the width, at one position

@@ -58,7 +58,8 @@ Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     return b.from_m + 0.5 * (first_m + last_m) * along;
 }
 
-/// Returns the height difference of the lower grounds, without the part that a bound leaves open.
+/// Returns the smallest possible height difference of the lower grounds. Lower ground that was not
+/// seen lies at `lower_m` or lower.
 double lower_difference_m(const Edge& a, const Edge& b) {
     const double difference_m = b.lower_m - a.lower_m;
     if (a.lower_seen && b.lower_seen) return std::abs(difference_m);

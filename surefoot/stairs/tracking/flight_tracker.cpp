@@ -22,8 +22,8 @@ constexpr double kGoingShared_m = 0.0015;
 /// Smallest lead in votes that changes the number of steps. Two alternating numbers do not change
 /// it.
 constexpr float kLead = 1.0F;
-/// Edges that lie this many risers off the line of a flight belong to another flight, behind a
-/// landing.
+/// Edges that lie more than this number of risers off the line of a flight belong to another
+/// flight, behind a landing.
 constexpr double kFarEnd_risers = 1.5;
 
 int common_edges(const Flight& a, const Flight& b) {
