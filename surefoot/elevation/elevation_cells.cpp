@@ -117,7 +117,8 @@ void ElevationCells::update(std::size_t cell,
     }
     if (result.outcome == FusionOutcome::inflated) {
         const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
-        // The motion did not cause this growth.
+        // The motion of the machine did not cause this growth. So the variance at the alignment
+        // grows by the same amount.
         if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;
         var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
@@ -220,8 +221,8 @@ void ElevationCells::forget(std::size_t cell) {
     layers_.density_ratio.data()[cell] = kNanF;
     forget_overhead(cell);
     seen_through_.data()[cell] = 0;
-    // The removed surface may hang over the ground. So the surface limits the clearance until a few
-    // lines of sight have passed through it.
+    // The removed surface may hang over the ground. So a surface with more than one observation
+    // limits the clearance until five lines of sight have passed through it.
     see_above(cell, before_m, trust, true);
 }
 
@@ -297,7 +298,7 @@ void ElevationCells::start(std::size_t cell,
     viewpoint_.data()[cell] = look.view;
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
-    // An overhead object of an unknown cell stays, unless it is the new surface.
+    // A known overhead object stays if it is more than min_overhead_m above the new surface.
     forget_overhead_near(cell);
     set_clearance(cell);
 }
@@ -338,7 +339,7 @@ void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
     // Rounds to the nearest sixteenth; half a sixteenth rounds up.
     const float share = kGone * confidence;
-    // in range: confidence is in [0, 1]: recall() checks it, observations mix it with 1
+    // in range: confidence is in [0, 1]: recall() checks it, observations mix it with 0 or 1
     const int whole = static_cast<int>(share);
     const int more = share - static_cast<float>(whole) >= 0.5F ? 1 : 0;
     steady_.data()[cell] = static_cast<std::uint8_t>(whole + more);

@@ -6,7 +6,7 @@
 namespace surefoot::elevation {
 namespace {
 
-constexpr double kMaxSideCells = 4096.0;  ///< gives 16.8 million cells; their layers take 1.2 GB
+constexpr double kMaxSideCells = 4096.0;  ///< 16.8 million cells; their layers take 1.2 GB
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBlurred = 0.3;       ///< an image with a smaller sharpness ratio is blurred
 constexpr double kMinAgreeing = 0.35;  ///< smallest share of the tracks that agree on one motion
-/// Largest translation sigma / depth of the scene of an OK frame.
+/// Largest ratio of the translation sigma to the depth of the scene in an OK frame.
 constexpr double kDegradedDepthShare = 0.01;
 constexpr double kDegradedRotation_rad = 0.01;
 constexpr double kGapPeriods = 3.5;  ///< a gap is longer than this many usual periods

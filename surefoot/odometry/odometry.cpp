@@ -25,9 +25,11 @@ constexpr double kCoastTime_s = 0.15;   ///< decay time of the predicted velocit
 constexpr double kKeyframeShare = 0.7;  ///< new keyframe if a smaller share of points remains
 constexpr double kKeyframeParallax = 0.035;  ///< new keyframe if parallax / image width is larger
 constexpr int kKeyframePeriod = 12;          ///< new keyframe after this many frames of motion
-constexpr double kLeastNewErrors = 1e-3;  ///< smallest share of errors that two poses do not share
+/// Smallest share of the errors that two poses do not have in common.
+constexpr double kLeastNewErrors = 1e-3;
 /// Time after a torn image in which the next images are suspect. The check of rows detects only the
-/// first of several torn images in a row; data of the others never arrived.
+/// first of several torn images in a row. The old rows of the later images belong to frames that
+/// never arrived.
 constexpr double kTearing_s = 1.0;
 /// Time after a frame with too little depth in which poses are suspect. The cause may be swapped
 /// cameras, for which enough wrong points agree by chance in some frames.
@@ -142,7 +144,7 @@ struct Odometry::Impl {
     Pose T_odom_good;                        ///< camera pose at `good_time_ns`
     double sharpness = 0.0;                  ///< sharpness of the image at `good_time_ns`
     double usual_gap_s = 0.0;                ///< time between the two frames before this one
-    bool was_unsure = false;                 ///< the previous frame gave no pose
+    bool was_unsure = false;                 ///< the previous frame was LOST
     bool without_depth = false;              ///< the present frame measured too little depth
     std::optional<std::int64_t> torn_ns;     ///< stamp of the last torn image
     std::optional<std::int64_t> shallow_ns;  ///< stamp of the last frame with too little depth

@@ -25,7 +25,7 @@ bool StillDetector::update(std::span<const Track> tracks,
                            const Pose& T_odom_camera,
                            const Matrix6& covariance,
                            double residual_px) {
-    // Both lists are short: index the marks by slot.
+    // Indexes the marks by slot, so that no track searches the list of marks.
     std::vector<const Mark*> by_slot(static_cast<std::size_t>(map.slots()), nullptr);
     for (const Mark& mark : anchor_)
         if (mark.slot < map.slots() && map.at(mark.slot).id == mark.id)

@@ -56,7 +56,7 @@ void PlaceTracker::forget_pending() {
 void PlaceTracker::add_node() {
     if (lost_) {
         add_sigmas(covariance_, kLostSigma_m, kLostSigma_rad);
-        forget_pending();  // earlier recognitions belong to another odom
+        forget_pending();  // T_map_odom may differ from that of the earlier recognitions
     }
     if (graph_.nodes() == 0)
         graph_.add_first(last_.T_odom_body);

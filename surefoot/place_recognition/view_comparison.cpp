@@ -17,7 +17,7 @@ using odometry::PoseSolution;
 using odometry::StereoPixel;
 
 constexpr std::uint64_t kSeed = 1;  ///< fixed, so that the same views always give the same pose
-constexpr int kBorder_px = 32;      ///< there are no features nearer to the border
+constexpr int kBorder_px = 32;  ///< `describe` finds no features nearer than 31 px to the border
 
 StereoPixel pixel_of(const Feature& feature) {
     return feature.pixel_px.cast<double>();
@@ -47,7 +47,7 @@ std::vector<PointMatch> point_matches(const ComparisonConfig& config,
     return points;
 }
 
-/// Result of searching the features of one view in the other.
+/// Result of a search for the features of one view in the other view.
 struct Answers {
     std::vector<int> who;                ///< checked features
     std::vector<FeatureMatch> agreeing;  ///< (checked feature, found feature)
@@ -186,7 +186,7 @@ void judge_off_floor(const ComparisonConfig& config,
         }));
 }
 
-/// True if enough features off the floor agree. Features that are not visible do not count.
+/// True if enough features off the floor agree. Features outside the other image do not count.
 bool more_than_a_floor(const ComparisonConfig& config, const Comparison& found) {
     return found.asked_off_floor >= config.min_asked_off_floor &&
            found.agreeing_off_floor >= config.min_agreeing_off_floor * found.asked_off_floor;

@@ -21,8 +21,8 @@ constexpr double kHeightTolerance_m = 0.06;
 constexpr float kMostWeight = 8.0F;
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
-/// Sample position in a cell. The position differs from frame to frame, so the mean over frames is
-/// the mean over the cell.
+/// Sample position in a cell. The position changes after every kRowPhases frames, when all rows
+/// have had a turn. So the mean of four samples is the mean over the cell.
 struct InCell {
     double x;
     double y;

@@ -72,8 +72,8 @@ struct Lanes {
 
 constexpr int kMostTiles = MirrorPatch::kLines * MirrorPatch::kLineCells / (kTile * kTile);
 
-/// Normalises the strength of the tiles. Weak tiles are raised less, because they contain mostly
-/// noise. Limits outliers.
+/// Normalises the strength of the tiles. Weak tiles are not raised to full strength, because they
+/// contain mostly noise. Limits outliers.
 void level(Image<float>& detail) {
     std::array<Strength, kMostTiles> tiles;
     Strength all;

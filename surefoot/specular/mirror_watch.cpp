@@ -169,8 +169,8 @@ void MirrorWatch::look(int direction) {
     if (!is_impossible(pane)) suspect(pane);
 }
 
-/// Returns the position at which the pane crosses the middle of a patch with this angle, in cells
-/// across the lines of the patch.
+/// Returns the line number, with its fraction, at which the pane crosses the middle of a patch with
+/// this angle.
 double MirrorWatch::place_of(const SuspectedPane& pane, double angle_rad) const {
     const Eigen::Vector2d across(std::cos(angle_rad), std::sin(angle_rad));
     const double away_m = (pane.offset_m - pane.normal.dot(middle_m_)) / pane.normal.dot(across);

@@ -71,8 +71,8 @@ HWY_INLINE void turn(const std::uint8_t* in,
 }
 #else
 /// Lanes 16 b ... 16 b + 15 of the result are the 16 bytes at from + 16 b stride. The function uses
-/// loads that repeat 16 bytes and blends instead of shuffles, because wide registers do only one
-/// shuffle at a time.
+/// blends, and loads that repeat 16 bytes. It uses no shuffles, because a processor does only one
+/// shuffle of wide registers at a time.
 HWY_INLINE Bytes load_pieces(const std::uint8_t* from, std::ptrdiff_t stride) {
 #if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4
     return static_cast<void>(stride), hn::LoadU(kBytes, from);
@@ -132,7 +132,7 @@ HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
     turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
 }
 
-/// Shifts each byte to the right. No instruction set has one instruction for this.
+/// Shifts each byte to the right. x86 has no instruction that shifts single bytes.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
 #if HWY_TARGET == HWY_SCALAR
     return hn::Set(kBytes, static_cast<std::uint8_t>(hn::GetLane(value) >> shift));

@@ -43,9 +43,9 @@ std::optional<Eigen::Vector2d> step_px(const Line& line, const Found& found) {
     return std::nullopt;
 }
 
-/// Returns the curvature [1/px] of the parabola through the point and its two neighbours. At the
-/// end of a line, the parabola goes through the last three points. Returns 0 if one of these points
-/// is unknown.
+/// Returns the curvature [1/px] of the parabola through the point and its two neighbours. At either
+/// end of a line, the parabola goes through the three points at this end. Returns 0 if one of these
+/// points is unknown.
 double bend_per_px(const Line& line, const Found& found) {
     const int middle = std::clamp(line.place, 1, std::max(1, line.length - 2));
     const auto before = line.at(found, middle - 1);
@@ -97,7 +97,7 @@ void fit_corners(const Board& board, ImageView<const std::uint8_t> image, BoardV
         found[static_cast<std::size_t>(view.ids[i])] = view.pixels[i];
     BoardView fitted_view;
     for (int round = 0; round < kRounds; ++round) {
-        const Found before = found;  // rough positions of hidden points still give directions
+        const Found before = found;  // a point without a fit keeps its rough position
         fitted_view = {};
         for (const int id : view.ids) {
             const auto guess = guess_of(board, before, id);

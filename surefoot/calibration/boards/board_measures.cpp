@@ -105,7 +105,8 @@ std::optional<Pose> pose_by_size(const Triangulated& seen, const camera::Camera&
 }
 
 /// Returns the depths relative to the plane through all points [m]. The plane is fitted in 1/z,
-/// because the noise of a disparity is uniform in 1/z and the plane is linear.
+/// because 1/z is linear along a plane, and the noise of a disparity gives equal errors of 1/z
+/// everywhere.
 std::vector<double> beside_plane_m(std::span<const Eigen::Vector3d> points_m) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();

@@ -254,8 +254,8 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
         if (board.kind == BoardKind::chessboard && !black_where_it_should_be(board, points, image))
             continue;
         // If the rows of asymmetric circles are shifted in the wrong direction, the fit error grows
-        // by a quarter of the row spacing. All correct orders fit equally well: choose the order
-        // whose rows point farthest to the right in the image.
+        // by almost half the point spacing (boards with five or more rows). All correct orders fit
+        // equally well: choose the order whose rows point farthest to the right in the image.
         const double tolerance_px = 0.1 * board.spacing_m * std::sqrt(map->J_px_m.determinant());
         const double right = row_direction(board, whole_view(points)).x();
         const bool better = !best || map->rms_px < best_rms_px - tolerance_px ||

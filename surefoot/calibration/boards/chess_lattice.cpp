@@ -18,8 +18,8 @@ constexpr double kLeastCosine = 0.906;
 /// Number of corners that may be the next corner along an edge. The nearest corners are tried
 /// first.
 constexpr std::size_t kTried = 4;
-/// Positions along an edge, as shares of its length, where black must be on one side and white on
-/// the other.
+/// Positions along an edge, as shares of its length, where its two sides are compared. At four of
+/// them or more, black must be on one side and white on the other.
 constexpr std::array kAlong{0.2, 0.35, 0.5, 0.65, 0.8};
 /// Least mean contrast of an edge, as a share of the smaller contrast of its two end corners.
 constexpr double kLeastEdge = 0.25;
@@ -59,8 +59,8 @@ std::optional<double> grey_at(ImageView<const std::uint8_t> image, const Eigen::
 }
 
 /// Returns true if an edge runs from one corner to the other. Black must be on the onwards side of
-/// the edge (`black_onwards`) or on the other side. Onwards means rotated from x (right) to y
-/// (down).
+/// the edge (`black_onwards`) or on the other side. The onwards side is 90 deg from the direction
+/// of the edge, rotated from x (right) to y (down).
 bool is_edge(ImageView<const std::uint8_t> image,
              const ChessCorner& from,
              const ChessCorner& to,
@@ -179,6 +179,7 @@ std::vector<Links> sides_of_squares(const std::vector<Links>& links) {
             const Link& aside = link(corner, edge + 1);
             if (ahead.to == kNobody || aside.to == kNobody) continue;
             // Takes the sideways step at the corner ahead, and the step ahead at the corner aside.
+            // Both must lead to the same corner.
             const Link& first = link(ahead.to, ahead.back + 3);
             const Link& second = link(aside.to, aside.back + 1);
             if (first.to == kNobody || first.to != second.to) continue;

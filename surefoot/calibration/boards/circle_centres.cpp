@@ -18,11 +18,11 @@ namespace surefoot::calibration {
 namespace {
 
 /// Number of circles from which a local map is fitted: one circle and the ring around it. With a
-/// second ring the map is too flat: in a fisheye image the radius is then 0.4 % too large instead
-/// of 0.27 %.
+/// second ring the map is too flat: in a fisheye image, the measured radius of the circles is then
+/// 0.4 % too large, with one ring 0.27 %.
 constexpr std::size_t kNeighbours = 9;
 /// Reach of the dark area beyond the rim: about three sigma of a blur of 0.8 px. Farther pixels
-/// only add noise, and far noise has the largest weight.
+/// only add noise, and noise far from the centre moves the centre of gravity most.
 constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 

@@ -132,7 +132,8 @@ System system_at(const std::vector<Sample>& samples, const CornerGuess& guess, c
     return system;
 }
 
-/// Solves for mean and contrast with the guessed edges, because the model is linear in both.
+/// Computes mean and contrast for the guessed edges. The model is linear in both, so one step is
+/// enough.
 void start_light(const std::vector<Sample>& samples, const CornerGuess& guess, Vector7& p) {
     p[kMean] = 0.0;
     p[kContrast] = 0.0;

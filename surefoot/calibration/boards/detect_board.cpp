@@ -26,14 +26,15 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 
 /// Least number of pixels of the shorter image side for each point along the shorter board side. A
-/// smaller image is not searched for the board.
+/// smaller image is not searched for the board. An image for a ChArUco board needs only 8 px on its
+/// shorter side.
 constexpr int kFewestPixelsPerPoint = 4;
 /// Largest half window of the corner refinement [px], as in OpenCV's samples and in the published
 /// figures that we compare with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
-/// Least percentage of clear corners. Reflections may hide single corners. An object with fewer
-/// clear corners is not this board.
+/// Least percentage of clear corners. Reflections may hide single corners. A board with fewer clear
+/// corners is rejected.
 constexpr int kLeastPercent = 75;
 /// Largest number of halvings of the image. Boards whose blur exceeds 2 px are found at half or a
 /// quarter of the size.
@@ -76,9 +77,9 @@ double nearest_px(const Board& board, const BoardView& view, std::size_t index) 
     return nearest;
 }
 
-/// Moves corners to the point where the surrounding gradients meet. The half window is the share
-/// `reach` of the distance to the nearest corner, but 2 to 5 px. Returns false if a corner moved
-/// too far.
+/// Moves corners to the point where the surrounding edges meet. The half window is the share
+/// `reach` of the distance to the nearest corner, but at least 2 px and at most 5 px. Returns false
+/// if a corner moved too far.
 bool refine_corners(const Board& board, const cv::Mat& image, double reach, BoardView& view) {
     const BoardView rough = view;
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
@@ -282,7 +283,7 @@ BoardSighting find_charuco(const Board& board, const cv::Mat& image) {
     BoardSighting sighting;
     sighting.view.ids = ids;
     sighting.view.pixels = points_of(corners);
-    // The window ends before the marker beside the corner.
+    // This share of a square ends before the marker beside the corner.
     const double margin = 0.5 * (board.spacing_m - board.marker_m) / board.spacing_m;
     if (!refine_corners(board, image, margin, sighting.view))
         return not_found(

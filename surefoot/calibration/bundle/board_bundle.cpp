@@ -214,8 +214,8 @@ class Graph {
         for (std::size_t i = 0; i < poses_.size(); ++i) bundle.T_left_board[i] = pose_of(poses_[i]);
     }
 
-    /// Returns the covariance of lenses and right camera in the coordinates of the parameter
-    /// blocks.
+    /// Returns the covariance of the lenses and of the pose of the right camera, for residuals with
+    /// a variance of 1 px^2. The coordinates are those of the parameter blocks.
     std::optional<Eigen::MatrixXd> covariance() {
         ceres::Covariance::Options settings;
         settings.algorithm_type = ceres::SPARSE_QR;

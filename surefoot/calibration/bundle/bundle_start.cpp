@@ -14,7 +14,7 @@ namespace surefoot::calibration {
 namespace {
 
 /// Focal length divided by the longer image side: 0.1 is an equidistant lens with a field of view
-/// of 570 deg. 6 is a telephoto lens with a field of view of 9 deg.
+/// of 570 deg. 6 is a telephoto lens with a field of view of 9.5 deg.
 constexpr double kShortest = 0.1;
 constexpr double kLongest = 6.0;
 constexpr double kFocalStep = 1.15;
@@ -77,7 +77,7 @@ struct Candidate {
     double score = 0.0;
 };
 
-/// Returns the kRefined best minima of the score along the focal lengths, best first.
+/// Returns the best minima of the score along the focal lengths, at most kRefined, best first.
 std::vector<Candidate> candidates(BoardBundle bundle) {
     const double side_px = std::max(bundle.size.width, bundle.size.height);
     std::vector<Candidate> all;

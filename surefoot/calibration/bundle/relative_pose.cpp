@@ -9,7 +9,8 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Rotation vectors are almost linear around their origin: few rounds reach the last digit.
+/// Rotation vectors are almost linear around their origin, so a few rounds are enough for full
+/// precision.
 constexpr int kRounds = 5;
 
 template <typename Coordinates>

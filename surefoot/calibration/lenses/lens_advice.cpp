@@ -21,7 +21,7 @@ constexpr std::size_t kFewestViews = 3;
 constexpr std::size_t kFewestHalved = 8;
 constexpr int kFewestPoints = 8;
 /// The rms of an advised lens must be below this share of the rms of the chosen lens. It must also
-/// be smaller by more than kLeastGain_px, which exceeds corner noise.
+/// be smaller by more than kLeastGain_px, because corner noise alone can cause smaller differences.
 constexpr double kBetter = 0.7;
 constexpr double kLeastGain_px = 0.02;
 /// Lenses explain the boards about equally well if their rms is below the best rms times this
@@ -77,7 +77,7 @@ double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     return rms;
 }
 
-/// Returns the name of a lens kind in a sentence.
+/// Returns the name of a lens kind for use in a sentence.
 std::string name_of(LensKind kind) {
     switch (kind) {
         case LensKind::fisheye: return "a fisheye";

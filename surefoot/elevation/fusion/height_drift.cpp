@@ -10,8 +10,8 @@
 namespace surefoot::elevation {
 namespace {
 
-/// Largest offset [m] that counts as drift. Larger offsets belong to other surfaces, whatever the
-/// motion.
+/// Largest offset [m] that counts as drift. Larger offsets belong to other surfaces, however
+/// uncertain the motion is.
 constexpr double kMost_m = 0.1;
 constexpr double kBin_m = 1e-4;  ///< bin width of the histogram [m]
 constexpr int kBins = 2 * 1000 + 1;

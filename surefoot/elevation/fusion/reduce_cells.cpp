@@ -11,9 +11,11 @@
 #include <cstring>
 #include <limits>
 
-// Processes sixteen samples of a cell at a time, in one, two or four registers. Every float sum
-// first fills sixteen columns and then adds the columns in one fixed tree, as `LaneSum` does. So
-// the register width does not change the result. Most cells hold no more than sixteen samples.
+// `SmallCells` reduces cells with at most sixteen samples, one cell per lane. `reduce` processes
+// sixteen samples of one cell at a time, in one, two or four registers. It reduces larger cells,
+// and small cells whose highest samples are isolated. Every float sum first fills sixteen columns
+// and then adds the columns in one fixed tree, as `LaneSum` does. So the register width does not
+// change the result. Most cells hold no more than sixteen samples.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::elevation::HWY_NAMESPACE {
@@ -131,8 +133,8 @@ HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     }
 }
 
-/// Returns the same value as `by_extremes`, found bit by bit. Floats are compared in the order of
-/// integers (sign and magnitude become two's complement).
+/// Returns the same value as `by_extremes`, found bit by bit. Maps floats to unsigned integers that
+/// have the same order.
 HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     const auto float_of = [](std::uint32_t key) {
         const std::uint32_t bits = key & 0x80000000U ? key ^ 0x80000000U : ~key;

@@ -173,7 +173,7 @@ std::optional<std::string> problem_of(const MapRegion& into,
     return std::nullopt;
 }
 
-/// Copies stamp, pose and configuration from the later region.
+/// Copies the stamps, the pose and the configuration of `from` if it is later than `into`.
 void take_later_head(MapRegion& into, const MapRegion& from) {
     if (from.stamp_ns <= into.stamp_ns) return;
     into.frame_since_ns = from.frame_since_ns;

@@ -23,7 +23,7 @@ ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
     axis_z_ = static_cast<float>(axis.z());
 
     // A pixel reaches half a pixel beyond its centre. The right camera limits the common view only
-    // at the left side.
+    // at the left side of the left image.
     const double left = rig.cx_px + 0.5;
     const double top = rig.cy_px + 0.5;
     const std::array<Eigen::Vector3d, 4> inwards = {

@@ -106,7 +106,7 @@ void VisibilityCleanup::find_gone(int block, std::int64_t time_ns, ElevationCell
         if (!cells.is_above(cell, lowest_m)) return;
         // A surface that stands on the ground blocks all lines below its height; an overhanging
         // surface blocks only lines that meet it. A surface with a single observation may be a
-        // wrong match.
+        // wrong match, so the check treats it like a surface that stands.
         const bool stands =
             cells.bottom_m(cell) - lowest_m <= hangs_m_ || layers.count.data()[cell] == 1;
         if (!stands && !passed_through(at, height_m[cell])) return;

@@ -25,7 +25,8 @@ constexpr double kMostDiscord_m = 0.01;
 constexpr double kMostDiscord_rad = 0.01;
 constexpr double kDiscordShare = 0.05;    ///< weight of one frame in the estimated discord
 constexpr double kStartSpeed_m_s = 0.05;  ///< one sigma of the first velocity
-constexpr double kStartTilt_rad = 0.005;  ///< one sigma of gravity's direction, without the bias
+/// One sigma of gravity's direction, without the error from the accelerometer bias.
+constexpr double kStartTilt_rad = 0.005;
 /// Largest number of stored samples: two seconds of a fast IMU. A longer interval has a gap.
 constexpr int kMostSamples = 4000;
 /// Sigma [m, rad] of a pose that is exact by definition.
@@ -183,7 +184,9 @@ std::optional<CameraFix> InertialTracker::see(const VisualEvidence& seen,
              before,
              motion,
              PoseEvidence{visual.T_world_camera * T_camera_imu, covariance_imu + discord, {}});
-    // The discord is the deviation of the camera from the path.
+    // For the pose of the camera, the discord counts as noise of the motion, because the camera may
+    // deviate from the smooth path by this much. `discord` has the translation first, the
+    // covariance of `motion` has the rotation first.
     motion.covariance.topLeftCorner<3, 3>() += discord.bottomRightCorner<3, 3>();
     motion.covariance.bottomRightCorner<3, 3>() += discord.topLeftCorner<3, 3>();
     const InertialSolution camera = fuse(model_, before, motion, seen, visual.T_world_camera);

@@ -18,8 +18,8 @@ double robust(double norm_sigmas, double limit_sigmas) {
                                        : limit_sigmas * (2.0 * norm_sigmas - limit_sigmas);
 }
 
-/// Residual in sigmas (measured - predicted). Infinite if the point is behind the camera; 0 for an
-/// unknown u_right.
+/// Residual in sigmas (measured - predicted). Infinite if the point is behind the camera or nearer
+/// than kMinDepth_m. The component of u_right is 0 if u_right is unknown.
 Eigen::Vector3d residual_of(const camera::RectifiedRig& rig,
                             const BundleSight& sight,
                             const Eigen::Vector3d& p_camera,

@@ -112,7 +112,8 @@ void track_there_and_back(const ImagePyramid& from,
     std::vector<std::uint8_t> found;
     std::vector<std::uint8_t> returned;
     track_block(from, to, origins, kLevels, config, points, found);
-    // Tracks back from the result. The original position is a good start, so one level is enough.
+    // Tracks back from the result. The original position is a good start, so the full size and one
+    // halving are enough.
     std::vector<cv::Point2f> back = origins;
     track_block(to, from, points, 1, config, back, returned);
     const auto limit_px = static_cast<float>(config.forward_backward_px);

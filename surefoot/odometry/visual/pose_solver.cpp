@@ -161,7 +161,8 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     solution.inlier.assign(matches.size(), 0);
     Pose T = T_world_camera_start;
     // First a wide gate, because the start may be a few pixels off. Points of a person who walks in
-    // may be equally far off, so only points that agreed with earlier poses take part.
+    // may be equally far off, so only points that agreed with earlier poses take part, if at least
+    // kMinTrusted of them exist.
     const std::vector<PointMatch> trusted = trusted_of(matches);
     if (!iterate(rig,
                  config,

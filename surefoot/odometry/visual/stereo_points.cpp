@@ -21,7 +21,8 @@ constexpr double kCorrelationNoise =
     0.05;  ///< smaller differences of the whole-pixel correlation are noise
 constexpr double kCoarseCorrelation = 0.6;  ///< smallest correlation before the refinement
 constexpr double kRefineShift_px = 2.0;
-constexpr double kDepthEdge = 0.03;  ///< smallest relative depth step of an edge in 3x3 pixels
+/// A relative depth step of this size within 3 x 3 pixels is an edge.
+constexpr double kDepthEdge = 0.03;
 
 struct Window {
     std::array<float, kCount> value{};
@@ -164,7 +165,8 @@ std::optional<camera::Side> camera_of_corner(const camera::Rectifier& rectifier,
         if (!px) return -1.0;
         const auto score = scores_along(
             other, patch, epipolar_curve(rectifier, camera, *px, config.max_disparity_px));
-        // Small disparities lie in the same direction for both cameras.
+        // At small disparities, the curves of both cameras lie close together and do not tell the
+        // cameras apart.
         const auto near = score.begin() + std::min<std::ptrdiff_t>(kSamePeak_px, std::ssize(score));
         return near == score.end() ? -1.0 : *std::max_element(near, score.end());
     };

@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-/// A slope must keep its limit by this many sigma of the slope.
+/// A slope must be within its limit by at least this many sigma of the slope.
 constexpr double kSigmas = 2.0;
 constexpr double kUnseenDrop_m = 0.15;  ///< depth of the marked drop behind ground that ends
 /// Largest height error over the depth of a tread, from its tilt and from map distortion (see

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kNone = PatchMap::kNone;
 
-/// 5 deg: largest slope sigma of a patch that may carry.
+/// Largest slope sigma (5 deg) of a patch that may carry the machine.
 constexpr double kCarries_sigma_rad = 0.09;
 constexpr double kContact_m = 0.2;   ///< smallest width of a contact for a foot
 constexpr double kStance_m = 0.3;    ///< equal to kStance_m in feature_finder.cpp
@@ -126,7 +126,8 @@ void PatchWalk::find_stance(const Vector2d& stance_m, const PatchMap& patches) {
     }
 }
 
-/// Links patches whose planes meet within a step, over a foot's width.
+/// Links two patches if the height between their planes is at most one step, over at least a foot's
+/// width.
 void PatchWalk::link_neighbours(double block_m) {
     links_.clear();
     const double near_m = config_.smear_m + block_m;  // an edge may be oblique to the grid
@@ -171,7 +172,7 @@ std::int32_t PatchWalk::patch_beside(const grid::GridGeometry& grid,
 void PatchWalk::link_flight(const grid::GridGeometry& grid,
                             const Flight& flight,
                             const PatchMap& patches) {
-    if (flight.steps < 2) return;  // a single step proves no more than the two planes
+    if (flight.steps < 2) return;  // a single step adds no evidence to its two planes
     const bool up = flight.kind == FlightKind::up;
     std::int32_t last = kNone;
     const auto update = [&](std::int32_t id) {

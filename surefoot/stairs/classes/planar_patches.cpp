@@ -203,7 +203,9 @@ PatchFinder::Sums PatchFinder::around(int bx, int by) const {
     return sums;
 }
 
-/// Sorts the seeds: first blocks inside flat ground, then blocks that are flat alone.
+/// Sorts the seeds: first blocks that lie on one plane with the blocks around them, then the other
+/// blocks. In both groups the flattest blocks come first. A block with less than half of its cells
+/// known is no seed.
 void PatchFinder::order_seeds() {
     const std::size_t count = blocks_.size();
     quality_.assign(count, 0);
@@ -328,7 +330,8 @@ void PatchFinder::join_regions(PatchMap& out) {
         if (of_block[i] != kNone) of_block[i] = root(of_block[i]);
 }
 
-/// Moves blocks between two regions to the region whose plane fits better.
+/// Gives each block at a border to the region beside it whose plane fits best. A block on no plane
+/// gets no region.
 void PatchFinder::settle_borders(PatchMap& out) {
     for (int by = 0; by < nby_; ++by) {
         for (int bx = 0; bx < nbx_; ++bx) {

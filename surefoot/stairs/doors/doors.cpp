@@ -97,7 +97,7 @@ struct DoorFinder::Sill {
 /// The ground on one side of the jambs, as a straight line along the way.
 struct DoorFinder::GroundLine {
     bool known = false;
-    double at_m = 0.0;  ///< position of the jamb end of the line, along the way
+    double at_m = 0.0;  ///< position of the end of the line at the jambs, along the way
     double height_m = 0.0;
     double slope = 0.0;
     double point_var_m2 = 0.0;  ///< variance of the mean height over the width, at one position
@@ -246,7 +246,7 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
 bool DoorFinder::turn_to_walls(Opening& opening) const {
     constexpr int kRounds = 6;
     constexpr double kSure_m = 0.03;      // nearer cells have equal weights; about one cell
-    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more accurately
+    constexpr double kMaxTurn_rad = 0.6;  // the blocks give the direction more accurately than this
     const Vector2d first = opening.across;
     double offset_m = 0.0;
     for (int round = 0; round < kRounds; ++round) {

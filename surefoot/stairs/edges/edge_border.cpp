@@ -107,9 +107,9 @@ void add_border_points(const Terrain& terrain,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out) {
     Rows rows(terrain, line, search);
-    // If a cell holds the highest point of its area, the last upper centre lies beyond an oblique
-    // edge, by less than half a cell. If a cell holds the height at its centre, the last upper
-    // centre lies half a cell before the edge.
+    // If a cell holds the highest point of its area, the last upper centre lies on average beyond
+    // an oblique edge, by less than half a cell. If a cell holds the height at its centre, the last
+    // upper centre lies on average half a cell before the edge.
     const Vector2d down = line.down().cwiseAbs();
     const double reach_m =
         0.5 * terrain.geometry.resolution_m *

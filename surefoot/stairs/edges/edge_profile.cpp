@@ -207,8 +207,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     if (!terrain.view || upper.end_m < kEnd_m || line.rms_m > kEndRms_m ||
         line.length_m() < config_.min_width_m)
         return false;
-    // Only a line seen from the front can be a ground end. Along a ray the view ends, not the
-    // ground.
+    // Only a line that the rays of the camera cross can be a ground end. At a line along the rays,
+    // the view ends, not the ground.
     const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
     const Vector2d observed_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
     if (observed_m.dot(line.down()) < 0.7 * observed_m.norm()) return false;

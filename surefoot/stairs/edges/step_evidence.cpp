@@ -59,7 +59,7 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
     all.assign(static_cast<std::size_t>(slices), 0);
     int x0 = terrain.geometry.nx, y0 = terrain.geometry.ny, x1 = 0, y1 = 0;
     const auto visit = [&](int ix, int iy, double s_cells, double t_cells) {
-        // in range: visit() gives 0 <= s_cells < slices
+        // in range: for_each_cell_about() gives 0 <= s_cells < slices
         ++all[static_cast<std::size_t>(s_cells)];
         const auto z_m = static_cast<double>(terrain.height_m.row(iy)[ix]);
         if (!std::isfinite(z_m)) return;
@@ -147,7 +147,8 @@ void StepEvidenceFinder::measure_slices(double length_m) {
     }
 }
 
-/// Computes the residual of each cell from the profile, which is linear between the slices.
+/// Computes the weights of the slices from the residuals of the cells. A residual is the height
+/// above the profile, which is linear between the slices.
 void StepEvidenceFinder::weigh_slices() {
     residual_m_.assign(static_cast<std::size_t>(box_width_) * static_cast<std::size_t>(box_height_),
                        std::numeric_limits<float>::quiet_NaN());

@@ -234,7 +234,8 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
                               FlightKind kind,
                               const Vector2d& stance_m,
                               std::vector<Flight>& flights) const {
-    // A single low or high step at an end may be a kerb. So the median height decides.
+    // A single step at an end may be lower or higher than the others, for example a kerb. So the
+    // median height decides.
     std::vector<double> heights_m;
     for (const Edge& edge : from_below) heights_m.push_back(edge.height_m());
     if (median_of(heights_m) < config_.min_riser_m) return;

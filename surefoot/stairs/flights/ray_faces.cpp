@@ -12,9 +12,9 @@ namespace surefoot::stairs {
 namespace {
 
 constexpr double kMargin_m = 0.05;  ///< length left out at both ends of an edge
-/// Lower end of the used part of a face, as a share of its height. A semi-global matcher places the
-/// top of a face 0.2-0.4 px too far, because it approaches from the tread above. It places the foot
-/// 0.1 px too near, and the rest within 0.05 px.
+/// Lower and upper end of the used part of a face, as shares of its height. A semi-global matcher
+/// places the top of a face 0.2-0.4 px too far, because its path from above comes from the tread.
+/// It places the foot 0.1 px too near, and the rest within 0.05 px.
 constexpr double kLowest = 0.1;
 constexpr double kHighest = 0.6;
 constexpr double kNearest_m = 0.1;  ///< smallest distance of a face from the camera

@@ -14,7 +14,7 @@ constexpr double kShortestGoing_m = 0.2;  ///< limit of real stairs; spirals hav
 constexpr double kLongestGoing_m = 0.4;
 constexpr int kMostSteps = 8;  ///< more steps are never visible
 constexpr double kDeepest_m =
-    1.3;  ///< lowest floor below the first edge, for the hypotheses slope and fall
+    1.3;  ///< lowest tested floor below the first edge, if the ground has no steps
 constexpr double kFloorStep_m = 0.025;
 constexpr double kSteepest = 0.9;  ///< steepest slope; a steeper slope counts as an immediate fall
 constexpr double kSlopeStep = 0.03;

@@ -24,8 +24,8 @@ constexpr double kFirst_m = 0.08;   ///< largest distance of the first nosing fr
 constexpr double kUneven_m = 0.03;  ///< largest difference of risers and of goings in a flight
 constexpr std::size_t kPlain = 3;   ///< this many regular steps need no further search
 constexpr double kNose_bins = 1.0;  ///< one sigma of the position of a depth change
-/// The depths on both sides blur a strip. The resulting depth sigma is kBlur_m divided by the
-/// number of bins of the strip.
+/// The depths on both sides of a level blur its depth, most of all if it has few bins. The sigma
+/// from this blur is kBlur_m divided by the number of bins that support the level.
 constexpr double kBlur_m = 0.1;
 
 }  // namespace
@@ -230,7 +230,7 @@ void RaySteps::find(const Terrain& terrain, std::span<const Edge> known, std::ve
     find_noses(bins, height_m);
     if (std::abs(noses_.front().run_m - distance_m) > kFirst_m) return;
     std::size_t steps = regular_steps();
-    // There are more levels than steps: the matcher blurred a step.
+    // More levels than steps mean that the matcher blurred a step.
     if (steps < kPlain && levels_.size() > steps + 1) steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
     const double log_step_ratio = log_ratio(bins, height_m, steps);

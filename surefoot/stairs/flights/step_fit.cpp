@@ -21,7 +21,8 @@ constexpr double kLevel_m = 0.015;  ///< largest difference of neighbouring slic
 constexpr double kNear_m = 0.07;
 constexpr double kFar_m = 0.1;   ///< largest distance of a riser's face from its tread's end
 constexpr double kSide_m = 0.4;  ///< largest extension of a step beyond the seed, on either side
-/// A step whose extent is less than this share of both neighbours gets their extent.
+/// A step that is shorter than this share of the common extent of its two neighbours gets this
+/// common extent.
 constexpr double kRagged = 0.5;
 /// Tolerance of the height of the ground on which the seed was measured.
 constexpr double kTread_m = 0.03;
@@ -101,7 +102,8 @@ void StepFitter::join_treads() {
 namespace {
 
 double place_between(const auto& upper, const auto& lower) {
-    // At an occluded region the edge is the end of the upper tread.
+    // Behind the upper tread, an occluded region may begin. So the edge lies at most kNear_m behind
+    // the end of the upper tread.
     return std::min(0.5 * (upper.end_m + lower.begin_m), upper.end_m + kNear_m);
 }
 

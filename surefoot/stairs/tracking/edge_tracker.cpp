@@ -58,7 +58,8 @@ Vector2d shared_middle_m(const Edge& a, const Edge& b) {
     return b.from_m + 0.5 * (first_m + last_m) * along;
 }
 
-/// Returns the height difference of the lower grounds, without the part that a bound leaves open.
+/// Returns the smallest possible height difference of the lower grounds. Lower ground that was not
+/// seen lies at `lower_m` or lower.
 double lower_difference_m(const Edge& a, const Edge& b) {
     const double difference_m = b.lower_m - a.lower_m;
     if (a.lower_seen && b.lower_seen) return std::abs(difference_m);
@@ -211,7 +212,7 @@ void EdgeTracker::pair_up(std::span<const ObservedEdge> seen) {
             if (const auto cost = cost_of(tracks_[t], seen[s].edge))
                 pairs_.push_back({*cost, t, s});
     // Takes the pair with the lowest cost first, then the lowest of the rest. So each pair is the
-    // best for both of its edges.
+    // best that is left for both of its edges.
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
         if (a.cost != b.cost) return a.cost < b.cost;
         return a.track != b.track ? a.track < b.track : a.seen < b.seen;
@@ -345,7 +346,7 @@ std::uint32_t EdgeTracker::begin(const ObservedEdge& seen,
     return track.edge.tracked.id;
 }
 
-/// Drops the least important edge if `track` is more important. Order: drops before others, seen
+/// Removes the least important edge if `track` is more important. Order: drops before others, seen
 /// now before unseen, near before far.
 bool EdgeTracker::make_room_for(const EdgeTrack& track) {
     const auto matters_less = [](const EdgeTrack& a, const EdgeTrack& b) {

@@ -22,8 +22,8 @@ constexpr double kGoingShared_m = 0.0015;
 /// Smallest lead in votes that changes the number of steps. Two alternating numbers do not change
 /// it.
 constexpr float kLead = 1.0F;
-/// Edges that lie this many risers off the line of a flight belong to another flight, behind a
-/// landing.
+/// Edges that lie more than this number of risers off the line of a flight belong to another
+/// flight, behind a landing.
 constexpr double kFarEnd_risers = 1.5;
 
 int common_edges(const Flight& a, const Flight& b) {
@@ -157,7 +157,7 @@ void FlightTracker::update(std::span<const Flight> seen,
             continue;
         }
         FlightTrack& track = add();
-        // `take` fills the new track. Until then no observation has found it.
+        // `take` fills the new track and counts its first observation, so the count begins at 0.
         track.flight.tracked = {.id = ids.next(), .observations = 0};
         track.flight.going_m = track.flight.riser_m = track.flight.width_m = std::nan("");
         take(seen[i], time_ns, track);
