@@ -19,8 +19,9 @@
 // Prints the gate's answers and writes SCRATCH/again.csv with the cells of each map.
 //
 // Each scene has one movement that the oracle (sim::judge) rates as clearly dangerous or clearly
-// safe; scenes that are neither are drawn again. In every hundredth scene (runs: in every scene)
-// the gate is also asked for all 26 movements.
+// safe; scenes that are neither are drawn again. In every hundredth scene the gate is also asked
+// for all 26 movements. The tiers depth and images are called runs below; there this happens in
+// every scene.
 //
 // Results are files in SCRATCH/TIER, one set per chunk of scenes. A file is written completely or
 // not at all, so that the same command continues an interrupted campaign.
