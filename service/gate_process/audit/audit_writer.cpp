@@ -66,8 +66,8 @@ Status AuditWriter::sync() {
     return status;
 }
 
-/// Opens a new file. Its number follows the number of the last file in the folder, from any
-/// process.
+/// Opens a new file. Its number follows the number of the last file in the folder, whichever
+/// process wrote that file.
 Status AuditWriter::begin_file() {
     if (!listed_) {
         auto entries = disk_->list();
