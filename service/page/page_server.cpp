@@ -579,8 +579,8 @@ void Viewer::say_stairs() {
     say(show.stairs());
 }
 
-/// Sends the settings if they changed. They are large and change rarely, so a new wish alone does
-/// not send them again.
+/// Sends the settings if the page wants them and they changed. They are large and change rarely, so
+/// a new request of the page does not send them again.
 void Viewer::say_settings() {
     const PageSettings& settings = sockets_.controls.settings;
     const std::uint64_t serial = settings.serial();
