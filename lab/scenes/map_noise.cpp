@@ -41,10 +41,10 @@ Image<float> smooth_field(int width, int height, Rng& rng) {
     return smooth;
 }
 
-/// A cell at an edge whose share of high ground within 50 mm of its middle is `share_high`. `up`:
-/// 5th, 50th and 95th percentile of the mapped heights, as a share of the way from the lower level
-/// (0) to the higher level (1). `known`: probability that the cell is known although its middle is
-/// hidden. `sigma_m`: its stated sigma.
+/// A cell at an edge. `share_high`: share of high ground in the square of 50 mm around its middle.
+/// `up`: 5th, 50th and 95th percentile of the mapped heights, as a share of the way from the lower
+/// level (0) to the higher level (1). `known`: probability that the cell is known although its
+/// middle is hidden. `sigma_m`: its stated sigma.
 struct EdgeRow {
     double share_high;
     std::array<double, 3> up;
