@@ -81,7 +81,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
 }
 
 /// Computes the parts that are not stored yet. `executor` determines how many parts run at a time.
-/// All errors are logged and added to the results; the first error is returned.
+/// All errors except an interrupt by the user are logged and added to the results. The first error
+/// is returned.
 class Parts {
   public:
     Parts(ThesisResults& results, Executor& executor) : results_(results), executor_(executor) {}
