@@ -34,8 +34,7 @@ constexpr double kScale8 = 1.0;
 /// 255.
 constexpr int kLeastMask = 201;
 
-/// Converts an image of codes to disparities [px]. Code 0 means "no ground truth" in every data set
-/// that stores disparities as images.
+/// Converts an image of codes to disparities [px]. Code 0 means "no ground truth", as in KITTI.
 template <typename Code>
 Image<float> disparity_of(const Image<Code>& codes, double scale) {
     Image<float> disparity_px(codes.width(), codes.height());

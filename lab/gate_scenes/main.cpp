@@ -18,9 +18,10 @@
 // gate_scenes again SCRATCH KIND SCENE_SEED: repeats one hazard of `maps`, by the seed in its line.
 // Prints the gate's answers and writes SCRATCH/again.csv with the cells of each map.
 //
-// Each scene has one movement that the oracle (sim::judge) rates as clearly dangerous or clearly
-// safe; scenes that are neither are drawn again. In every hundredth scene (runs: in every scene)
-// the gate is also asked for all 26 movements.
+// Each scene has one movement. The oracle (sim::judge) must rate it as clearly dangerous in a scene
+// with a hazard, and as clearly safe in a safe scene; otherwise the scene is drawn again. In every
+// hundredth scene the gate is also asked for all 26 movements. The tiers depth and images are
+// called runs below; there this happens in every scene.
 //
 // Results are files in SCRATCH/TIER, one set per chunk of scenes. A file is written completely or
 // not at all, so that the same command continues an interrupted campaign.
@@ -34,8 +35,8 @@
 //     Safe movements in scenes with a hazard: beside_safe (all), beside_refused, and beside:NAME
 //     (primary reason of a refusal).
 //     The variant "scenes" counts scenes: drawn_hazards and drawn_safe (with the repeated draws),
-//     never_clear_hazards and never_clear_safe (each draw was neither dangerous nor safe). Runs
-//     instead: kept, not_clear_any_more (at the pose where the run ended), no_map.
+//     never_clear_hazards and never_clear_safe (no draw was clearly dangerous or clearly safe, as
+//     wanted). Runs instead: kept, not_clear_any_more (at the pose where the run ended), no_map.
 //   KIND_SEED_FROM.misses.csv   each hazard that the gate allowed: parameters to repeat the scene,
 //     the movement, the oracle's result
 //   KIND_SEED_FROM.refused.txt  runs only: the gate's answer, if it refused the safe movement of a
@@ -488,8 +489,8 @@ class Campaign {
     std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
 };
 
-/// Loosens the limits by `factor`, up to the values that a machine file may state: divides the
-/// margin of the feet and the band for drops, multiplies the others.
+/// Scales the limits so that a larger `factor` is looser, up to the values that a machine file may
+/// state: divides the margin of the feet and the band for drops, multiplies the others.
 void loosen(GateLimits& limits, double factor) {
     const auto times = [factor](std::int32_t& limit, std::int32_t most) {
         limit = std::min(most, static_cast<std::int32_t>(std::lround(factor * limit)));
@@ -507,9 +508,10 @@ void loosen(GateLimits& limits, double factor) {
         std::max(500, static_cast<std::int32_t>(limits.drop_band_tenth_mm / factor));
 }
 
-/// Returns the variants of the tier `curve`: scaled noise, and single changed limits. Limits on
-/// uncertainty are tested at noise 1. Limits of feet and body are tested on the overconfident map,
-/// where no other rule refuses. Labels give the unscaled limits.
+/// Returns the variants of the tier `curve`: scaled noise, single changed limits, and all limits
+/// scaled together. Limits on uncertainty are tested at noise 1. Limits on heights are tested on
+/// the overconfident map, because its small stated sigmas leave the decision to these limits. The
+/// name of a variant ends with the limit or the factor.
 std::vector<Variant> curve_variants(const Machine& machine) {
     std::vector<Variant> all;
     int map = 0;

@@ -8,8 +8,8 @@
 // Writes OUT.csv, one line per view; the columns that need an explanation:
 //   kind                 floor (camera 0.3-2 m above it, 0-60 deg down, rolled by up to 8 deg), or
 //                        one of the decoys:
-//                        table, bed (camera over and beside them, some floor visible), wall (no
-//                        floor), full_table (a table fills the view; it cannot be distinguished
+//                        table, bed (the camera is above their height; some floor visible), wall
+//                        (no floor), full_table (a table fills the view; it cannot be distinguished
 //                        from a floor)
 //   pitch_deg, height_m, floor_share   true values
 //   reason               result of the search
@@ -94,7 +94,7 @@ Trial floor_trial(Rng& rng) {
     if (rng.below(3) == 0)
         trial.errors.relief_m = between(rng, 0.005, 0.025) * std::min(1.0, trial.camera.height_m);
     furnish(rng, trial.blocks);
-    // In every second view, a wall leaves only a strip of floor.
+    // In half of the views, a wall leaves only a strip of floor.
     if (rng.below(2) == 0) {
         const double share = between(rng, 0.04, 0.3);
         const Camera& camera = trial.camera;
@@ -153,7 +153,7 @@ Trial full_table_trial(Rng& rng) {
 Trial trial_of(std::uint64_t seed) {
     Rng rng(seed);
     constexpr Trial (*kDecoys[])(Rng&) = {table_trial, bed_trial, wall_trial, full_table_trial};
-    // Six of ten trials show a floor. Each of the four decoys gets one of ten trials.
+    // On average, six of ten views are of kind floor, and each of the four decoys has one of ten.
     const auto kind = rng.below(10);
     return kind < 6 ? floor_trial(rng) : kDecoys[kind - 6](rng);
 }

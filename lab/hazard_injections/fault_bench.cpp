@@ -31,7 +31,8 @@ std::string channel_path(std::uint64_t seed) {
     return (folder / fmt::format("surefoot_fault_bench_{}_{}", ::getpid(), seed)).string();
 }
 
-/// Returns true for a half step or a turn: the feet stay within 0.6 m of base_link.
+/// Returns true if a movement leads at most 0.2 m forward or backward, as half steps, turns and
+/// steps to the side. The feet then stay within 0.6 m of base_link.
 bool is_short(const Movement& movement) {
     return movement.forward_tenth_mm <= 2000 && movement.forward_tenth_mm >= -2000;
 }

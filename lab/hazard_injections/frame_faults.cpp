@@ -233,7 +233,8 @@ GateBench::Plan standing() {
 // --- H1 to H4: the images ---
 
 Fault stop(Rng& rng, const Recording&) {
-    // At least 4 frames arrive. With fewer than three lost frames the last map is not too old yet.
+    // At least four frames are lost. After fewer than three lost frames the last map is not too old
+    // yet.
     const int frames = rng.below(2) == 0 ? 1'000'000 : 4 + static_cast<int>(rng.below(10));
     return {frames > 100 ? "stops for good" : fmt::format("{} frames lost", frames),
             [frames](StereoFrame&, int k) { return k >= frames; }};

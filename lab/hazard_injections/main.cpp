@@ -8,10 +8,10 @@
 //            COUNT, at least two.
 //   HAZARDS  hazard ids with commas between them; default: all
 //
-// An injection counts if every answer before its fault is OK. Every answer of a control run must be
-// OK. The exit status is 1 if an OK comes too late, if the first inhibit comes later than 250 ms
-// after a fault that must give ERROR, if a control run has an answer other than OK, or if fewer
-// than nine of ten injections count.
+// An injection counts if every answer before its fault is OK, or if its fault exists from the
+// start. Every answer of a control run must be OK. The exit status is 1 if an OK comes too late, if
+// the first inhibit comes later than 250 ms after a fault that must give ERROR, if a control run
+// has an answer other than OK, or if fewer than nine of ten injections of a kind count.
 //
 // Writes OUT.csv, one line per run; the columns that need an explanation:
 //   faulty                         0 = control run

@@ -6,9 +6,9 @@
 //   corners: corner tracks of both gap-free parts of euroc_april, each part on its own, then the
 //   whole recording with the gap; no images. ROOM: a folder written by render_room.py.
 //
-// Each recording runs through three methods: vision alone; that vision loosely fused with the IMU
-// (velocity_fusion.hpp, proposed in the reference thesis, Lange 2016); points and IMU in one
-// problem, which is the library's method.
+// Each recording runs through three methods: vision alone; the motion of vision alone, loosely
+// fused with the IMU (velocity_fusion.hpp, proposed in the reference thesis, Lange 2016); points
+// and IMU in one problem (the method of the library).
 //
 // Writes OUT.csv, one line per recording and method:
 //   frames, path_m            frames with a true pose; path length of the left camera

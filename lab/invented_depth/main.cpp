@@ -6,8 +6,9 @@
 //   default 1.0. KEY=VALUE: a setting of the matcher.
 //
 // The camera is 0.95 m above the upper level, 32 deg down, and looks over an edge at a given
-// distance. The region that neither camera sees (length: drop * distance / 0.95) must stay unknown
-// in the map.
+// distance. Ground behind the edge that is occluded in at least one camera must stay unknown in the
+// map. (The occluded region is drop * distance / 0.95 long if the camera looks straight over the
+// edge.)
 // Writes into OUT_DIR:
 //   invented.csv  per motion (one frame, or ten on an approach), drop, distance, seed and rule:
 //                 cells that are hidden; of these mapped (invented), wrong by more than 20 mm
@@ -46,7 +47,7 @@ struct Rule {
     ElevationConfig config;
 };
 
-/// Returns the default rule, and variants with one changed setting each.
+/// Returns the default rule and variants of it with one or a few changed settings.
 std::vector<Rule> rules() {
     std::vector<Rule> all;
     const auto add = [&](const std::string& name, const auto& change) {

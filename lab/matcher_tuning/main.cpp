@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Is our matcher better than OpenCV's matchers if each gets the same tuning budget? For each
-// matcher one of 36 settings is chosen on half the Middlebury pairs and on simulated images. The
-// scores come from the other half, from new simulated images, and from images that are difficult
-// for cameras.
+// matcher one of 36 settings is chosen on two Middlebury pairs and on simulated images. The scores
+// come from the other Middlebury pairs, from new simulated images, and from images that are
+// difficult for cameras.
 // Usage: matcher_tuning STEREO_DATA_DIR OUT_DIR FIRST_SEED [FIRST_TUNING_SEED]
 //   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: first
 //   seed of the images for the choice, default 21.

@@ -169,10 +169,10 @@ Plan door_plan(Rng& rng) {
     return plan;
 }
 
-/// Makes a floor that ends 0.02 to 0.07 m ahead of the toes at the place where the machine observes
-/// the edge. From there the occluded strip behind the edge is one cell wide. Then follow a tread,
-/// and ground one riser below it. The machine goes back, turns, and comes back with its heels to
-/// the edge.
+/// Makes a floor with an edge, then a tread, then ground one riser below the tread. When the
+/// machine observes the edge, its toes are 0.02 to 0.07 m before the edge. The occluded strip
+/// behind the edge is then one cell wide. The machine goes back, turns, and comes back with its
+/// heels to the edge.
 Plan tread_plan(Rng& rng) {
     Plan plan;
     plan.relief_m = rng.uniform(0.08, 0.14);

@@ -11,7 +11,7 @@
 //
 // Writes OUT.csv, one line per frame; the columns that need an explanation:
 //   faulty              the fault is in this frame
-//   health, reason, camera, lit   as reported; the map takes a frame with `lit` that is not LOST
+//   health, reason, camera, lit   as reported; the map uses a frame if it is `lit` and not LOST
 //   path_mm             true motion since the last frame
 //   err_mm, err_deg     error of the motion since the last frame
 //   sig_mm, sig_deg     stated sigma of this motion in the direction of the largest sigma

@@ -15,8 +15,8 @@
 //                             has moved by half of it; 0 = in that frame, -1 = never
 //   begun_after               frames from the first frame with a shift until T_odom_body has moved
 //   end_mm                    motion of T_odom_body at the end, minus the shift
-//   moved_before              standing frames (from the third on) whose T_previous_body is not the
-//                             identity
+//   moved_before              standing frames (without the first three) whose T_previous_body has a
+//                             translation
 //   crept_mm                  largest distance from the start while the machine stands
 #include <fmt/format.h>
 #include <fmt/os.h>

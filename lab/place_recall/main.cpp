@@ -17,8 +17,8 @@
 // Input: rendered images, our matcher, and the true path with the drift of our odometry and an odom
 // frame tilted by 0.2 deg. The library's place tracker has its default settings.
 //
-// Writes OUT.csv, one line per keyframe that could be recognised (`revisit`: it shows a scene part
-// seen before):
+// Writes OUT.csv, one line per keyframe of the only run (same_run) or of the second run (`revisit`:
+// 1 = the keyframe shows a scene part seen before):
 //   refusal, inliers, agreeing...  see surefoot/place_recognition/view_comparison.hpp
 //   accepted                       the tracker accepted T_map_odom
 //   error_m, error_deg             error of base_link in the map, if accepted

@@ -274,8 +274,9 @@ Thing build(Hazard thing, const double* low_m, const Draw& draw, const Reach& re
     return {high_m, height_m};
 }
 
-/// Draws a normal within 35 deg of the movement. The normal never points against the walked path:
-/// the machine has walked there, so that side is ground.
+/// Draws a normal within 35 deg of the direction of the movement (of a random direction for a
+/// turn). The normal never points against the walked path: the machine has walked there, so that
+/// side is ground.
 Vector2d normal_for(const Movement& movement, Vector2d& ahead, bool& was_turned, Rng& rng) {
     const Vector2d move_m(metres(movement.forward_tenth_mm), metres(movement.left_tenth_mm));
     const bool turns = move_m.norm() < 1e-3;

@@ -41,10 +41,10 @@ Image<float> smooth_field(int width, int height, Rng& rng) {
     return smooth;
 }
 
-/// A cell at an edge whose share of high ground within 50 mm of its middle is `share_high`. `up`:
-/// mapped height between the lower (0) and the higher level (1) in 5, 50 and 95 % of cells.
-/// `known`: probability that the cell is known although its middle is hidden. `sigma_m`: its stated
-/// sigma.
+/// A cell at an edge. `share_high`: share of high ground in the square of 50 mm around its middle.
+/// `up`: 5th, 50th and 95th percentile of the mapped heights, as a share of the way from the lower
+/// level (0) to the higher level (1). `known`: probability that the cell is known although its
+/// middle is hidden. `sigma_m`: its stated sigma.
 struct EdgeRow {
     double share_high;
     std::array<double, 3> up;
@@ -288,9 +288,10 @@ class NoisyMap {
     // Cells of walls and persons, and cells under boards, that the map shows wrongly; seeds 21-28.
     // * Walls: 35 % are unknown. Of the known cells, 3.5 % show floor.
     // * Persons: 46 % are unknown. Of the known cells, 2.3 % show floor.
-    // * Boards (near 0.1 m): 12 % are unknown. Of the known cells, 53 % show floor with a
-    //   clearance, 37 % the top of the board, and 10 % floor without a clearance. This last share
-    //   varies by run from 0 to 22 %, farther in up to 43 %. Model: 0.45 u^2 with uniform u.
+    // * Boards, the first 0.1 m under them: 12 % are unknown. Of the known cells, 53 % show floor
+    //   with a clearance, 37 % the top of the board, and 10 % floor without a clearance. This last
+    //   share varies by run from 0 to 22 %, and farther under the board up to 43 %. Model: 0.45 u^2
+    //   with uniform u.
     static constexpr double kTallUnknown = 0.35;
     static constexpr double kTallAsFloor = 0.035;
     static constexpr double kHungUnknown = 0.12;

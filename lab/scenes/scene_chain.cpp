@@ -16,8 +16,8 @@ namespace surefoot::experiments {
 namespace {
 
 /// Runs the pipeline to the end. Returns the time of the last frame; nullopt without a frame.
-/// `app::RunSession` would also compare depth and map with the truth, which takes a third of its
-/// time.
+/// `app::RunSession` would also compare depth and map with the truth; this comparison takes a third
+/// of the time of a session.
 Result<std::optional<std::int64_t>> process_all(sim::SceneSource& source,
                                                 pipeline::Pipeline& pipeline) {
     std::optional<Error> failed;

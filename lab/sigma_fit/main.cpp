@@ -189,8 +189,9 @@ double surprise(const Seen& seen, const Coefficients& c) {
     return sum / static_cast<double>(seen.samples.size());
 }
 
-/// Returns the sum of two terms. The likelihood orders the matches of an image. The deviations from
-/// kWanted prevent a gain for one kind of image at the expense of another.
+/// Returns the sum of two terms. The likelihood rewards larger sigmas for matches with larger
+/// errors. The deviations from kWanted prevent a gain for one kind of image at the expense of
+/// another.
 double loss(const std::vector<Seen>& all, const Coefficients& c) {
     double sum = 0.0;
     double weights = 0.0;

@@ -10,8 +10,8 @@
 // tracked by stairs::FeatureTracker. Lengths in mm; empty or nan = not found:
 //   observations           frames of the run
 //   edges, drops, kerbs, flights, doors   appearances and disappearances, summed over the frames
-//                          after the first: no feature of that class within 0.1 m across and 20 deg
-//                          before
+//                          after the first: the frame before (or after) has no feature of that
+//                          class within 0.1 m across and 20 deg
 //   new_ids                features whose id changed at the same place; followed only
 //   drops_lost             drops that a frame detected, but that the method does not report, or
 //                          reports farther away by more than the sigma of the detected edge

@@ -22,8 +22,8 @@
 //                                      foot itself clearly cannot stand. The distance to drops is
 //                                      not considered.
 //   truly_safe                         number of truly safe cells
-//   called_unsafe, unsure, unknown     truly safe cells that the map rates as unsafe, unsure or
-//                                      unknown
+//   called_unsafe, unsure, unknown     truly safe cells that the map rates as unsafe; as unsure; as
+//                                      unknown or unreachable
 //   near_...                           all counts above for cells within 0.7 m of the body, in view
 //                                      or not
 // OUT.csv.wrong.csv contains each wrongly rated cell, one per line, in odom: truly unsafe cells

@@ -13,7 +13,7 @@
 // * The fusion is that of the reference implementation, with a minimum variance of (45 mm)^2.
 // * The ground plane is taken once at the start (RANSAC, 75 mm).
 // Faults of the thesis:
-// * A cloud is placed at the true pose of `late` images ago, as with a correct but delayed tracker.
+// * A cloud is placed at the true pose of an earlier image, as with a correct but delayed tracker.
 //   Either all clouds are late, or a drawn share of the clouds has a drawn delay of 50-500 ms.
 // * All disparities have a constant offset, because the camera was never recalibrated.
 // Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same delays.
@@ -143,7 +143,7 @@ Pose ground_error(const camera::RectifiedRig& rig,
 /// Processes depth after the matcher as the thesis did, with one of its faults.
 class Mapper {
   public:
-    /// `seed` draws the delays.
+    /// `seed`: seed of the random delays.
     Mapper(const camera::RectifiedRig& rig, const Fault& fault, std::uint64_t seed)
         : rig_(rig), fault_(fault), delays_(mix_seed(seed, kDelayStream)) {}
 

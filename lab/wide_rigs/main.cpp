@@ -87,7 +87,8 @@ struct Pairs {
     std::vector<BoardView> right;
 };
 
-/// Returns true if a camera sees all inner corners of the board and half a square around them.
+/// Returns true if all inner corners of the board lie at least kBorder_px inside the image of a
+/// camera.
 bool is_whole(const camera::Camera& camera, const Pose& T_camera_board) {
     constexpr double kBorder_px = 0.5 * kLeastStep_px;
     const auto corners =

@@ -167,7 +167,8 @@ Answer Gatekeeper::ask_step(const StepQuestion& question, std::int64_t now_ns) {
     fetch(now_ns);
     const bool in_sequence = is_in_sequence(question);
     Judgement judgement = judge(question, in_sequence, now_ns);
-    // If a newer snapshot has arrived, judges again with this snapshot, but only once.
+    // If the verdict allows the step but a newer snapshot has arrived, judges once more with that
+    // snapshot.
     if (judgement.verdict.allows_step(now_ns) && reader_ && reader_->has_fresh()) {
         fetch(now_ns);
         judgement = judge(question, in_sequence, now_ns);

@@ -30,7 +30,8 @@ bool has_cells(const MapSnapshot& map) noexcept {
            within(map.origin_y_tenth_mm, kFarthestTenthMm);
 }
 
-/// Accepts at least all that the gate's own tests accept before the gate reads the ground.
+/// True for every query that passes the gate's own tests before the gate reads the ground. May be
+/// true for other queries.
 bool can_look(const Machine& machine, const gate::Query& query, const MapSnapshot& map) noexcept {
     const gate::AttestedArea& area = query.attested;
     const bool attested = !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&

@@ -170,8 +170,8 @@ void LiveService::follow_walk(sim::SceneSource& scene, const LiveSession& sessio
     }
 }
 
-/// Waits while a page has paused the recording. Returns false if a page wants to jump to another
-/// frame.
+/// Applies the playback state that the pages set: waits while the recording is paused, and sets the
+/// speed. Returns false if a page wants to jump to another frame.
 bool LiveService::follow_pages(LiveSession& session, const gate_process::SnapshotWriter& writer) {
     page::Playback& playback = page_->controls().playback;
     auto state = playback.state();

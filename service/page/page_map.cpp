@@ -37,8 +37,8 @@ std::int16_t height_mm(std::int32_t height_tenth_mm, std::int32_t base_tenth_mm)
     return static_cast<std::int16_t>(std::clamp(mm, -kHighest, kHighest));
 }
 
-/// Returns true if an object on or above the cell is lower than the machine, so the body can hit
-/// it.
+/// Returns true if an object above the cell hangs lower than the height of the machine, so the body
+/// can hit it.
 bool is_too_low(const grid::MapSnapshot& snapshot,
                 std::size_t i,
                 const ColourLimits& limits) noexcept {

@@ -54,8 +54,9 @@ constexpr std::int64_t kStatusEvery_ns = 500'000'000;
 constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< period of the counters of a recording
 constexpr std::int64_t kMostLayerBytesPerSecond =
     1'200'000;  ///< largest data rate of layers; a page gets 2 MB/s in total
-// Rate limits of one viewer. A viewer that exceeds a limit is disconnected. A wish has the lower
-// limit, because it may cost a whole map; a repeated joystick command costs nothing.
+// Rate limits of one viewer. A viewer that exceeds a limit is disconnected. All messages together
+// have the limit kMessages. Requests for data, settings and recordings also have the lower limit
+// kWishes, because the server answers a request for data with the whole map.
 constexpr gate_process::RateLimit kWishes{5, 20};
 constexpr gate_process::RateLimit kMessages{40, 80};
 
@@ -165,7 +166,7 @@ class PageSockets {
     bool accepting_ = false;
 };
 
-/// One connection. It is a request for a file, a page, or a Foxglove client.
+/// One connection. It is a request for a file, the WebSocket of a page, or a Foxglove client.
 class Viewer : public std::enable_shared_from_this<Viewer> {
   public:
     /// `name`: unique number of the connection, never 0.
@@ -578,8 +579,8 @@ void Viewer::say_stairs() {
     say(show.stairs());
 }
 
-/// Sends the settings if they changed. They are large and change rarely, so a new wish alone does
-/// not send them again.
+/// Sends the settings if the page wants them and they changed. They are large and change rarely, so
+/// a new request of the page does not send them again.
 void Viewer::say_settings() {
     const PageSettings& settings = sockets_.controls.settings;
     const std::uint64_t serial = settings.serial();

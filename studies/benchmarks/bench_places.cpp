@@ -21,7 +21,7 @@ constexpr int kCorridors = 50;
 constexpr int kKeyframes =
     10;                      ///< keyframes per corridor; all corridors together fill the database
 constexpr int kQueries = 5;  ///< number of queries in each queried corridor
-constexpr int kGoneThrough = 12;  ///< number of queried corridors, once known and once unknown
+constexpr int kGoneThrough = 12;  ///< number of queried corridors of each kind (known, unknown)
 constexpr double kApart_m = 100.0;
 static_assert(kCorridors * kKeyframes == place_recognition::kMostKeyframes);
 

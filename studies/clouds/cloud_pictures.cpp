@@ -98,7 +98,7 @@ Status write_histogram(const std::string& path,
         if (std::isnan(d_m)) continue;
         ++known;
         const double s = (static_cast<double>(d_m) - range.low) / (range.high - range.low);
-        // in range: as asked
+        // in range: the condition keeps s in [0, 1)
         if (s >= 0.0 && s < 1.0) ++counts[static_cast<std::size_t>(s * kBins)];
     }
     eval::LinePlot plot;

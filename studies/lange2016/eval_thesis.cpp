@@ -70,8 +70,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
         return usage_error(
             "--machine is empty: give a machine file, or the name of a built-in machine, for "
             "example rex");
-    // Uses every second beam. There is still a point every 5 mm within 4 m of a station, in a
-    // quarter of the time. `sim --scan` uses all beams.
+    // Doubles the angle between beams in both directions, so the scan takes a quarter of the time.
+    // There is still a point every 5 mm within 4 m of a station. `sim --scan` uses all beams.
     settings->laser.step_deg *= 2.0;
     return ThesisConditions{std::move(*settings),
                             machine->value().machine,
@@ -81,7 +81,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
 }
 
 /// Computes the parts that are not stored yet. `executor` determines how many parts run at a time.
-/// All errors are logged and added to the results; the first error is returned.
+/// All errors except an interrupt by the user are logged and added to the results. The first error
+/// is returned.
 class Parts {
   public:
     Parts(ThesisResults& results, Executor& executor) : results_(results), executor_(executor) {}

@@ -45,7 +45,7 @@ double percentile(const std::vector<double>& sorted, double fraction) {
 
 /// Returns the height and tilt that align the live heights with the truth. They are the plane
 /// through the height differences of the cells. Each round drops differences farther than three
-/// sigma from the plane, for example a wall top that the camera did not see, or a step that is off
+/// sigma from the plane. Examples are a wall top that the camera did not see, or a step that is off
 /// by one cell.
 Pose height_and_tilt(const RatedMap& truth, const RatedMap& live) {
     struct Difference {

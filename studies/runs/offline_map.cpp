@@ -122,8 +122,8 @@ Result<gate::AttestedArea> attest_start(const Machine& machine,
     area.active = true;
     area.center_x_tenth_mm = query.x_tenth_mm;
     area.center_y_tenth_mm = query.y_tenth_mm;
-    // Only cells that lie wholly inside the area count. So the radius exceeds the reach of the feet
-    // by 1.5 cells, which is more than a cell diagonal.
+    // Only cells that lie wholly inside the area count. So the default radius exceeds the reach of
+    // the feet by 1.5 cells, which is more than a cell diagonal.
     const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
     // in range: at most limit_m, or what the feet of a machine reach
     area.radius_tenth_mm = static_cast<std::int32_t>(

@@ -18,8 +18,7 @@ using gate_process::Json;
 
 constexpr std::size_t kValuesPerPoint = 5;  // x y z station mixed
 constexpr std::size_t kBlockPoints = 1U << 15U;
-/// The range of a scanner is 120 m. More tiles would exceed the limit of open files on common
-/// systems.
+/// More tiles would exceed the limit of open files on common systems.
 constexpr std::size_t kMostTiles = 500;
 
 io::PointCloud empty_block() {

@@ -28,8 +28,8 @@ Status write_png(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// Returns the time of a characteristic view. It is half-way along the path. For a walk, it is just
-/// before the machine first turns away from its target.
+/// Returns the time of a characteristic view. It is the start of the first turn of a walk, because
+/// the machine still faces its target then. Without a turn, it is half of the duration of the path.
 double telling_time_s(const sim::ScriptedScene& script) {
     constexpr int kFirstTurn = 25;  // joystick codes 25 and 26 are turns
     for (const sim::StepEvent& step : script.steps) {

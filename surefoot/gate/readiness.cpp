@@ -81,7 +81,8 @@ void Readiness::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexc
         const auto reason = static_cast<Reason>(i);
         if (present_.contains(reason) && is_latched(reason)) latch(reason, now_ns);
     }
-    // No field of a damaged snapshot has a meaning, not even its origin.
+    // The fields of a damaged snapshot have no meaning, so they are not compared with the previous
+    // snapshot.
     if (!present_.contains(Reason::internal)) check_succession(map, now_ns);
     judge(now_ns);
 }
@@ -121,7 +122,7 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
     if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
-    constexpr double kQuarter_rad = 1.5;  // from here on, no angle can be excluded
+    constexpr double kQuarter_rad = 1.5;  // from this limit on, every turn is allowed
     if (turn_rad >= kQuarter_rad) return false;
     // sin(x) <= x, so a turn slightly above the limit can stay undetected: up to 5 % more for a
     // limit up to 0.5 rad, up to a right angle for a limit from 1 rad on.

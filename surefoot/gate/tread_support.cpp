@@ -110,8 +110,9 @@ void find_level(const Scene& scene, const FootSweep& foot, Tread& tread) noexcep
     if (tread.known) tread.rise_tenth_mm = grid::floor_div(2 * sum + count, 2 * count);
 }
 
-/// Finds the start of the first ground that lies more than `drop` below the tread. A cell with drop
-/// evidence is the last cell of the tread.
+/// Finds, towards the toe and towards the heel, the start of the first ground that lies more than
+/// `drop` below the tread. A cell with drop evidence is the last cell of the tread, unless it is
+/// too high for a foot.
 void find_edges(const Scene& scene, const FootSweep& foot, Tread& tread) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const FootAxes axes(scene, foot);

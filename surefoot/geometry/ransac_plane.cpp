@@ -108,7 +108,7 @@ Search search(Points points,
     Search result;
     double best = 0.0;
     // Chance that all three points are inliers of the best plane so far, or of a plane with the
-    // share `least_inlier_ratio`.
+    // share `least_inlier_ratio`, whichever chance is larger.
     double hit = std::pow(std::min(options.least_inlier_ratio, 1.0), 3);
     double missed = 1.0;  // chance that all triples so far contained an outlier
     while (result.iterations < options.max_iterations && missed > 1.0 - options.confidence) {

@@ -47,8 +47,8 @@ std::optional<LocalSurface> surface_of(const Sums& sums, double sq_radius_m2) {
     constexpr double kLine = 1e-6;
     if (!(thin.middle > kLine * kLine * sq_radius_m2)) return std::nullopt;
     Eigen::Vector3d normal = thin.direction;
-    // A wall that is vertical within rounding has no meaningful upper side. The larger of x and y
-    // then becomes positive.
+    // A wall that is vertical within rounding has no meaningful upper side. The component x or y
+    // with the larger magnitude then becomes positive.
     constexpr double kUpright = 1e-6;
     const double side = std::abs(normal.z()) > kUpright               ? normal.z()
                         : std::abs(normal.x()) > std::abs(normal.y()) ? normal.x()

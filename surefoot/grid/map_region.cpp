@@ -126,7 +126,8 @@ std::optional<std::string> LatticeBox::problem() const {
 }
 
 LatticeBox box_of(const GridGeometry& geometry) {
-    // The origin is a whole number of cells: rounding only removes the error of the product.
+    // `origin_m` was computed as a whole number times the cell size (`MovingWindow`). The quotient
+    // can miss this number by a rounding error; `round` removes the error.
     const Eigen::Vector2d first = geometry.origin_m / geometry.resolution_m;
     return {saturated_integer<std::int64_t>(std::round(first.x())),
             saturated_integer<std::int64_t>(std::round(first.y())),

@@ -109,7 +109,8 @@ GroundReason judge(const GroundConfig& config, const Candidate& candidate) {
     if (candidate.inlier_ratio < config.min_inlier_ratio) return GroundReason::few_inliers;
     if (candidate.area_m2 < config.min_area_m2) return GroundReason::small;
     if (candidate.extent.narrow_sigma_m < config.min_extent_m) return GroundReason::small;
-    // A slab cut out of gravel or clutter continues beyond its tolerance. A surface ends within it.
+    // Gravel and clutter also have many points just beyond the tolerance of a plane. A surface has
+    // few.
     constexpr double kMinContrast = 3.0;  // evenly spread points have at most 2
     if (candidate.extent.rms_m > config.max_rms_m) return GroundReason::rough;
     if (candidate.contrast < kMinContrast) return GroundReason::rough;
@@ -126,8 +127,8 @@ geometry::Plane refine(const Cloud& cloud, const geometry::Plane& start) {
         .value_or(start);
 }
 
-/// Refines the plane with the points near it and their noise. If it crosses several levels, the
-/// nearest level is kept: `sides` says where it lies, and the other points are left out.
+/// Refines the plane with the points near it and their noise. If the plane crosses several levels,
+/// keeps only the nearest level: adds its limits to `sides` and removes the other points.
 geometry::Plane refined(const GroundConfig& config,
                         const geometry::Plane& found,
                         Cloud& cloud,
@@ -177,15 +178,16 @@ bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candid
     if (config.expected_height_m > 0.0) {
         const double a_off_m = std::abs(a.height_m - config.expected_height_m);
         const double b_off_m = std::abs(b.height_m - config.expected_height_m);
-        // Planes that fit about equally well (a ramp that begins at the feet) are decided by the
-        // rules below.
+        // If both planes fit the expected height about equally well (for example floor and a ramp
+        // that begins at the feet), the rules below decide.
         if (std::abs(a_off_m - b_off_m) > config.max_disagreement_m) return a_off_m < b_off_m;
     }
     const double a_at_b = -a.plane.signed_distance_m(b.extent.centroid_m);  // a above b's points
     const double b_at_a = -b.plane.signed_distance_m(a.extent.centroid_m);
     const bool a_below = a_at_b < 0.0 && b_at_a > 0.0;  // a is below b wherever there are points
     const bool b_below = a_at_b > 0.0 && b_at_a < 0.0;
-    // Of two planes a step apart, the machine stands on the upper one if it begins nearer.
+    // If one plane lies farther below the other than any step, the lower one is the ground.
+    // Otherwise the machine stands on the plane that begins nearer, even if it is the upper one.
     if ((a_below || b_below) && std::abs(a.height_m - b.height_m) > kHighestStep_m) return a_below;
     return a.begin_m < b.begin_m;
 }
@@ -225,8 +227,8 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
                                      static_cast<double>(rest.points.size());
         const auto found = search(rest, options, rng);
         if (!found) break;
-        // With known noise, points on another level are separated and do not count against any
-        // plane.
+        // With known noise, the points of earlier planes (removed from `rest`) do not count against
+        // this plane.
         const Candidate candidate =
             measured(config, cloud.knows_noise() ? rest : cloud, cloud.points.size(), *found, up);
         const bool height_fits = candidate.plane.offset_m >= config.min_height_m &&

@@ -127,7 +127,7 @@ bool is_possible(const GroundConfig& config, const Plane& plane) {
            std::abs(n.y()) <= std::sin(config.search_roll_deg * kRadPerDeg);
 }
 
-/// Returns points that are spread by surface and sorted by the cubes in which planes are drawn.
+/// Returns at most one point per voxel, sorted by the cubes from which candidate planes are drawn.
 Drawable drawable(const GroundConfig& config, const View& view) {
     const auto thinned = thin(view.points,
                               Eigen::Vector3d::Zero(),

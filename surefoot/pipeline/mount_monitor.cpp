@@ -33,8 +33,8 @@ void MountMonitor::compare(const Pose& T_odom_body, const Eigen::Vector3d& norma
     const Eigen::Vector3d by_ground = normal_body - normal_body_;
     const bool same = (by_odom - by_ground).norm() <= config_.max_lean_deg * kRadPerDeg;
     lean_rad_ = same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
-    // The plane of one frame is uncertain by about 0.1 deg. So its lean is only required to have
-    // half the size of the lean in odom, in that direction.
+    // The plane of one frame is uncertain by about 0.1 deg. So the plane needs to show only half of
+    // the lean in odom, along the direction of this lean.
     leans_ = by_odom.norm() > config_.max_lean_before_step_deg * kRadPerDeg &&
              by_ground.dot(by_odom) > 0.5 * by_odom.squaredNorm();
 }

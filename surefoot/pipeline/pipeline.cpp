@@ -161,7 +161,7 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
     odometry::Odometry scout(config_.odometry, *rectifier_);
     scout.start_at(Pose{});
     ground::GroundConfig wanted = config_.ground;
-    // A source of a few frames cannot show more, so all of its frames must agree.
+    // If there are fewer than `min_agreeing` frames, all of them must agree.
     wanted.min_agreeing = std::clamp(static_cast<int>(first_frames.size()), 1, wanted.min_agreeing);
     ground::GroundCalibration calibration(wanted);
     for (const StereoFrame& frame : first_frames) {

@@ -39,15 +39,16 @@ Start StartUp::take() {
     return {std::exchange(frames_, {}), waited_frames_};
 }
 
-/// True if the window is full and all its frames are well exposed, or if the wait for good exposure
-/// is over.
+/// True if the window is full, and either all its frames are well exposed or the wait for good
+/// exposure is over.
 bool StartUp::is_full() const {
     return window().size() >= Pipeline::kAlignmentFrames &&
            (lit_in_a_row_ >= Pipeline::kAlignmentFrames ||
             waited_s() >= config_.wait_for_exposure_s);
 }
 
-/// Aligns the pipeline. Returns true when odom is placed for good. Otherwise moves the window on.
+/// Aligns the pipeline. Returns true if this alignment is final. Otherwise moves the window
+/// forward.
 bool StartUp::try_alignment(Pipeline& pipeline, bool more) {
     const double wait_s = ground_is_there_ ? config_.wait_for_ground_s
                           : searches_      ? config_.wait_for_search_s

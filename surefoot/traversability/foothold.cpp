@@ -155,7 +155,7 @@ void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Imag
         ny_, [&job](int iy) { job.finder.judge_row(job.ground, iy, job.out.row(iy)); });
 }
 
-/// Computes all figures that depend on one row of the ground only.
+/// Computes all figures that depend only on one row of the ground.
 void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
     Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy) * (nx_ + 1);
     float* shown = low_shown_.row(iy);

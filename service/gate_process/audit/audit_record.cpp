@@ -93,8 +93,8 @@ struct RecordView {
     const CellBox& zone;
 };
 
-/// True if the decision read the ground and found cells that differ from the sealed cells. Only
-/// such a verdict lacks this proof and has counted no cell.
+/// True if the gate read the ground and found cells that differ from the sealed cells. Only such a
+/// verdict lacks the proof `cells_intact`, has the earlier proofs and has counted no cell.
 bool found_damaged_cells(const gate::Verdict& verdict) {
     const gate::Evidence& e = verdict.evidence;
     return verdict.reasons == gate::ReasonSet(gate::Reason::internal) && e.cells == 0 &&

@@ -22,7 +22,7 @@ struct AuditWriter::Packer {
     Packer& operator=(const Packer&) = delete;
     ~Packer() { ZSTD_freeCCtx(context); }
 
-    /// Returns the packed payload, or the plain payload if it is shorter.
+    /// Returns the packed payload if it is shorter than the plain one, otherwise the plain payload.
     std::string_view pack(std::string_view plain, FrameEncoding& encoding) {
         const std::size_t bytes = ZSTD_compressCCtx(
             context, packed.data(), packed.size(), plain.data(), plain.size(), kLevel);
@@ -66,8 +66,8 @@ Status AuditWriter::sync() {
     return status;
 }
 
-/// Opens a new file. Its number follows the number of the last file in the folder, from any
-/// process.
+/// Opens a new file. Its number follows the number of the last file in the folder, whichever
+/// process wrote that file.
 Status AuditWriter::begin_file() {
     if (!listed_) {
         auto entries = disk_->list();
@@ -118,7 +118,8 @@ Status AuditWriter::append(FrameKind kind, std::string_view payload) {
     return {};
 }
 
-/// Writes all bytes or none.
+/// Writes all bytes. On an error, removes the bytes that were written; if that fails too, leaves
+/// the file.
 Status AuditWriter::put(std::string_view bytes) {
     Log& log = logs_.back();
     std::size_t done = 0;
@@ -152,8 +153,8 @@ std::uint64_t AuditWriter::folder_bytes() const noexcept {
     return bytes;
 }
 
-/// Makes room for the new file. If a file cannot be removed, the removal is retried with the next
-/// file.
+/// Removes the oldest files to make room for the new file. If a file cannot be removed, tries again
+/// when the next new file is opened.
 void AuditWriter::remove_oldest() {
     while (logs_.size() > 1 && folder_bytes() + files_.file_bytes > files_.total_bytes) {
         if (!disk_->remove(logs_.front().name)) return;

@@ -37,7 +37,7 @@ Json names_of_type(const Entries& entries, std::string_view type) {
     return names;
 }
 
-/// Returns the topics that clients publish, or all other topics.
+/// Returns the topics that clients publish if `from_client`, otherwise all other topics.
 Json topics_from(bool from_client) {
     Json names = Json::array();
     for (const auto& entry : kTopics) {

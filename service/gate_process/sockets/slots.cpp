@@ -8,8 +8,8 @@ namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kForgetHalf_ns = 1'000'000'000;
-/// Cost above which a client counts as too expensive. A question costs 0.15 ms, and a rider that
-/// asks 15 times a second reaches this decayed cost.
+/// Cost above which a client counts as too expensive. A question costs 0.15 ms, so the decayed cost
+/// of a rider that asks 15 times a second is at most 4.5 ms.
 constexpr std::int64_t kHeavy_ns = 5'000'000;
 
 /// After a minute, costs have decayed completely.
