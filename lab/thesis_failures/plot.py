@@ -28,7 +28,7 @@ def thesis_sometimes(lab):
                        f"({', '.join(f'{m:.0f}-{s:.0f}' for m, s in zip(middle, sides))})")
         body.append(row)
     fill("thesis_failures", table(["pose late by", "floor spread, trolley / REX [mm] (each seed)", "rms of the floor, trolley / REX [mm]", "spread of 0.1 m medians, trolley / REX [mm]",
-                                   "trolley: 99th percentile of jumps, middle - sides of the map [mm]", "REX: 99th percentile of jumps, middle - sides of the map [mm]"], body), "sometimes")
+                                   "trolley: 99th percentile of jumps, middle - sides of the image [mm]", "REX: 99th percentile of jumps, middle - sides of the image [mm]"], body), "sometimes")
 
 
 def thesis_failures(lab):
@@ -70,7 +70,7 @@ def failures_table(rows):
             row.append(f"{middle('riser', motion_model, 'demo_stairs'):.0f}")
         body.append(row)
     return table(["pose late by", "disparity offset", "floor spread, trolley / REX [mm]", "rms of the floor, trolley / REX [mm]", "spread of 0.1 m medians, trolley / REX [mm]",
-                  "trolley: 99th percentile of jumps, middle - sides of the map [mm]", "trolley: riser [mm]", "REX: 99th percentile of jumps, middle - sides of the map [mm]", "REX: riser [mm]"], body)
+                  "trolley: 99th percentile of jumps, middle - sides of the image [mm]", "trolley: riser [mm]", "REX: 99th percentile of jumps, middle - sides of the image [mm]", "REX: riser [mm]"], body)
 
 
 def failures_maps(folder):
