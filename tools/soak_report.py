@@ -315,7 +315,7 @@ def lines_of(found):
               f"| largest number of files in shared memory | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
               f"| largest size of the audit folder (limit 64 MB) [MB] | {number(found['audit_mb_most'])} |",
               f"| replay of the log: equal verdicts, different verdicts | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
-              f"| gaps in the log, verdicts lost in these gaps | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
+              f"| gaps in the log, entries (verdicts and acts) lost in these gaps | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
               "", "| injected fault | number of times |", "|---|---|"]
     lines += [f"| {kind} | {times} |" for kind, times in found["faults"].items()]
     lines += ["", "| action of the clients | number of times |", "|---|---|"]
