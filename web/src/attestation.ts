@@ -9,7 +9,7 @@ export interface AttestedArea {
   radius_m: number;
 }
 
-/// The radii that the gate accepts, and the step of the slider.
+/// Range and step of the slider for the radius. The gate accepts every radius in this range.
 export interface RadiusRange {
   least_m: number;
   most_m: number;

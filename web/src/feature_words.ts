@@ -126,8 +126,8 @@ export interface FeatureLabel {
   yaw_rad: number;
 }
 
-/// Returns the labels of a picture, flights first. Each label is at the last edge of its feature along its direction,
-/// in odom.
+/// Returns the labels of a picture, flights first, with positions in odom. The label of a flight is at its last edge;
+/// every other label is at the pose of its feature.
 export function featureLabels(stairs: Stairs): FeatureLabel[] {
   const at = ({ pose: [x_m, y_m, , yaw_rad] }: Feature, length_m: number, ...lines: string[]) =>
     x_m === null || y_m === null || yaw_rad === null

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Freshness of the data and the text of the banner. Both use only times of arrival, because the clock of the source
-/// differs from the page's clock.
+/// Freshness of the data and the text of the banner. Ages count from the arrival of a message at the page, because the
+/// clock of the source differs from the page's clock.
 
 export type LinkState = "opening" | "open" | "away";
 

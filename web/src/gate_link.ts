@@ -155,7 +155,8 @@ export class GateLink {
     const store = this.#store;
     if (typeof msg !== "object" || msg === null) return;
     if (topic === "/surefoot/outlook" && Array.isArray((msg as Outlook).verdicts)) {
-      // While a recording is paused, the gate answers only that its frames are old. Such answers are ignored.
+      // While a recording is paused, the gate answers only that its frames are old. Such an answer does not replace the
+      // last outlook before the pause.
       if (store.arrivals.source_state === "paused" && store.outlook) return;
       store.outlook = msg as Outlook;
       store.arrivals.outlook_at_ms = performance.now();

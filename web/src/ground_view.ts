@@ -27,7 +27,7 @@ const kSpoken: Record<SignKind, string> = {
   absent: "#8b919b",
 };
 
-/// Only flights get feature labels, because the nearest edges have labels with their depth.
+/// Feature labels are drawn for flights only, because the nearest edges have labels of their own, with their depth.
 const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
 /// Keeps a picture in main memory, because its cells are painted pixel by pixel several times a second. Copies to a

@@ -4,7 +4,7 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import type { Steer } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// Period of the messages while a sign or key is held. The service ends the movement after 1 s without a message.
+/// Period of the messages while a sign or key is held. The service treats 1 s without a message as a release.
 const kAgain_ms = 300;
 const kKeys: Readonly<Record<string, number>> = { ArrowUp: 9, ArrowDown: 17, ArrowLeft: 21, ArrowRight: 13 };
 

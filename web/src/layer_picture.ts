@@ -65,8 +65,9 @@ export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels
     }
 }
 
-/// Returns a short text: four decimals below 1, two below 100, else none. Values below 0.001, except 0, and from 1e5 have
-/// an exponent. Examples: "0.1235", "12.35", "4321", "1.20e-6". A value that is not finite is "unknown".
+/// Returns a short text. The magnitude of the value decides the number of decimals: four below 1, two below 100, else
+/// none. Values with a magnitude below 0.001 (except 0) or from 1e5 on have an exponent. Examples: "0.1235", "12.35",
+/// "4321", "1.20e-6". A value that is not finite is "unknown".
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "unknown";
   const size = Math.abs(value);

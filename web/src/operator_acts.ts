@@ -28,7 +28,8 @@ export class OperatorActs {
     this.#looked.addEventListener("change", () => {
       this.#yes.disabled = !this.#looked.checked;
     });
-    // The click of the button decides, because Chromium reports `close` late, and then once for each close.
+    // The act starts at the click of the button, not at the `close` event of the dialog: Chromium sends this event
+    // late, and then once for each time that the dialog was closed.
     this.#yes.addEventListener("click", () => {
       const radius_m = Number(this.#radius.value);
       if (!this.#looked.checked) return;

@@ -3,8 +3,8 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import { recordingWords } from "./recording_words.ts";
 import type { Store } from "./store.ts";
 
-/// Starts and stops the recording of the service and shows its progress. While images are stored, the bar of every page
-/// shows a mark.
+/// Starts and stops the recording of the service and shows its progress. While a recording runs, the bar at the top of
+/// every open page shows a mark.
 export class RecordButton {
   readonly #store: Store;
   readonly #button = byId<HTMLButtonElement>("record");

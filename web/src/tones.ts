@@ -46,7 +46,8 @@ export class Tones {
     }
   }
 
-  /// Plays a tone when the sign changes.
+  /// Plays the tone of a sign when the sign changes. A stale sign counts as "cannot judge". The first sign makes no
+  /// sound.
   follow(kind: SignKind): void {
     const heard = kind === "stale" ? "cannot" : kind;
     if (heard !== this.#last && this.#last !== undefined) this.play(heard);
