@@ -291,7 +291,7 @@ class Measure(CliTest):
         (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))
         process = surefoot("measure", self.dir / "wide.ply")
         self.assertEqual(process.returncode, 2)
-        self.assertIn("cannot be numbered", process.stderr)
+        self.assertIn("too large for voxels", process.stderr)
         for why, words in (("four finite numbers", ["--box", "1,2"]), ("contains no point of the cloud", ["--box", "90,90,99,99"]),
                            ("three finite numbers", ["--door", "1,2"]), ("no level surface", ["--door", "1,2,3"])):
             process = surefoot("measure", self.dir / "noise.xyz", *words)
@@ -314,7 +314,7 @@ class BadInput(CliTest):
         good = self.dir / "good.ply"
         good.write_bytes(ply(points))
         nan = float("nan")
-        bad = {"empty.ply": (ply([]), "no point with finite"), "nan.ply": (ply([(nan, nan, nan)] * 5), "5 points in the file"),
+        bad = {"empty.ply": (ply([]), "has finite coordinates"), "nan.ply": (ply([(nan, nan, nan)] * 5), "none of the 5 points has finite"),
                "cut.ply": (ply(points)[:-1], "truncated"), "head.ply": (ply(points).split(b"property")[0], "truncated"),
                "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "announces 4000000000 'vertex'"),
                "far.ply": (ply([*points, (1e30, 0, 0)]), "100 km"), "text.xyz": (b"1 2\n", "2 numbers"),
@@ -396,8 +396,8 @@ class BadInput(CliTest):
                            ("not '.las'", ["voxel", good, "--out", self.dir / "o.las"]),
                            ("--guess", ["icp", good, good, "--guess", "1,2"]),
                            ("m3c2 only", ["eval", "clouds", good, good, "--core", good]),
-                           ("cannot be numbered", ["voxel", good, "--size", "1e-5", "--out", self.dir / "o.ply"])):
-            if why == "cannot be numbered":
+                           ("too large for voxels", ["voxel", good, "--size", "1e-5", "--out", self.dir / "o.ply"])):
+            if why == "too large for voxels":
                 (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))
                 words[1] = self.dir / "wide.ply"
             self.refused(why, *words)
