@@ -145,7 +145,7 @@ TEST(BoardImages, OfASideBySideVideoAreCutInTwo) {
 
 TEST(BoardImages, SayWhatIsMissing) {
     const TemporaryFolder folder;
-    EXPECT_NE(given(folder.path(), true).error.find("left* with right*"), std::string::npos);
+    EXPECT_NE(given(folder.path(), true).error.find("left* and right*"), std::string::npos);
     EXPECT_FALSE(given(folder / "nowhere", false).error.empty());
     ASSERT_TRUE(io::write_file(folder / "broken.avi", "no video"));
     EXPECT_NE(given(folder / "broken.avi", false).error.find("broken.avi"), std::string::npos);

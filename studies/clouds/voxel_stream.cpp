@@ -99,10 +99,10 @@ Result<Census> count(Source& source, const std::string& cloud, double size_m) {
     });
     if (!status) return status.error();
     if (census.points == 0) {
-        return input_error(
-            fmt::format("{}: none of the {} points has finite coordinates; check the file",
-                        cloud,
-                        source.skipped()));
+        return input_error(fmt::format(
+            "{}: no point with finite coordinates ({} points in the file); check the file",
+            cloud,
+            source.skipped()));
     }
     if (auto fits = check_voxels(census.box, size_m, cloud); !fits) return fits.error();
     return census;

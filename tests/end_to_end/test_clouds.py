@@ -314,7 +314,7 @@ class BadInput(CliTest):
         good = self.dir / "good.ply"
         good.write_bytes(ply(points))
         nan = float("nan")
-        bad = {"empty.ply": (ply([]), "has finite coordinates"), "nan.ply": (ply([(nan, nan, nan)] * 5), "none of the 5 points has finite"),
+        bad = {"empty.ply": (ply([]), "no point with finite"), "nan.ply": (ply([(nan, nan, nan)] * 5), "5 points in the file"),
                "cut.ply": (ply(points)[:-1], "truncated"), "head.ply": (ply(points).split(b"property")[0], "truncated"),
                "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "announces 4000000000 'vertex'"),
                "far.ply": (ply([*points, (1e30, 0, 0)]), "100 km"), "text.xyz": (b"1 2\n", "2 numbers"),

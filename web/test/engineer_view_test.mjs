@@ -13,6 +13,7 @@ import {
   kSkyBlue,
   kVermilion,
   kYellow,
+  newPage,
   note,
   pngOf,
   tabTo,
@@ -236,7 +237,7 @@ test("a value that another page set is shown, and one that is being typed stays"
     await page.waitForSelector("#setting-service-niceness");
     await page.fill("#setting-page-map_hz", "3");
     await page.focus("#setting-page-map_hz");
-    const other = await browser.newPage();
+    const other = await newPage();
     try {
       await other.goto(`http://127.0.0.1:${service.port}/`);
       await other.click("#tab-engineer");
@@ -353,7 +354,7 @@ test("a script that is not the page's own does not run", () =>
 
 test("no other page can frame it", () =>
   withPage({}, async (page, service) => {
-    const other = await browser.newPage();
+    const other = await newPage();
     try {
       await other.setContent(`<iframe src="http://127.0.0.1:${service.port}/"></iframe>`);
       await other.waitForFunction(() => {

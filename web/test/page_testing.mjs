@@ -21,11 +21,12 @@ before(async () => {
   browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: kFlags });
 });
 after(() => browser.close());
+export const newPage = (options) => browser.newPage(options);
 
 /// Runs `use` with a fresh service and a page that shows fresh verdicts; fails on any complaint of the page.
 export async function withPage({ fake = {}, ...options }, use) {
   const service = await Object.assign(new FakeService(), fake).start();
-  const page = await browser.newPage({
+  const page = await newPage({
     viewport: { width: 1280, height: 800 },
     colorScheme: "light",
     ...options,

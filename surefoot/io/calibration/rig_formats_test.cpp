@@ -386,7 +386,7 @@ TEST(RigRos, ThePartnerStandsBesideIt) {
     ASSERT_TRUE(write_rig(folder / "rig", rig_with(Lens::radtan5), RigFormat::ros).ok());
     EXPECT_TRUE(read_rig(folder / "rig").ok());
     EXPECT_TRUE(
-        contains(message(read_rig(folder / "rig/right.yaml")), "give the file of the left camera"));
+        contains(message(read_rig(folder / "rig/right.yaml")), "Give the file of the left camera"));
     ASSERT_TRUE(remove_file(folder / "rig/right.yaml").ok());
     EXPECT_TRUE(contains(message(read_rig(folder / "rig")), "rig/right.yaml: cannot read"));
     EXPECT_TRUE(

@@ -99,8 +99,7 @@ TEST(RigVariants, RosModelsAreWhatTheirCoefficientsSay) {
     EXPECT_TRUE(contains(message(with("rational_polynomial", rational_8 + ", 0.001, 0, 0, 0]")),
                          "coefficient 9 is 0.001 (s1); thin-prism"));
     EXPECT_TRUE(with("equidistant", "[0.1, 0.01, 0.001, 0.001, 0]").ok());
-    EXPECT_TRUE(
-        contains(message(with("equidistant", kD)), "5 numbers; the equidistant model has 4"));
+    EXPECT_TRUE(contains(message(with("equidistant", kD)), "5 numbers; equidistant has 4"));
 }
 
 TEST(RigVariants, RosBinningAndRegionAreApplied) {

@@ -241,7 +241,8 @@ TEST(TextCloud, ReadsHeadsCommentsAndSeparators) {
     EXPECT_EQ(cloud->points_m.at(1), Eigen::Vector3d(6, 7, 8));
     EXPECT_EQ(cloud->scalar("C2C")->at(1), 9.0);
     EXPECT_TRUE(std::isnan(cloud->scalar("dist")->at(1)));
-    EXPECT_TRUE(contains(message(parse_text_cloud("1 2 3\n1 2\n", "a.asc")), "a.asc:2: 2 numbers"));
+    EXPECT_TRUE(contains(message(parse_text_cloud("1 2 3\n1 2\n", "a.asc")),
+                         "a.asc:2: the line has 2 numbers"));
     EXPECT_TRUE(
         contains(message(parse_text_cloud("1 2 z\n", "a.asc")), "a.asc:1: 'z' is not a number"));
     EXPECT_TRUE(contains(message(parse_text_cloud("1 2\n", "a.asc")), "x y z"));

@@ -101,13 +101,14 @@ TEST(TextCloud, WhatIsMistakenForAnotherPlaceIsRefused) {
     EXPECT_TRUE(contains(why("0,0;0,0;0,1\n"), "a.txt:1: '0,0' has a decimal comma"));
     EXPECT_TRUE(contains(why("0\t0\t0.1\n0,5\t1\t2\n"), "a.txt:2: commas and blanks"));
     EXPECT_TRUE(contains(why("x,y,z\n0,0,0,0,0,1\n"), "accepted")) << "x y z come first";
-    EXPECT_TRUE(contains(why("id,x,y,z\n0,0,0,0,0,1\n"), "a.txt:2: 6 numbers, but line 1 names 4"));
+    EXPECT_TRUE(contains(why("id,x,y,z\n0,0,0,0,0,1\n"),
+                         "a.txt:2: the line has 6 numbers, but line 1 names 4"));
     EXPECT_TRUE(contains(why("# point id x y z\n1 0 0 0.1\n"), "names 5 columns"));
     EXPECT_TRUE(contains(why("easting,northing,up\n1,2,3\n"), "does not name x, y and z"));
     EXPECT_TRUE(contains(why("x [mm],y [mm],z [mm]\n1,2,3\n"), "is in 'mm'"));
     EXPECT_TRUE(contains(why("x,y,z\n0,0,1\ny,x,z\n0,0,1\n"), "a.txt:3: the columns change here"));
-    EXPECT_TRUE(contains(why("3\n0 0 1\n1 0 1\n"), "announces 3 points, but has 2"));
-    EXPECT_TRUE(contains(why("0 0 1\n1 0 1\n5\n"), "a.txt:3: 1 number"));
+    EXPECT_TRUE(contains(why("3\n0 0 1\n1 0 1\n"), "announces 3 points, but has only 2"));
+    EXPECT_TRUE(contains(why("0 0 1\n1 0 1\n5\n"), "a.txt:3: the line has 1 number"));
     EXPECT_TRUE(contains(why(std::string("\xff\xfe"
                                          "0\0",
                                          4)),

@@ -148,7 +148,7 @@ TEST(PlaceFile, SaysWhatIsWrongAndWhatToDo) {
     says(with(bytes, kFeaturesAt + 4, std::uint32_t{9}), "reserved bytes hold 9");
     says(with(bytes, kWidthAt, std::int32_t{-1}), "keyframe 0 has images of -1 x 376");
     says(with(bytes, kPoseAt, std::numeric_limits<double>::quiet_NaN()),
-         "pose in the map that is not valid");
+         "pose in the map that is not finite");
     says(with(bytes, kFirstFeatureAt, -5.0F), "outside its image");
 }
 

@@ -123,7 +123,7 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
         {"turn_deg: 15.0", "turn_deg: 45", "turn_deg: 45", "outside -30 .. 30"},
         {"max_deg: 93.0", "max_deg: -1", "max_deg: -1", "below min_deg"},
         {"enabled: false", "enabled: off", "enabled: off", "neither true nor false"},
-        {"high_m: 2.07", "high_m: 0.1", "", "heights of a part of the body"},
+        {"high_m: 2.07", "high_m: 0.1", "", "body part: low_m must be"},
         {"  parts:", "  pars:", "pars", "unknown key 'body.pars'"},
         {"low_m: 1.24", "low_m: 0.0", "low_m: 0.0,", "body.parts[5].low_m: 0 is outside"},
         {"name: rex", "name: rex\nname: rex", "", "appears twice"},
