@@ -47,7 +47,8 @@ TEST(ServiceSettings, WhatIsOutOfRangeOrNoNumberIsRefusedInWords) {
 
 TEST(ServiceSettings, PerceptionNeverGetsMoreThanItBeganWith) {
     Bench bench;
-    EXPECT_NE(bench.refused("service.niceness", "5").find("started with --nice 10"), std::string::npos);
+    EXPECT_NE(bench.refused("service.niceness", "5").find("started with --nice 10"),
+              std::string::npos);
     ASSERT_TRUE(bench.settings.change({"service.niceness", "19"}).ok());
     EXPECT_TRUE(bench.settings.change({"service.niceness", "10"}).ok());
 }

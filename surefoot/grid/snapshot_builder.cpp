@@ -221,8 +221,8 @@ void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     out.edge_count = static_cast<std::int32_t>(count);
     const auto from_origin = [](double p_m, std::int64_t origin_tenth_mm) {
         // The window begins before the body or at the corner of the map. So its origin and the
-        // edges lie within kFarthestM of the origin of odom (10^9 units of 0.1 mm). in range: the
-        // difference of two such numbers is below 2^31
+        // edges lie within kFarthestM of the origin of odom (10^9 units of 0.1 mm).
+        // in range: the difference of two such numbers is below 2^31
         return static_cast<std::int32_t>(tenth_mm(p_m) - origin_tenth_mm);
     };
     for (std::size_t i = 0; i < count; ++i) {

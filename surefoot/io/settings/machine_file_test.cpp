@@ -158,7 +158,8 @@ TEST(MachineFile, the_former_name_of_the_attestation_radius_is_read_with_a_note)
     ASSERT_TRUE(former.ok()) << former.error().message;
     EXPECT_EQ(former->machine.limits.attestation_radius_tenth_mm, 7000);
     ASSERT_EQ(former->notes.size(), 1U);
-    EXPECT_TRUE(contains(former->notes[0], "'vouch_radius_m' is now called 'attestation_radius_m'"));
+    EXPECT_TRUE(
+        contains(former->notes[0], "'vouch_radius_m' is now called 'attestation_radius_m'"));
     const auto both = parse_machine(
         rex_with("attestation_radius_m: 1.0", "attestation_radius_m: 1.0\n  vouch_radius_m: 0.7"),
         "m.yaml");
