@@ -24,7 +24,7 @@ demo:
 	@tools/setup run
 	@echo "make demo: 2. the live page"
 	@tools/build_page
-	@echo "make demo: 3. the programs (the first time about 20 minutes on two cores)"
+	@echo "make demo: 3. the programs (the first time about 11 minutes on two cores)"
 	@test -f $(BUILD)/build.ninja || cmake --preset release -DSUREFOOT_DEVELOPER=OFF > /dev/null
 	@NINJA_STATUS='[%f of %t, %e s] ' cmake --build $(BUILD) -j $(JOBS) --target surefoot surefoot-gate
 	@echo "make demo: 4. the demonstration"
