@@ -18,6 +18,7 @@
 #include "service/console/log.hpp"
 #include "service/console/option_settings.hpp"
 #include "surefoot/core/nearest_names.hpp"
+#include "surefoot/io/settings/renamed_keys.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -162,11 +163,7 @@ std::vector<std::string> words_of_call(int argc, char** argv) {
         for (const auto& [verb, old_name, new_name] : kRenamedOptions) {
             if (!first.starts_with(fmt::format("{} ", verb)) || word.substr(0, end) != old_name)
                 continue;
-            log_warning(
-                fmt::format("{} is now called {}. Use the new name: version 0.3 refuses "
-                            "the old name",
-                            old_name,
-                            new_name));
+            log_warning(io::renamed_note(old_name, new_name));
             word.replace(0, end, new_name);
             break;
         }

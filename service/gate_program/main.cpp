@@ -27,6 +27,7 @@
 #include "service/gate_process/sockets/token_file.hpp"
 #include "service/gate_process/sockets/websocket_server.hpp"
 #include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/io/settings/renamed_keys.hpp"
 #include "surefoot/machines/built_in_machines.hpp"
 
 namespace surefoot::app {
@@ -343,9 +344,8 @@ int main_with_arguments(int argc, char** argv) {
         ->check(CLI::NonNegativeNumber)
         ->group("")
         ->each([](const std::string&) {
-            fmt::print(stderr,
-                       "surefoot-gate: warning: --vouch is now called --attest. Use the new name: "
-                       "version 0.3 refuses the old one\n");
+            fmt::print(
+                stderr, "surefoot-gate: warning: {}\n", io::renamed_note("--vouch", "--attest"));
         });
     app.add_option("--channel-key",
                    options.key_file,

@@ -11,8 +11,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Returns a placeholder rig of the right image size, because LiveCamera needs a rig and this
-/// camera is not calibrated yet.
+/// Returns a rig of the right image size whose lenses are not used, because LiveCamera needs a rig
+/// and this camera is not calibrated yet.
 camera::StereoRig rig_of_size(int width, int height) {
     const camera::Camera camera{camera::PinholeRadTan{.fx_px = static_cast<double>(width),
                                                       .fy_px = static_cast<double>(width),

@@ -187,11 +187,7 @@ std::string name_today(const std::string& name,
     std::string now = current_key(name);
     if (!is_key(now, keys) && !is_group(now, keys)) return name;
     if (notes != nullptr) {
-        notes->push_back(fmt::format(
-            "{}'{}' is now called '{}'. Use the new name: version 0.3 refuses the old one",
-            begin_of_sentence(where),
-            name,
-            now));
+        notes->push_back(begin_of_sentence(where) + renamed_note(quoted(name), quoted(now)));
     }
     return now;
 }

@@ -12,6 +12,7 @@
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/io/calibration/calibration_kind.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/io/settings/renamed_keys.hpp"
 #include "surefoot/io/settings/yaml_group.hpp"
 #include "surefoot/io/settings/yaml_tree.hpp"
 #include "surefoot/io/text.hpp"
@@ -187,29 +188,20 @@ std::vector<std::string> use_current_names(YamlNode& document, const std::string
     constexpr std::string_view kFormer = "vouch_radius_m";
     constexpr std::string_view kCurrent = "attestation_radius_m";
     std::vector<std::string> notes;
-    const auto note = [&](int line) {
-        notes.push_back(fmt::format(
-            "{}:{}: '{}' is now called '{}'. Use the new name: version 0.3 refuses the old one",
-            file,
-            line,
-            kFormer,
-            kCurrent));
+    const auto rename = [&](std::string& name, int line, std::string_view prefix) {
+        if (name != fmt::format("{}{}", prefix, kFormer)) return;
+        name = fmt::format("{}{}", prefix, kCurrent);
+        notes.push_back(
+            fmt::format("{}:{}: {}", file, line, renamed_note(quoted(kFormer), quoted(kCurrent))));
     };
     for (YamlNode& group : document.items) {
         if (group.key == "limits" && group.find(kCurrent) == nullptr) {
-            for (YamlNode& limit : group.items) {
-                if (limit.key != kFormer) continue;
-                limit.key = kCurrent;
-                note(limit.line);
-            }
-        } else if (group.key == "deviations") {
-            for (YamlNode& deviation : group.items) {
-                for (YamlNode& field : deviation.items) {
-                    if (field.key != "key" || field.scalar != fmt::format("limits.{}", kFormer))
-                        continue;
-                    field.scalar = fmt::format("limits.{}", kCurrent);
-                    note(field.line);
-                }
+            for (YamlNode& limit : group.items) rename(limit.key, limit.line, "");
+        }
+        if (group.key != "deviations") continue;
+        for (YamlNode& deviation : group.items) {
+            for (YamlNode& field : deviation.items) {
+                if (field.key == "key") rename(field.scalar, field.line, "limits.");
             }
         }
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/io/settings/renamed_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace surefoot::io {
@@ -40,6 +42,12 @@ std::string current_key(std::string_view key) {
             name.replace(0, renamed.old_name.size(), renamed.new_name);
     }
     return name;
+}
+
+std::string renamed_note(std::string_view old_name, std::string_view new_name) {
+    return fmt::format("{} is now called {}. Use the new name: version 0.3 refuses the old one",
+                       old_name,
+                       new_name);
 }
 
 }  // namespace surefoot::io

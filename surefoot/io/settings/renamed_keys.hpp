@@ -11,4 +11,7 @@ namespace surefoot::io {
 /// docs/migration.md lists all pairs.
 [[nodiscard]] std::string current_key(std::string_view key);
 
+/// Returns the sentence that asks for the new name of a setting, an option or a key of a file.
+[[nodiscard]] std::string renamed_note(std::string_view old_name, std::string_view new_name);
+
 }  // namespace surefoot::io
